@@ -1,0 +1,49 @@
+/** \file
+ * \brief Mini-batches: which source points one step of the sampler looks at.
+ */
+#pragma once
+
+#include <bayesian_icp/export.h>
+#include <bayesian_icp/random.h>
+
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief How the source points of a mini-batch are chosen. */
+enum class MiniBatchSampling {
+  /** Every point of every batch is drawn independently of all others. */
+  WithReplacement,
+  /** The source is shuffled and dealt out in batches; it is shuffled again when fewer
+   * points than a batch are left, so no point comes twice within an epoch. */
+  ShuffledEpochs
+};
+
+/** \brief Short name: "with-replacement" or "shuffled-epochs". */
+BAYESIAN_ICP_EXPORT const char*
+toString(MiniBatchSampling sampling);
+
+/** \brief The stream of mini-batches of one chain. */
+class BAYESIAN_ICP_EXPORT MiniBatches {
+public:
+  /** \param[in] num_points size n of the source, positive
+   * \param[in] batch_size m of Algorithm 1; more than n is taken as n */
+  MiniBatches(std::size_t num_points,
+              std::size_t batch_size,
+              MiniBatchSampling sampling);
+
+  /** \brief Indices into the source of the next batch; valid until the next call. */
+  const std::vector<std::size_t>&
+  next(Random& random);
+
+private:
+  void
+  dealFromShuffledSource(Random& random);
+
+  MiniBatchSampling sampling_;
+  std::vector<std::size_t> shuffled_;
+  std::size_t num_dealt_;
+  std::vector<std::size_t> batch_;
+};
+
+} // namespace bayesian_icp

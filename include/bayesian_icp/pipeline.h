@@ -1,0 +1,39 @@
+/** \file
+ * \brief The front door without PCL: from points and a search to a posterior.
+ */
+#pragma once
+
+#include <bayesian_icp/correspondence.h>
+#include <bayesian_icp/options.h>
+#include <bayesian_icp/summary.h>
+
+namespace bayesian_icp {
+
+/** \brief Draws and what they say. */
+struct PosteriorEstimate {
+  Summary summary;
+  /** Every chain, the diverged ones included. */
+  std::vector<Chain> chains;
+  /** Draws of the chains that did not diverge, chain after chain. */
+  PoseMatrix samples;
+};
+
+/** \brief Fewest source points with a correspondence at the initial guess. */
+constexpr std::size_t min_correspondences = 3;
+
+/** \brief Sample the posterior of the source-to-target pose (Algorithm 1).
+ * \param[in] source_points 3 x n, finite, source frame [m]
+ * \param[in] search finds correspondences in the target, within its gate
+ * \param[in] initial_pose start of the chains, and mean of the prior unless the options
+ *            say otherwise [m, rad]
+ * \return an estimate whose summary.status says what happened; bad options or input
+ * give a status, not an exception. Exceptions of \p search and \p progress pass
+ *         through. */
+BAYESIAN_ICP_EXPORT PosteriorEstimate
+estimatePosterior(const Eigen::Matrix3Xd& source_points,
+                  const CorrespondenceSearch& search,
+                  const Vector6d& initial_pose,
+                  const Options& options,
+                  const ProgressCallback& progress = ProgressCallback());
+
+} // namespace bayesian_icp

@@ -1,0 +1,44 @@
+/** \file
+ * \brief The posterior density of the pose, as the sampler sees it: correspondence
+ * search, likelihood gradient of a mini-batch, prior gradient.
+ */
+#pragma once
+
+#include <bayesian_icp/correspondence.h>
+#include <bayesian_icp/likelihood.h>
+#include <bayesian_icp/mini_batch.h>
+#include <bayesian_icp/prior.h>
+#include <bayesian_icp/sgld.h>
+
+namespace bayesian_icp {
+
+/** \brief Stochastic energy gradients of one chain. Owns the chain's mini-batches and
+ * buffers; the source, the search and the prior are shared and only read. */
+class BAYESIAN_ICP_EXPORT PosteriorGradient {
+public:
+  /** \param[in] source_points 3 x n, source frame [m]; must outlive this object, like
+   *            \p search and \p prior
+   * \param[in] weight N / sigma^2 [1/m^2] */
+  PosteriorGradient(const Eigen::Matrix3Xd& source_points,
+                    const CorrespondenceSearch& search,
+                    const Prior& prior,
+                    double weight,
+                    const MiniBatches& mini_batches);
+
+  /** \brief Gradient of -log posterior at \p pose, estimated from the next mini-batch:
+   * weight times the mean gradient (2, 3) plus the prior's (6, 7). */
+  EnergyGradient
+  operator()(const Vector6d& pose, Random& random);
+
+private:
+  const Eigen::Matrix3Xd& source_points_;
+  const CorrespondenceSearch& search_;
+  const Prior& prior_;
+  double weight_;
+  MiniBatches mini_batches_;
+  Eigen::Matrix3Xd batch_points_;
+  Eigen::Matrix3Xd moved_points_;
+  Correspondences correspondences_;
+};
+
+} // namespace bayesian_icp

@@ -1,0 +1,80 @@
+/** \file
+ * \brief Gaussian prior on the translation, von Mises prior on the angles.
+ */
+#pragma once
+
+#include <bayesian_icp/export.h>
+#include <bayesian_icp/pose.h>
+
+#include <limits>
+
+namespace bayesian_icp {
+
+/** \brief The point whose translation the prior speaks of. */
+enum class PriorFrame {
+  /** The origin of the source frame, the paper's. */
+  Origin,
+  /** The centroid of the source points: the natural one for objects away from the
+   * sensor, where a rotation about the origin would move the object far. */
+  SourceCentroid
+};
+
+/** \brief Short name: "origin" or "source-centroid". */
+BAYESIAN_ICP_EXPORT const char*
+toString(PriorFrame frame);
+
+/** \brief What is believed of the pose before the clouds are seen. */
+struct PriorOptions {
+  /** Mean pose (x, y, z, roll, pitch, yaw) [m, rad], as a source-to-target pose. Not
+   * finite (the default) means: the initial guess. */
+  Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** Variance of x, y, z [m^2] and 1/kappa of roll, pitch, yaw [rad^2] (eqs. 6 and 7).
+   * Positive; infinity means no prior on that coordinate. */
+  Vector6d variance = Vector6d::Constant(0.125);
+  /** The point whose translation x, y, z of the prior describe. */
+  PriorFrame frame = PriorFrame::Origin;
+};
+
+/** \brief Energy -log p(theta) of the prior, up to a constant, and its gradient.
+ *
+ * With c the reference point (0, or the source centroid) and d = (R c + u) -
+ * (R_mean c + u_mean), the energy is sum d_k^2 / (2 v_k) over x, y, z plus
+ * sum kappa_k (1 - cos(theta_k - mean_k)) over the angles, kappa_k = 1 / v_k.
+ */
+class BAYESIAN_ICP_EXPORT Prior {
+public:
+  /** \param[in] mean pose [m, rad]
+   * \param[in] variance six positive numbers [m^2, rad^2]
+   * \param[in] reference_point c, source frame [m] */
+  Prior(const Vector6d& mean,
+        const Vector6d& variance,
+        const Eigen::Vector3d& reference_point = Eigen::Vector3d::Zero());
+
+  /** \brief -log p(theta) up to a constant. */
+  double
+  energy(const Vector6d& pose) const;
+
+  /** \brief Gradient of energy() with respect to the pose: eqs. (6) and (7) for c = 0.
+   */
+  Vector6d
+  energyGradient(const Vector6d& pose) const;
+
+  /** \brief d of the class description and theta_k - mean_k, not wrapped [m, rad]. */
+  Vector6d
+  deviation(const Vector6d& pose) const;
+
+  /** \brief The six variances [m^2, rad^2]. */
+  const Vector6d&
+  variance() const
+  {
+    return variance_;
+  }
+
+private:
+  Vector6d mean_;
+  Vector6d variance_;
+  Eigen::Vector3d reference_point_;
+  Eigen::Vector3d mean_reference_point_;
+};
+
+} // namespace bayesian_icp

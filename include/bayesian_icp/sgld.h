@@ -1,0 +1,78 @@
+/** \file
+ * \brief Preconditioned stochastic gradient Langevin dynamics (SGLD; Welling and Teh
+ * 2011, Li et al. 2016). Knows poses and gradients, and nothing of point clouds.
+ */
+#pragma once
+
+#include <bayesian_icp/export.h>
+#include <bayesian_icp/pose.h>
+#include <bayesian_icp/random.h>
+
+namespace bayesian_icp {
+
+/** \brief Constants of Algorithm 1. */
+struct SgldOptions {
+  /** alpha of eqs. (5), (8), (9); dimensionless, positive. */
+  double step_size = 1e-4;
+  /** beta of eq. (10): share of the old squared gradient that is kept each step, in
+   * [0, 1). */
+  double decay_rate = 0.9;
+  /** lambda of eq. (11), which keeps the preconditioner finite. Added to the root mean
+   * square of the mean gradient, so in its units [m, m^2/rad]. Positive. */
+  double lambda_rms = 1e-8;
+  /** Factor on the variance of the injected noise of eq. (5): "adjust_noise" of the
+   * authors' program. With other than 1 the chain does not sample the posterior. Not
+   * negative. */
+  double noise_factor = 1.0;
+  /** Block decay of the step size "towards the end of sampling": from the step
+   * block_decay_start * (steps of the chain) on, alpha is multiplied by
+   * block_decay_factor every block_decay_interval steps. Factor in (0, 1], 1 is off;
+   * interval in steps, positive; start as a fraction in [0, 1]. */
+  double block_decay_factor = 0.8;
+  int block_decay_interval = 10;
+  double block_decay_start = 0.95;
+};
+
+/** \brief Gradients at a pose with respect to (x, y, z, roll, pitch, yaw). */
+struct EnergyGradient {
+  /** Of the energy -log p(pose | data), what the chain descends [1/m, 1/rad]. */
+  Vector6d energy;
+  /** Mean likelihood gradient of the mini-batch, eqs. (2) and (3), what the
+   * preconditioner learns from [m, m^2/rad]. */
+  Vector6d mini_batch_mean;
+};
+
+/** \brief Diagonal preconditioner of the paper, eqs. (10) and (11). */
+class BAYESIAN_ICP_EXPORT RmsPropPreconditioner {
+public:
+  explicit RmsPropPreconditioner(const SgldOptions& options);
+
+  /** \brief Take in the mean gradient of one step.
+   * \return the diagonal of A = diag(1 / (lambda_rms + sqrt(V))) */
+  Vector6d
+  update(const Vector6d& mini_batch_mean_gradient);
+
+private:
+  double decay_rate_;
+  double lambda_rms_;
+  Vector6d mean_square_gradient_;
+};
+
+/** \brief Step size of step \p step (counted from 0) of \p num_steps under block decay.
+ */
+BAYESIAN_ICP_EXPORT double
+stepSizeAt(const SgldOptions& options, long step, long num_steps);
+
+/** \brief One Langevin step, eqs. (5), (8), (9): pose - alpha/2 A gradient + eta with
+ * injected noise eta ~ N(0, noise_factor alpha A).
+ * \param[in] preconditioner diagonal of A
+ * \param[in] step_size alpha of this step */
+BAYESIAN_ICP_EXPORT Vector6d
+sgldStep(const Vector6d& pose,
+         const Vector6d& energy_gradient,
+         const Vector6d& preconditioner,
+         double step_size,
+         double noise_factor,
+         Random& random);
+
+} // namespace bayesian_icp

@@ -1,0 +1,112 @@
+/** \file
+ * \brief What the draws say: mean pose, covariance, quantiles, diagnostics, status.
+ */
+#pragma once
+
+#include <bayesian_icp/chains.h>
+#include <bayesian_icp/pose.h>
+
+#include <array>
+#include <limits>
+#include <string>
+
+namespace bayesian_icp {
+
+/** \brief Whether the posterior can be trusted, and if not, why. */
+enum class Status {
+  /** Nothing has been estimated yet. */
+  NotRun,
+  /** Every R-hat <= 1.01 and every bulk and tail ESS >= 400. */
+  Ok,
+  /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them undefined: mean
+   * and covariance describe the draws, but not reliably the posterior. */
+  NotMixed,
+  /** At least one chain ran away or became non-finite. Its draws are left out of the
+   * samples, the mean and the covariance. */
+  Diverged,
+  /** The callback asked to stop; what was drawn until then is there. */
+  Cancelled,
+  /** Too few source points have a target point within the maximum correspondence
+   * distance at the initial guess; nothing was drawn. */
+  TooFewCorrespondences,
+  /** An option is out of its range; nothing was drawn. */
+  InvalidOptions,
+  /** The clouds or the guess cannot be used; nothing was drawn. */
+  InvalidInput
+};
+
+/** \brief Short name of a status: "ok", "not_mixed", "too_few_correspondences", ... */
+BAYESIAN_ICP_EXPORT const char*
+toString(Status status);
+
+/** \brief Largest R-hat and smallest bulk and tail effective sample size that count as
+ * mixed (Vehtari et al. 2021). */
+constexpr double max_rhat = 1.01;
+constexpr double min_ess = 400.0;
+
+/** \brief Marginal posterior of one pose coordinate, in metres or radians. NaN where
+ * undefined. Quantiles of an angle are unwrapped about its mean, so that they are in
+ * order even where the interval crosses +-pi. */
+struct CoordinateSummary {
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  /** Square root of the diagonal of the covariance of parameters. */
+  double standard_deviation = std::numeric_limits<double>::quiet_NaN();
+  double quantile_2_5 = std::numeric_limits<double>::quiet_NaN();
+  double median = std::numeric_limits<double>::quiet_NaN();
+  double quantile_97_5 = std::numeric_limits<double>::quiet_NaN();
+  double rhat = std::numeric_limits<double>::quiet_NaN();
+  double bulk_ess = std::numeric_limits<double>::quiet_NaN();
+  double tail_ess = std::numeric_limits<double>::quiet_NaN();
+  /** Monte Carlo standard error of the mean. */
+  double mcse = std::numeric_limits<double>::quiet_NaN();
+};
+
+/** \brief Posterior of the pose in numbers. */
+struct BAYESIAN_ICP_EXPORT Summary {
+  Status status = Status::NotRun;
+  /** The status in words, with the numbers behind it. */
+  std::string message = "nothing has been estimated yet";
+  /** Mean pose (x, y, z, roll, pitch, yaw) [m, rad]; the mean of an angle is circular,
+   * atan2(mean sin, mean cos). NaN without draws. */
+  Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** Marginals of x, y, z, roll, pitch, yaw. */
+  std::array<CoordinateSummary, 6> coordinates;
+  int num_chains = 0;
+  int num_diverged_chains = 0;
+  /** Draws behind mean and covariance: those of the chains that did not diverge. */
+  long num_draws = 0;
+
+  /** 6x6 covariances [m, rad], one a CovarianceConvention in its order: second moment
+   * of the draws' poseError about the mean, over num_draws - 1. NaN with fewer than two
+   * draws. */
+  std::array<Matrix6d, 4> covariances;
+
+  Summary();
+
+  /** \brief The covariance in \p convention. */
+  const Matrix6d&
+  covariance(CovarianceConvention convention) const;
+};
+
+/** \brief Draws of the chains that did not diverge, chain after chain. */
+BAYESIAN_ICP_EXPORT PoseMatrix
+pooledDraws(const std::vector<Chain>& chains);
+
+/** \brief Posterior mean of \p draws (rows are canonical poses); NaN without draws. */
+BAYESIAN_ICP_EXPORT Vector6d
+meanPose(const PoseMatrix& draws);
+
+/** \brief Second moment of the draws' poseError about \p mean, over (number of draws -
+ * 1); NaN with fewer than two draws. */
+BAYESIAN_ICP_EXPORT Matrix6d
+covarianceAbout(const Vector6d& mean,
+                const PoseMatrix& draws,
+                CovarianceConvention convention);
+
+/** \brief Summarise a run. Chains that diverged are reported and left out. Diagnostics
+ * are taken of the draws' errors about the mean, over the first draws that all chains
+ * have. */
+BAYESIAN_ICP_EXPORT Summary
+summarize(const ChainSet& chain_set);
+
+} // namespace bayesian_icp

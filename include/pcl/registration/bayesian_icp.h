@@ -1,0 +1,327 @@
+/** \file
+ * \brief Drop-in replacement for pcl::IterativeClosestPoint that also says how sure it
+ * is.
+ */
+#pragma once
+
+#include <bayesian_icp/pipeline.h>
+
+#include <pcl/registration/icp.h>
+
+#include <memory>
+
+namespace pcl {
+
+/** \brief Iterative closest point with the posterior of its transformation.
+ *
+ * align() first runs pcl::IterativeClosestPoint unchanged: final transformation,
+ * output, convergence and correspondences are its own. Then it samples the posterior of
+ * the source-to-target pose from the same guess, by preconditioned SGLD over
+ * mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty with
+ * Bayesian ICP, ICRA 2020), with the correspondence estimation, rejectors, search tree
+ * and maximum correspondence distance that the object was given.
+ *
+ * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
+ * transformation, guess included; translation in the target frame, R = Rz(yaw)
+ * Ry(pitch) Rx(roll). Whether the posterior can be trusted is getSummary().status;
+ * hasConverged() keeps ICP's meaning and says nothing about it.
+ *
+ * Other than pcl::IterativeClosestPoint of PCL 1.13, source points with non-finite
+ * coordinates are skipped (and kept in the output), and indices are honoured in the
+ * estimate (the output is the whole cloud, as in PCL). The sampler applies rejectors
+ * and a user's own correspondence estimation to each mini-batch; source indices set on
+ * that estimation itself do not apply there. One object is for one thread at a time, as
+ * in PCL.
+ *
+ * \tparam Scalar float or double, type of the transformations
+ * \ingroup registration
+ */
+template <typename PointSource, typename PointTarget, typename Scalar = float>
+class BayesianIterativeClosestPoint
+: public IterativeClosestPoint<PointSource, PointTarget, Scalar> {
+public:
+  using Base = IterativeClosestPoint<PointSource, PointTarget, Scalar>;
+  using Ptr = shared_ptr<BayesianIterativeClosestPoint>;
+  using ConstPtr = shared_ptr<const BayesianIterativeClosestPoint>;
+  using Matrix4 = typename Base::Matrix4;
+  using PointCloudSource = typename Base::PointCloudSource;
+  using PointCloudSourcePtr = typename Base::PointCloudSourcePtr;
+  using PointCloudSourceConstPtr = typename Base::PointCloudSourceConstPtr;
+  using PointCloudTarget = typename Base::PointCloudTarget;
+  using PointCloudTargetPtr = typename Base::PointCloudTargetPtr;
+  using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
+  using PointIndicesPtr = typename Base::PointIndicesPtr;
+  using PointIndicesConstPtr = typename Base::PointIndicesConstPtr;
+  /** Draws, one a row: x y z roll pitch yaw [m, rad]. */
+  using Samples = bayesian_icp::PoseMatrix;
+  using Vector6d = bayesian_icp::Vector6d;
+  using Matrix6d = bayesian_icp::Matrix6d;
+
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+
+  BayesianIterativeClosestPoint();
+
+  /** \name Posterior of the last align(); empty or NaN before it and where it failed.
+   * \{ */
+
+  /** \brief Draws of all chains that did not diverge, chain after chain. */
+  const Samples&
+  getSamples() const
+  {
+    return (estimate_.samples);
+  }
+
+  /** \brief Draws of chain \p index, diverged or not; empty if there is no such chain.
+   */
+  Samples
+  getChain(std::size_t index) const;
+
+  /** \brief Posterior mean pose [m, rad]; angles are averaged on the circle. */
+  Vector6d
+  getMean() const
+  {
+    return (estimate_.summary.mean);
+  }
+
+  /** \brief T_target_source of getMean(). */
+  Matrix4
+  getMeanTransformation() const;
+
+  /** \brief Covariance of the draws about getMean(), by default of the parameters
+   * (x, y, z, roll, pitch, yaw) [m, rad]. */
+  Matrix6d
+  getCovariance(bayesian_icp::CovarianceConvention convention =
+                    bayesian_icp::CovarianceConvention::Parameters) const
+  {
+    return (estimate_.summary.covariance(convention));
+  }
+
+  /** \brief Status, marginals, R-hat and effective sample sizes. */
+  const bayesian_icp::Summary&
+  getSummary() const
+  {
+    return (estimate_.summary);
+  }
+  /** \} */
+
+  /** \name Options of the posterior; see bayesian_icp::Options for units and ranges. A
+   * value out of range is reported by align() as Status::InvalidOptions.
+   * \{ */
+
+  /** \brief All options at once. */
+  void
+  setOptions(const bayesian_icp::Options& options)
+  {
+    options_ = options;
+  }
+
+  const bayesian_icp::Options&
+  getOptions() const
+  {
+    return (options_);
+  }
+
+  /** \brief Which posterior, and how it is sampled. A preset that this version does not
+   * have is an error, and no posterior is estimated until another one is set. */
+  void
+  setPreset(bayesian_icp::Preset preset);
+
+  void
+  setNumberOfChains(int num_chains)
+  {
+    options_.chains.num_chains = num_chains;
+  }
+
+  /** \brief Draws kept in total over all chains. */
+  void
+  setNumberOfSamples(int num_draws)
+  {
+    options_.chains.num_draws = num_draws;
+  }
+
+  /** \brief Steps at the start of each chain that are not kept. */
+  void
+  setBurnIn(int num_burn_in)
+  {
+    options_.chains.num_burn_in = num_burn_in;
+  }
+
+  /** \brief Steps per kept draw. */
+  void
+  setThinning(int thinning)
+  {
+    options_.chains.thinning = thinning;
+  }
+
+  /** \brief m of Algorithm 1: source points a step. */
+  void
+  setMiniBatchSize(int batch_size)
+  {
+    options_.mini_batch.batch_size = batch_size;
+  }
+
+  void
+  setMiniBatchSampling(bayesian_icp::MiniBatchSampling sampling)
+  {
+    options_.mini_batch.sampling = sampling;
+  }
+
+  /** \brief alpha of eqs. (5), (8), (9). */
+  void
+  setStepSize(double step_size)
+  {
+    options_.sgld.step_size = step_size;
+  }
+
+  /** \brief Prior mean pose [m, rad] and variances [m^2, rad^2], in the order of the
+   * pose. Without it the mean is the guess and each variance 0.125. */
+  void
+  setPrior(const Vector6d& mean, const Vector6d& variance)
+  {
+    options_.prior.mean = mean;
+    options_.prior.variance = variance;
+  }
+
+  /** \brief The point whose translation the prior speaks of. */
+  void
+  setPriorFrame(bayesian_icp::PriorFrame frame)
+  {
+    options_.prior.frame = frame;
+  }
+
+  /** \brief Standard deviation of the chains' starts about the guess [m, rad]. */
+  void
+  setInitialSpread(const Vector6d& standard_deviation)
+  {
+    options_.chains.initial_spread = standard_deviation;
+  }
+
+  /** \brief N of eq. (5). */
+  void
+  setEffectivePoints(double effective_points)
+  {
+    options_.likelihood.effective_points = effective_points;
+  }
+
+  /** \brief sigma, standard deviation of a point-to-point distance [m]. */
+  void
+  setMeasurementSigma(double sigma)
+  {
+    options_.likelihood.measurement_sigma = sigma;
+  }
+
+  void
+  setSeed(std::uint64_t seed)
+  {
+    options_.chains.seed = seed;
+  }
+
+  /** \brief OpenMP threads, 0 is automatic. The draws do not depend on it. */
+  void
+  setNumberOfThreads(unsigned int nr_threads = 0)
+  {
+    options_.chains.num_threads = static_cast<int>(nr_threads);
+  }
+
+  /** \brief Told of every step of the chains; returns false to cancel them. */
+  void
+  setProgressCallback(const bayesian_icp::ProgressCallback& callback)
+  {
+    progress_callback_ = callback;
+  }
+
+  /** \brief Make the posterior mean the final transformation (and the output cloud), in
+   * place of ICP's result, where the status is Ok or NotMixed. A transformation
+   * estimation set by the user is given the last word: what it makes of the mean. */
+  void
+  setUseMeanAsFinalTransformation(bool use_mean)
+  {
+    use_mean_as_final_transformation_ = use_mean;
+  }
+
+  bool
+  getUseMeanAsFinalTransformation() const
+  {
+    return (use_mean_as_final_transformation_);
+  }
+  /** \} */
+
+  using Base::getFitnessScore;
+
+  /** \brief Mean squared distance [m^2] of the transformed source to the target, as
+   * PCL's, leaving out non-finite points (PCL 1.13 aborts on them).
+   * \param[in] max_range largest squared distance that counts [m^2]
+   * \return the largest double if no point is in range */
+  double
+  getFitnessScore(double max_range = std::numeric_limits<double>::max());
+
+protected:
+  using Base::converged_;
+  using Base::convergence_criteria_;
+  using Base::corr_dist_threshold_;
+  using Base::correspondence_estimation_;
+  using Base::correspondence_rejectors_;
+  using Base::correspondences_;
+  using Base::final_transformation_;
+  using Base::getClassName;
+  using Base::indices_;
+  using Base::input_;
+  using Base::min_number_correspondences_;
+  using Base::nr_iterations_;
+  using Base::reg_name_;
+  using Base::source_has_normals_;
+  using Base::target_;
+  using Base::target_has_normals_;
+  using Base::transformation_;
+  using Base::transformation_estimation_;
+  using Base::transformCloud;
+  using Base::tree_;
+  using Base::use_reciprocal_correspondence_;
+
+  /** \brief ICP, then the posterior. */
+  void
+  computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
+
+private:
+  bool
+  targetIsUsable() const;
+
+  void
+  failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess);
+
+  void
+  samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
+
+  std::unique_ptr<bayesian_icp::CorrespondenceSearch>
+  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source);
+
+  bool
+  moveToMean(const PointCloudSource& source);
+
+  bayesian_icp::Options options_;
+  bayesian_icp::ProgressCallback progress_callback_;
+  bayesian_icp::PosteriorEstimate estimate_;
+  bool use_mean_as_final_transformation_ = false;
+};
+
+} // namespace pcl
+
+#include <pcl/registration/impl/bayesian_icp.hpp>
+
+/** Calls X(point type, scalar) for every instantiation that the library holds. */
+#define PCL_BAYESIAN_ICP_FOR_POINT_TYPES(X, Scalar)                                    \
+  X(pcl::PointXYZ, Scalar)                                                             \
+  X(pcl::PointXYZI, Scalar)                                                            \
+  X(pcl::PointXYZRGB, Scalar)                                                          \
+  X(pcl::PointXYZRGBA, Scalar)                                                         \
+  X(pcl::PointNormal, Scalar)                                                          \
+  X(pcl::PointXYZRGBNormal, Scalar)                                                    \
+  X(pcl::PointXYZINormal, Scalar)
+
+#if !defined(PCL_NO_PRECOMPILE) && !defined(PCL_REGISTRATION_BAYESIAN_ICP_CPP_)
+#define PCL_BAYESIAN_ICP_DECLARE(PointT, Scalar)                                       \
+  extern template class pcl::BayesianIterativeClosestPoint<PointT, PointT, Scalar>;
+PCL_BAYESIAN_ICP_FOR_POINT_TYPES(PCL_BAYESIAN_ICP_DECLARE, float)
+PCL_BAYESIAN_ICP_FOR_POINT_TYPES(PCL_BAYESIAN_ICP_DECLARE, double)
+#undef PCL_BAYESIAN_ICP_DECLARE
+#endif

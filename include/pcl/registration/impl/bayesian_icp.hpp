@@ -1,0 +1,305 @@
+#pragma once
+
+#include <pcl/common/io.h>
+#include <pcl/common/point_tests.h>
+#include <pcl/registration/bayesian_icp.h>
+#include <pcl/registration/impl/bayesian_icp_search.hpp>
+#include <pcl/registration/transformation_estimation_svd.h>
+
+#include <numeric>
+#include <typeinfo>
+#include <utility>
+
+namespace pcl {
+
+namespace bayesian_icp_detail {
+
+/** Puts another value into a variable for the lifetime of this object. */
+template <typename T>
+class Substitution {
+public:
+  Substitution(T& variable, T value) : variable_(variable), original_(std::move(value))
+  {
+    std::swap(variable_, original_);
+  }
+  ~Substitution() { std::swap(variable_, original_); }
+  Substitution(const Substitution&) = delete;
+  Substitution&
+  operator=(const Substitution&) = delete;
+
+private:
+  T& variable_;
+  T original_;
+};
+
+/** Those of \p indices whose point is finite; an empty list means the whole cloud, as
+ * it does to pcl::IterativeClosestPoint. */
+template <typename PointT>
+Indices
+finitePoints(const PointCloud<PointT>& cloud, Indices indices)
+{
+  if (indices.empty()) {
+    indices.resize(cloud.size());
+    std::iota(indices.begin(), indices.end(), 0);
+  }
+  Indices finite;
+  finite.reserve(indices.size());
+  for (const auto index : indices)
+    if (isXYZFinite(cloud[index]))
+      finite.push_back(index);
+  return (finite);
+}
+
+/** Whether \p indices is 0, 1, ..., num_points - 1. */
+inline bool
+isWholeCloud(const Indices& indices, std::size_t num_points)
+{
+  if (indices.size() != num_points)
+    return (false);
+  for (std::size_t i = 0; i < num_points; ++i)
+    if (indices[i] != static_cast<index_t>(i))
+      return (false);
+  return (true);
+}
+
+} // namespace bayesian_icp_detail
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
+    BayesianIterativeClosestPoint()
+{
+  reg_name_ = "BayesianIterativeClosestPoint";
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bayesian_icp::PoseMatrix
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getChain(
+    std::size_t index) const
+{
+  return (index < estimate_.chains.size() ? estimate_.chains[index].draws
+                                          : Samples(0, 6));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+typename BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::Matrix4
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getMeanTransformation()
+    const
+{
+  return (bayesian_icp::matrixOf(estimate_.summary.mean).template cast<Scalar>());
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setPreset(
+    bayesian_icp::Preset preset)
+{
+  options_.preset = preset;
+  if (preset != bayesian_icp::Preset::Paper)
+    PCL_ERROR("[pcl::%s::setPreset] The preset '%s' is not available in this version; "
+              "no posterior will be estimated.\n",
+              getClassName().c_str(),
+              bayesian_icp::toString(preset));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+double
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getFitnessScore(
+    double max_range)
+{
+  PointCloudSource moved;
+  transformPointCloud(*input_, moved, final_transformation_);
+  Indices index(1);
+  std::vector<float> squared_distance(1);
+  double sum = 0.0;
+  std::size_t num_in_range = 0;
+  PointTarget query;
+  for (const auto& point : moved) {
+    if (!isXYZFinite(point))
+      continue;
+    copyPoint(point, query);
+    if (tree_->nearestKSearch(query, 1, index, squared_distance) > 0 &&
+        squared_distance[0] <= max_range) {
+      sum += squared_distance[0];
+      ++num_in_range;
+    }
+  }
+  return (num_in_range > 0 ? sum / static_cast<double>(num_in_range)
+                           : std::numeric_limits<double>::max());
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::computeTransformation(
+    PointCloudSource& output, const Matrix4& guess)
+{
+  estimate_ = bayesian_icp::PosteriorEstimate();
+  const PointCloudSourceConstPtr whole = input_;
+  const Indices usable = bayesian_icp_detail::finitePoints(*whole, *indices_);
+  if (!guess.allFinite() || !targetIsUsable() ||
+      usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
+    failWithoutCorrespondences(output, guess);
+    return;
+  }
+
+  // PCL's ICP takes all points of input_, and writes to output while it still needs
+  // them if both are one cloud (icp.align(*source)).
+  PointCloudSourceConstPtr source = whole;
+  const bool is_subset = !bayesian_icp_detail::isWholeCloud(usable, whole->size());
+  if (is_subset || &output == whole.get()) {
+    PointCloudSourcePtr copy(new PointCloudSource);
+    copyPointCloud(*whole, usable, *copy);
+    source = copy;
+  }
+  PointCloudSource scratch;
+  {
+    const bayesian_icp_detail::Substitution<PointCloudSourceConstPtr> input(input_,
+                                                                            source);
+    Base::computeTransformation(source == whole ? output : scratch, guess);
+    samplePosterior(source, guess);
+  }
+  if (is_subset)
+    for (auto& correspondence : *correspondences_)
+      correspondence.index_query = usable[correspondence.index_query];
+  const bool is_moved_to_mean =
+      use_mean_as_final_transformation_ && moveToMean(*source);
+  if (source != whole || is_moved_to_mean) {
+    output = *whole;
+    transformCloud(*whole, output, final_transformation_);
+  }
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::targetIsUsable() const
+{
+  for (const auto& point : *target_)
+    if (isXYZFinite(point))
+      return (true);
+  return (false);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
+    failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess)
+{
+  const bool is_guess_finite = guess.allFinite();
+  auto& summary = estimate_.summary;
+  summary.status = bayesian_icp::Status::InvalidInput;
+  summary.message = is_guess_finite ? "fewer finite points than the registration needs"
+                                    : "the initial guess is not finite";
+  PCL_ERROR("[pcl::%s::computeTransformation] No registration: %s.\n",
+            getClassName().c_str(),
+            summary.message.c_str());
+  nr_iterations_ = 0;
+  converged_ = false;
+  correspondences_->clear();
+  convergence_criteria_->setConvergenceState(
+      registration::DefaultConvergenceCriteria<
+          Scalar>::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
+  output = *input_;
+  if (is_guess_finite) {
+    final_transformation_ = guess;
+    transformCloud(*input_, output, guess);
+  }
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior(
+    const PointCloudSourceConstPtr& source, const Matrix4& guess)
+{
+  auto& summary = estimate_.summary;
+  if (convergence_criteria_->getConvergenceState() ==
+      registration::DefaultConvergenceCriteria<
+          Scalar>::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES) {
+    summary.status = bayesian_icp::Status::TooFewCorrespondences;
+    summary.message = "ICP found too few correspondences within the maximum "
+                      "correspondence distance";
+    return; // ICP has reported it
+  }
+  const Eigen::Matrix4d initial = guess.template cast<double>();
+  estimate_ = bayesian_icp::estimatePosterior(bayesian_icp_detail::pointMatrix(*source),
+                                              *makeCorrespondenceSearch(source),
+                                              bayesian_icp::poseOf(initial),
+                                              options_,
+                                              progress_callback_);
+  if (summary.status == bayesian_icp::Status::NotMixed ||
+      summary.status == bayesian_icp::Status::Diverged)
+    PCL_WARN("[pcl::%s::computeTransformation] Posterior: %s.\n",
+             getClassName().c_str(),
+             summary.message.c_str());
+  else if (summary.num_draws == 0)
+    PCL_ERROR("[pcl::%s::computeTransformation] No posterior: %s.\n",
+              getClassName().c_str(),
+              summary.message.c_str());
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+std::unique_ptr<bayesian_icp::CorrespondenceSearch>
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
+    makeCorrespondenceSearch(const PointCloudSourceConstPtr& source)
+{
+  using namespace bayesian_icp_detail;
+  const auto& estimation = *correspondence_estimation_;
+  const auto& tree = *tree_;
+  const auto& representation = *tree.getPointRepresentation();
+  const bool has_defaults =
+      correspondence_rejectors_.empty() &&
+      typeid(estimation) == typeid(registration::CorrespondenceEstimation<PointSource,
+                                                                          PointTarget,
+                                                                          Scalar>) &&
+      typeid(tree) == typeid(search::KdTree<PointTarget>) &&
+      typeid(representation) == typeid(DefaultPointRepresentation<PointTarget>);
+  if (has_defaults)
+    return (std::unique_ptr<bayesian_icp::CorrespondenceSearch>(
+        new KdTreeSearch<PointSource, PointTarget>(
+            tree_,
+            target_,
+            corr_dist_threshold_,
+            use_reciprocal_correspondence_ ? source : PointCloudSourceConstPtr())));
+
+  typename PluginSearch<PointSource, PointTarget, Scalar>::Plugins plugins;
+  plugins.estimation = correspondence_estimation_;
+  plugins.rejectors = correspondence_rejectors_;
+  plugins.max_distance = corr_dist_threshold_;
+  plugins.is_reciprocal = use_reciprocal_correspondence_;
+  plugins.source_has_normals = source_has_normals_;
+  plugins.transform = [this](const PointCloudSource& in,
+                             PointCloudSource& out,
+                             const Matrix4& T) { transformCloud(in, out, T); };
+  return (std::unique_ptr<bayesian_icp::CorrespondenceSearch>(
+      new PluginSearch<PointSource, PointTarget, Scalar>(plugins, source, target_)));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::moveToMean(
+    const PointCloudSource& source)
+{
+  const auto status = estimate_.summary.status;
+  if (status != bayesian_icp::Status::Ok && status != bayesian_icp::Status::NotMixed)
+    return (false);
+  Matrix4 mean = getMeanTransformation();
+  const auto& estimation = *transformation_estimation_;
+  if (typeid(estimation) !=
+      typeid(registration::
+                 TransformationEstimationSVD<PointSource, PointTarget, Scalar>)) {
+    // The estimation may allow some motions only (2-D, translation): ask it for the
+    // motion that brings the source from ICP's result to the mean.
+    PointCloudSource at_result = source, at_mean = source;
+    transformCloud(source, at_result, final_transformation_);
+    transformCloud(source, at_mean, mean);
+    PointCloudTarget goal;
+    copyPointCloud(at_mean, goal);
+    Matrix4 motion = Matrix4::Identity();
+    transformation_estimation_->estimateRigidTransformation(at_result, goal, motion);
+    mean = motion * final_transformation_;
+  }
+  if (!mean.allFinite())
+    return (false);
+  final_transformation_ = mean;
+  return (true);
+}
+
+} // namespace pcl

@@ -1,0 +1,257 @@
+/** \file
+ * \brief PCL's correspondence estimation as a bayesian_icp::CorrespondenceSearch: the
+ * default one through its search tree, any other one as a black box.
+ */
+#pragma once
+
+#include <bayesian_icp/correspondence.h>
+
+#include <pcl/common/io.h>
+#include <pcl/registration/correspondence_estimation.h>
+#include <pcl/registration/correspondence_rejection.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/conversions.h>
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace pcl {
+namespace bayesian_icp_detail {
+
+/** The coordinates of a cloud, 3 x n [m]. */
+template <typename PointT>
+Eigen::Matrix3Xd
+pointMatrix(const PointCloud<PointT>& cloud)
+{
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(cloud.size()));
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) =
+        cloud[i].getVector3fMap().template cast<double>();
+  return (points);
+}
+
+/** Nearest neighbour in a PCL search tree; the buffers spare PCL's an allocation. */
+template <typename PointT>
+class NearestNeighbor {
+public:
+  explicit NearestNeighbor(const search::KdTree<PointT>& tree) : tree_(tree) {}
+
+  /** Index of the point nearest to \p position, or -1 if none is within
+   * \p max_squared_distance [m^2]. */
+  index_t
+  find(const Eigen::Vector3d& position, double max_squared_distance)
+  {
+    // Beyond this a squared distance overflows a float, and PCL asserts that it is
+    // finite.
+    constexpr double max_coordinate = 1e18;
+    if (!(position.cwiseAbs().maxCoeff() < max_coordinate))
+      return (-1);
+    query_.getVector3fMap() = position.template cast<float>();
+    squared_distance_[0] = std::numeric_limits<float>::infinity();
+    if (tree_.nearestKSearch(query_, 1, index_, squared_distance_) < 1 ||
+        squared_distance_[0] > max_squared_distance)
+      return (-1);
+    return (index_[0]);
+  }
+
+private:
+  const search::KdTree<PointT>& tree_;
+  PointT query_;
+  Indices index_ = Indices(1);
+  std::vector<float> squared_distance_ = std::vector<float>(1);
+};
+
+/** What registration::CorrespondenceEstimation would find, from several threads:
+ * queries to a tree that is built are const, the estimation object is not. */
+template <typename PointSource, typename PointTarget>
+class KdTreeSearch : public bayesian_icp::CorrespondenceSearch {
+public:
+  using TargetTreeConstPtr = typename search::KdTree<PointTarget>::ConstPtr;
+  using SourceConstPtr = typename PointCloud<PointSource>::ConstPtr;
+  using TargetConstPtr = typename PointCloud<PointTarget>::ConstPtr;
+
+  /** \param[in] reciprocal_source the source cloud if correspondences have to be
+   *            reciprocal, else null */
+  KdTreeSearch(const TargetTreeConstPtr& target_tree,
+               const TargetConstPtr& target,
+               double max_distance,
+               const SourceConstPtr& reciprocal_source)
+  : target_tree_(target_tree)
+  , target_(target)
+  , max_squared_distance_(max_distance * max_distance)
+  {
+    if (reciprocal_source) {
+      source_tree_.reset(new search::KdTree<PointSource>);
+      source_tree_->setInputCloud(reciprocal_source);
+    }
+  }
+
+  void
+  find(const bayesian_icp::Vector6d& pose,
+       const std::vector<std::size_t>& source_indices,
+       const Eigen::Matrix3Xd& moved_points,
+       bayesian_icp::Correspondences& correspondences) const override
+  {
+    correspondences.clear();
+    NearestNeighbor<PointTarget> nearest_target(*target_tree_);
+    for (Eigen::Index i = 0; i < moved_points.cols(); ++i) {
+      const index_t match =
+          nearest_target.find(moved_points.col(i), max_squared_distance_);
+      if (match < 0)
+        continue;
+      const auto column = static_cast<std::size_t>(i);
+      const Eigen::Vector3d point =
+          (*target_)[match].getVector3fMap().template cast<double>();
+      if (!source_tree_ || isReciprocal(pose, point, source_indices[column]))
+        correspondences.push_back({column, point});
+    }
+  }
+
+  bool
+  isThreadSafe() const override
+  {
+    return (true);
+  }
+
+private:
+  /** Whether the source point nearest to \p target_point is \p source_index. Sought in
+   * the source frame, where the tree need not be built again for every pose. */
+  bool
+  isReciprocal(const bayesian_icp::Vector6d& pose,
+               const Eigen::Vector3d& target_point,
+               std::size_t source_index) const
+  {
+    const Eigen::Vector3d in_source_frame =
+        bayesian_icp::rotationOf(pose).transpose() * (target_point - pose.head<3>());
+    return (NearestNeighbor<PointSource>(*source_tree_)
+                .find(in_source_frame, max_squared_distance_) ==
+            static_cast<index_t>(source_index));
+  }
+
+  TargetTreeConstPtr target_tree_;
+  TargetConstPtr target_;
+  double max_squared_distance_;
+  typename search::KdTree<PointSource>::Ptr source_tree_;
+};
+
+/** Whatever correspondence estimation and rejectors the user has installed, applied to
+ * each mini-batch in the order in which pcl::IterativeClosestPoint applies them. */
+template <typename PointSource, typename PointTarget, typename Scalar>
+class PluginSearch : public bayesian_icp::CorrespondenceSearch {
+public:
+  using Source = PointCloud<PointSource>;
+  using SourceConstPtr = typename Source::ConstPtr;
+  using TargetConstPtr = typename PointCloud<PointTarget>::ConstPtr;
+  using Matrix4 = Eigen::Matrix<Scalar, 4, 4>;
+
+  struct Plugins {
+    typename registration::
+        CorrespondenceEstimationBase<PointSource, PointTarget, Scalar>::Ptr estimation;
+    std::vector<registration::CorrespondenceRejector::Ptr> rejectors;
+    double max_distance;
+    bool is_reciprocal;
+    bool source_has_normals;
+    /** Moves a cloud, and its normals if it has them. */
+    std::function<void(const Source&, Source&, const Matrix4&)> transform;
+  };
+
+  /** The target has been given to the plug-ins by ICP before. */
+  PluginSearch(const Plugins& plugins,
+               const SourceConstPtr& source,
+               const TargetConstPtr& target)
+  : plugins_(plugins)
+  , source_(source)
+  , target_(target)
+  {}
+
+  void
+  find(const bayesian_icp::Vector6d& pose,
+       const std::vector<std::size_t>& source_indices,
+       const Eigen::Matrix3Xd& /* moved_points */,
+       bayesian_icp::Correspondences& correspondences) const override
+  {
+    const auto batch = moveBatch(pose, source_indices);
+    PCLPointCloud2::Ptr batch_blob;
+    if (needsBlob()) {
+      batch_blob.reset(new PCLPointCloud2);
+      toPCLPointCloud2(*batch, *batch_blob);
+    }
+    correspondences.clear();
+    for (const auto& pair : reject(estimate(batch, batch_blob), batch_blob))
+      if (pair.index_match >= 0)
+        correspondences.push_back(
+            {static_cast<std::size_t>(pair.index_query),
+             (*target_)[pair.index_match].getVector3fMap().template cast<double>()});
+  }
+
+  bool
+  isThreadSafe() const override
+  {
+    return (false);
+  }
+
+private:
+  typename Source::Ptr
+  moveBatch(const bayesian_icp::Vector6d& pose,
+            const std::vector<std::size_t>& source_indices) const
+  {
+    typename Source::Ptr batch(new Source);
+    copyPointCloud(
+        *source_, Indices(source_indices.begin(), source_indices.end()), *batch);
+    const Matrix4 T = bayesian_icp::matrixOf(pose).template cast<Scalar>();
+    plugins_.transform(*batch, *batch, T);
+    return (batch);
+  }
+
+  bool
+  needsBlob() const
+  {
+    bool is_needed = plugins_.estimation->requiresSourceNormals();
+    for (const auto& rejector : plugins_.rejectors)
+      is_needed |=
+          rejector->requiresSourcePoints() || rejector->requiresSourceNormals();
+    return (is_needed);
+  }
+
+  Correspondences
+  estimate(const SourceConstPtr& batch,
+           const PCLPointCloud2::ConstPtr& batch_blob) const
+  {
+    Correspondences pairs;
+    plugins_.estimation->setInputSource(batch);
+    if (plugins_.estimation->requiresSourceNormals())
+      plugins_.estimation->setSourceNormals(batch_blob);
+    if (plugins_.is_reciprocal)
+      plugins_.estimation->determineReciprocalCorrespondences(pairs,
+                                                              plugins_.max_distance);
+    else
+      plugins_.estimation->determineCorrespondences(pairs, plugins_.max_distance);
+    return (pairs);
+  }
+
+  Correspondences
+  reject(const Correspondences& estimated,
+         const PCLPointCloud2::ConstPtr& batch_blob) const
+  {
+    CorrespondencesPtr pairs(new Correspondences(estimated));
+    for (const auto& rejector : plugins_.rejectors) {
+      if (rejector->requiresSourcePoints())
+        rejector->setSourcePoints(batch_blob);
+      if (rejector->requiresSourceNormals() && plugins_.source_has_normals)
+        rejector->setSourceNormals(batch_blob);
+      rejector->setInputCorrespondences(pairs);
+      CorrespondencesPtr remaining(new Correspondences);
+      rejector->getCorrespondences(*remaining);
+      pairs = remaining;
+    }
+    return (*pairs);
+  }
+
+  Plugins plugins_;
+  SourceConstPtr source_;
+  TargetConstPtr target_;
+};
+
+} // namespace bayesian_icp_detail
+} // namespace pcl

@@ -1,0 +1,162 @@
+#include <bayesian_icp/chains.h>
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** What the chains of one run share: progress, cancellation and the first exception. */
+class RunState {
+public:
+  RunState(const ProgressCallback& progress, long total_steps)
+  : progress_(progress)
+  , total_steps_(total_steps)
+  {}
+
+  bool
+  stopped() const
+  {
+    return stopped_;
+  }
+
+  bool
+  cancelled() const
+  {
+    return cancelled_;
+  }
+
+  /** Runs \p work, keeping its exception for the thread that started the run: none may
+   * leave a parallel region. */
+  template <typename Work>
+  void
+  guard(const Work& work)
+  {
+    try {
+      work();
+    }
+    catch (...) {
+      stopped_ = true;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (!exception_)
+        exception_ = std::current_exception();
+    }
+  }
+
+  void
+  rethrow() const
+  {
+    if (exception_)
+      std::rethrow_exception(exception_);
+  }
+
+  /** Counts a step of \p chain and tells the callback. */
+  void
+  reportStep(int chain, long chain_steps)
+  {
+    if (!progress_)
+      return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_}))
+      cancelled_ = stopped_ = true;
+  }
+
+private:
+  const ProgressCallback& progress_;
+  const long total_steps_;
+  long steps_ = 0;
+  std::atomic<bool> stopped_{false};
+  std::atomic<bool> cancelled_{false};
+  std::exception_ptr exception_;
+  std::mutex mutex_;
+};
+
+long
+numStepsOf(const ChainOptions& options, int chain)
+{
+  return options.num_burn_in +
+         static_cast<long>(options.thinning) * options.numDrawsOf(chain);
+}
+
+/** Algorithm 1 for one chain. */
+Chain
+runChain(const Vector6d& start,
+         const SamplerTarget& target,
+         const SgldOptions& sgld,
+         const ChainOptions& options,
+         int chain_index,
+         RunState& run)
+{
+  Random random(options.seed, static_cast<std::uint64_t>(chain_index));
+  auto gradientAt = target.make_gradient(chain_index);
+  RmsPropPreconditioner preconditioner(sgld);
+  const long num_steps = numStepsOf(options, chain_index);
+
+  Chain chain;
+  chain.draws.resize(options.numDrawsOf(chain_index), 6);
+  long num_kept = 0;
+  Vector6d pose = start;
+  if (!options.initial_spread.isZero(0.0))
+    pose += options.initial_spread.cwiseProduct(random.normal6());
+
+  for (long step = 0; step < num_steps && !run.stopped(); ++step) {
+    const EnergyGradient gradient = gradientAt(pose, random);           // (2, 3, 6, 7)
+    const Vector6d A = preconditioner.update(gradient.mini_batch_mean); // (10, 11)
+    const double alpha = stepSizeAt(sgld, step, num_steps);
+    pose = sgldStep(
+        pose, gradient.energy, A, alpha, sgld.noise_factor, random); // (5, 8, 9)
+    chain.diverged = !pose.allFinite() || target.has_diverged(pose);
+    if (chain.diverged)
+      break;
+    const long sampled = step + 1 - options.num_burn_in;
+    if (sampled > 0 && sampled % options.thinning == 0)
+      chain.draws.row(num_kept++) = canonicalPose(pose).transpose();
+    run.reportStep(chain_index, step + 1);
+  }
+  chain.draws.conservativeResize(num_kept, 6);
+  return chain;
+}
+
+int
+numThreads(const ChainOptions& options, const SamplerTarget& target)
+{
+  if (!target.is_thread_safe || omp_in_parallel() != 0)
+    return 1;
+  const int offered =
+      options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
+  return std::min(offered, options.num_chains);
+}
+
+} // namespace
+
+ChainSet
+runChains(const Vector6d& start,
+          const SamplerTarget& target,
+          const SgldOptions& sgld,
+          const ChainOptions& options,
+          const ProgressCallback& progress)
+{
+  long total_steps = 0;
+  for (int i = 0; i < options.num_chains; ++i)
+    total_steps += numStepsOf(options, i);
+
+  ChainSet result;
+  result.chains.resize(static_cast<std::size_t>(options.num_chains));
+  RunState run(progress, total_steps);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(numThreads(options, target))
+  for (int i = 0; i < options.num_chains; ++i)
+    run.guard([&] {
+      result.chains[static_cast<std::size_t>(i)] =
+          runChain(start, target, sgld, options, i, run);
+    });
+  run.rethrow();
+  result.cancelled = run.cancelled();
+  return result;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,143 @@
+#include <bayesian_icp/options.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** The first complaint of a series of checks. */
+class Checker {
+public:
+  template <typename T>
+  void
+  require(bool is_good, const char* field, const T& value, const char* allowed)
+  {
+    if (is_good || !complaint_.empty())
+      return;
+    std::ostringstream text;
+    text << field << " is " << value << ", but must be " << allowed;
+    complaint_ = text.str();
+  }
+
+  void
+  positive(const char* field, double value, const char* unit = "")
+  {
+    const std::string allowed = std::string("positive and finite") + unit;
+    require(value > 0.0 && std::isfinite(value), field, value, allowed.c_str());
+  }
+
+  void
+  atLeast(const char* field, int value, int minimum)
+  {
+    const std::string allowed = "at least " + std::to_string(minimum);
+    require(value >= minimum, field, value, allowed.c_str());
+  }
+
+  const std::string&
+  complaint() const
+  {
+    return complaint_;
+  }
+
+private:
+  std::string complaint_;
+};
+
+void
+check(const PriorOptions& prior, Checker& checker)
+{
+  const char* names[] = {"prior.variance[x]",
+                         "prior.variance[y]",
+                         "prior.variance[z]",
+                         "prior.variance[roll]",
+                         "prior.variance[pitch]",
+                         "prior.variance[yaw]"};
+  for (int k = 0; k < 6; ++k)
+    checker.require(prior.variance[k] > 0.0,
+                    names[k],
+                    prior.variance[k],
+                    k < 3 ? "positive (m^2)" : "positive (rad^2)");
+  checker.require(prior.mean.allFinite() || prior.mean.array().isNaN().all(),
+                  "prior.mean",
+                  prior.mean.transpose(),
+                  "six finite numbers (m, rad)");
+}
+
+void
+check(const SgldOptions& sgld, Checker& checker)
+{
+  checker.positive("step_size", sgld.step_size);
+  checker.require(sgld.decay_rate >= 0.0 && sgld.decay_rate < 1.0,
+                  "decay_rate",
+                  sgld.decay_rate,
+                  "in [0, 1)");
+  checker.positive("lambda_rms", sgld.lambda_rms);
+  checker.require(sgld.noise_factor >= 0.0 && std::isfinite(sgld.noise_factor),
+                  "noise_factor",
+                  sgld.noise_factor,
+                  "not negative and finite");
+  checker.require(sgld.block_decay_factor > 0.0 && sgld.block_decay_factor <= 1.0,
+                  "block_decay_factor",
+                  sgld.block_decay_factor,
+                  "in (0, 1]");
+  checker.atLeast("block_decay_interval", sgld.block_decay_interval, 1);
+  checker.require(sgld.block_decay_start >= 0.0 && sgld.block_decay_start <= 1.0,
+                  "block_decay_start",
+                  sgld.block_decay_start,
+                  "in [0, 1] (fraction of a chain's steps)");
+}
+
+void
+check(const ChainOptions& chains, Checker& checker)
+{
+  checker.atLeast("num_chains", chains.num_chains, 1);
+  checker.require(chains.num_draws >= chains.num_chains,
+                  "num_draws",
+                  chains.num_draws,
+                  "at least num_chains (one draw a chain)");
+  checker.atLeast("num_burn_in", chains.num_burn_in, 0);
+  checker.atLeast("thinning", chains.thinning, 1);
+  checker.require(chains.initial_spread.allFinite() &&
+                      chains.initial_spread.minCoeff() >= 0.0,
+                  "initial_spread",
+                  chains.initial_spread.transpose(),
+                  "six finite numbers not below zero (m, rad)");
+  checker.atLeast("num_threads", chains.num_threads, 0);
+}
+
+} // namespace
+
+const char*
+toString(Preset preset)
+{
+  switch (preset) {
+  case Preset::Paper:
+    return "paper";
+  case Preset::Exact:
+    return "exact";
+  case Preset::Calibrated:
+    return "calibrated";
+  }
+  return "unknown";
+}
+
+std::string
+Options::validate() const
+{
+  Checker checker;
+  checker.require(preset == Preset::Paper,
+                  "preset",
+                  toString(preset),
+                  "paper: the others are not available in this version");
+  checker.positive("effective_points", likelihood.effective_points);
+  checker.positive("measurement_sigma", likelihood.measurement_sigma, " (m)");
+  check(prior, checker);
+  checker.atLeast("batch_size", mini_batch.batch_size, 1);
+  check(sgld, checker);
+  check(chains, checker);
+  return checker.complaint();
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,9 @@
+// Explicit instantiations of the class for Scalar = double.
+#define PCL_REGISTRATION_BAYESIAN_ICP_CPP_
+#include <pcl/registration/bayesian_icp.h>
+#include <pcl/point_types.h>
+
+#define PCL_BAYESIAN_ICP_INSTANTIATE(PointT, Scalar)                                   \
+  template class BAYESIAN_ICP_EXPORT                                                   \
+      pcl::BayesianIterativeClosestPoint<PointT, PointT, Scalar>;
+PCL_BAYESIAN_ICP_FOR_POINT_TYPES(PCL_BAYESIAN_ICP_INSTANTIATE, double)

@@ -1,0 +1,117 @@
+#include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/posterior.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** A chain further than this from the prior mean has run away: so many prior standard
+ * deviations, on top of the deviation of its start, the size of the source for a
+ * translation and a full turn for an angle. */
+constexpr double max_prior_deviations = 20.0;
+constexpr double full_turn = 6.28318530717958647692;
+
+PosteriorEstimate
+failure(Status status, const std::string& message)
+{
+  PosteriorEstimate estimate;
+  estimate.summary.status = status;
+  estimate.summary.message = message;
+  return estimate;
+}
+
+std::size_t
+countCorrespondences(const Eigen::Matrix3Xd& source_points,
+                     const CorrespondenceSearch& search,
+                     const Vector6d& pose)
+{
+  std::vector<std::size_t> all(static_cast<std::size_t>(source_points.cols()));
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  Eigen::Matrix3Xd moved_points;
+  movePoints(pose, source_points, moved_points);
+  Correspondences correspondences;
+  search.find(pose, all, moved_points, correspondences);
+  return correspondences.size();
+}
+
+Prior
+makePrior(const PriorOptions& options,
+          const Vector6d& initial_pose,
+          const Eigen::Matrix3Xd& source_points)
+{
+  const Vector6d& mean = options.mean.allFinite() ? options.mean : initial_pose;
+  if (options.frame == PriorFrame::Origin)
+    return Prior(mean, options.variance);
+  return Prior(mean, options.variance, source_points.rowwise().mean());
+}
+
+/** Largest deviation from the prior mean that is not called divergence [m, rad]. */
+Vector6d
+deviationLimit(const Prior& prior,
+               const Vector6d& initial_pose,
+               const Eigen::Matrix3Xd& source_points)
+{
+  const Eigen::Vector3d size =
+      source_points.rowwise().maxCoeff() - source_points.rowwise().minCoeff();
+  Vector6d limit = max_prior_deviations * prior.variance().cwiseSqrt() +
+                   prior.deviation(initial_pose).cwiseAbs();
+  limit.head<3>().array() += size.norm();
+  limit.tail<3>().array() += full_turn;
+  return limit;
+}
+
+} // namespace
+
+PosteriorEstimate
+estimatePosterior(const Eigen::Matrix3Xd& source_points,
+                  const CorrespondenceSearch& search,
+                  const Vector6d& initial_pose,
+                  const Options& options,
+                  const ProgressCallback& progress)
+{
+  const std::string complaint = options.validate();
+  if (!complaint.empty())
+    return failure(Status::InvalidOptions, complaint);
+  if (!initial_pose.allFinite())
+    return failure(Status::InvalidInput, "the initial guess is not finite");
+  if (!source_points.allFinite())
+    return failure(Status::InvalidInput, "the source has non-finite points");
+  const std::size_t found = countCorrespondences(source_points, search, initial_pose);
+  if (found < min_correspondences)
+    return failure(Status::TooFewCorrespondences,
+                   "only " + std::to_string(found) + " of " +
+                       std::to_string(source_points.cols()) +
+                       " source points have a target point within the maximum "
+                       "correspondence distance at the initial guess");
+
+  const Prior prior = makePrior(options.prior, initial_pose, source_points);
+  const Vector6d limit = deviationLimit(prior, initial_pose, source_points);
+  const MiniBatches mini_batches(
+      static_cast<std::size_t>(source_points.cols()),
+      static_cast<std::size_t>(options.mini_batch.batch_size),
+      options.mini_batch.sampling);
+  const PosteriorGradient gradient(
+      source_points, search, prior, options.likelihood.weight(), mini_batches);
+
+  SamplerTarget target;
+  target.make_gradient = [&gradient](int) { return gradient; };
+  target.has_diverged = [&prior, &limit](const Vector6d& pose) {
+    return (prior.deviation(pose).cwiseAbs().array() > limit.array()).any();
+  };
+  target.is_thread_safe = search.isThreadSafe();
+
+  ChainSet chain_set =
+      runChains(initial_pose, target, options.sgld, options.chains, progress);
+  PosteriorEstimate estimate;
+  estimate.summary = summarize(chain_set);
+  estimate.samples = pooledDraws(chain_set.chains);
+  estimate.chains = std::move(chain_set.chains);
+  return estimate;
+}
+
+} // namespace bayesian_icp

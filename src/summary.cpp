@@ -1,0 +1,248 @@
+#include <bayesian_icp/diagnostics.h>
+#include <bayesian_icp/summary.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace bayesian_icp {
+
+namespace {
+
+constexpr CovarianceConvention conventions[] = {CovarianceConvention::Parameters,
+                                                CovarianceConvention::R3xSO3,
+                                                CovarianceConvention::LeftSE3,
+                                                CovarianceConvention::RightSE3};
+
+PoseMatrix
+errorsAbout(const Vector6d& mean,
+            const PoseMatrix& draws,
+            CovarianceConvention convention)
+{
+  PoseMatrix errors(draws.rows(), 6);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    errors.row(i) = poseError(draws.row(i).transpose(), mean, convention).transpose();
+  return errors;
+}
+
+std::vector<const Chain*>
+usableChains(const std::vector<Chain>& chains)
+{
+  std::vector<const Chain*> usable;
+  for (const auto& chain : chains)
+    if (!chain.diverged)
+      usable.push_back(&chain);
+  return usable;
+}
+
+/** Errors of coordinate \p k about \p mean, (draws that every chain has) x (chains). */
+Eigen::MatrixXd
+coordinateErrors(const Vector6d& mean, const std::vector<const Chain*>& chains, int k)
+{
+  Eigen::Index num_draws = chains.empty() ? 0 : chains.front()->draws.rows();
+  for (const auto* chain : chains)
+    num_draws = std::min(num_draws, chain->draws.rows());
+  Eigen::MatrixXd errors(num_draws, static_cast<Eigen::Index>(chains.size()));
+  for (Eigen::Index c = 0; c < errors.cols(); ++c)
+    for (Eigen::Index i = 0; i < num_draws; ++i) {
+      const double error = chains[static_cast<std::size_t>(c)]->draws(i, k) - mean[k];
+      errors(i, c) = k < 3 ? error : wrapAngle(error);
+    }
+  return errors;
+}
+
+void
+summarizeCoordinate(const Eigen::VectorXd& errors,
+                    const Eigen::MatrixXd& errors_by_chain,
+                    CoordinateSummary& coordinate)
+{
+  coordinate.quantile_2_5 = coordinate.mean + quantile(errors, 0.025);
+  coordinate.median = coordinate.mean + quantile(errors, 0.5);
+  coordinate.quantile_97_5 = coordinate.mean + quantile(errors, 0.975);
+  coordinate.rhat = rhat(errors_by_chain);
+  coordinate.bulk_ess = bulkEss(errors_by_chain);
+  coordinate.tail_ess = tailEss(errors_by_chain);
+  coordinate.mcse = mcseMean(errors_by_chain);
+}
+
+/** The worst diagnostics over the coordinates; NaN as soon as one is undefined. */
+struct WorstDiagnostics {
+  double rhat = 0.0;
+  double ess = std::numeric_limits<double>::infinity();
+
+  explicit WorstDiagnostics(const Summary& summary)
+  {
+    for (const auto& coordinate : summary.coordinates) {
+      if (!(coordinate.rhat <= rhat))
+        rhat = coordinate.rhat;
+      const double coordinate_ess =
+          std::isnan(coordinate.bulk_ess)
+              ? coordinate.bulk_ess
+              : std::min(coordinate.tail_ess, coordinate.bulk_ess);
+      if (!(coordinate_ess >= ess))
+        ess = coordinate_ess;
+      if (std::isnan(rhat) || std::isnan(ess))
+        return;
+    }
+  }
+};
+
+Status
+statusOf(const Summary& summary, bool cancelled, const WorstDiagnostics& worst)
+{
+  if (summary.num_diverged_chains > 0)
+    return Status::Diverged;
+  if (cancelled)
+    return Status::Cancelled;
+  if (worst.rhat <= max_rhat && worst.ess >= min_ess)
+    return Status::Ok;
+  return Status::NotMixed;
+}
+
+std::string
+messageOf(const Summary& summary, const WorstDiagnostics& worst)
+{
+  char text[320];
+  switch (summary.status) {
+  case Status::Diverged:
+    std::snprintf(text,
+                  sizeof(text),
+                  "%d of %d chains diverged (ran away from the prior or became "
+                  "non-finite) and are left out; a smaller step size may help",
+                  summary.num_diverged_chains,
+                  summary.num_chains);
+    break;
+  case Status::Cancelled:
+    std::snprintf(text, sizeof(text), "cancelled after %ld draws", summary.num_draws);
+    break;
+  case Status::Ok:
+    std::snprintf(
+        text,
+        sizeof(text),
+        "the chains mixed: largest R-hat %.4f, smallest effective sample size "
+        "%.0f",
+        worst.rhat,
+        worst.ess);
+    break;
+  default:
+    std::snprintf(
+        text,
+        sizeof(text),
+        "the chains did not mix: largest R-hat %.3f (at most %.2f is good), "
+        "smallest effective sample size %.0f (at least %.0f is good); mean and "
+        "covariance describe these draws, not reliably the posterior",
+        worst.rhat,
+        max_rhat,
+        worst.ess,
+        min_ess);
+  }
+  return text;
+}
+
+} // namespace
+
+const char*
+toString(Status status)
+{
+  switch (status) {
+  case Status::NotRun:
+    return "not_run";
+  case Status::Ok:
+    return "ok";
+  case Status::NotMixed:
+    return "not_mixed";
+  case Status::Diverged:
+    return "diverged";
+  case Status::Cancelled:
+    return "cancelled";
+  case Status::TooFewCorrespondences:
+    return "too_few_correspondences";
+  case Status::InvalidOptions:
+    return "invalid_options";
+  case Status::InvalidInput:
+    return "invalid_input";
+  }
+  return "unknown";
+}
+
+Summary::Summary()
+{
+  covariances.fill(Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN()));
+}
+
+const Matrix6d&
+Summary::covariance(CovarianceConvention convention) const
+{
+  return covariances[static_cast<std::size_t>(convention)];
+}
+
+PoseMatrix
+pooledDraws(const std::vector<Chain>& chains)
+{
+  Eigen::Index num_draws = 0;
+  for (const auto* chain : usableChains(chains))
+    num_draws += chain->draws.rows();
+  PoseMatrix pooled(num_draws, 6);
+  Eigen::Index row = 0;
+  for (const auto* chain : usableChains(chains)) {
+    pooled.middleRows(row, chain->draws.rows()) = chain->draws;
+    row += chain->draws.rows();
+  }
+  return pooled;
+}
+
+Vector6d
+meanPose(const PoseMatrix& draws)
+{
+  if (draws.rows() == 0)
+    return Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  Vector6d mean = draws.colwise().mean().transpose();
+  for (int k = 3; k < 6; ++k)
+    mean[k] = std::atan2(draws.col(k).array().sin().mean(),
+                         draws.col(k).array().cos().mean());
+  return mean;
+}
+
+Matrix6d
+covarianceAbout(const Vector6d& mean,
+                const PoseMatrix& draws,
+                CovarianceConvention convention)
+{
+  if (draws.rows() < 2)
+    return Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  const PoseMatrix errors = errorsAbout(mean, draws, convention);
+  return errors.transpose() * errors / static_cast<double>(draws.rows() - 1);
+}
+
+Summary
+summarize(const ChainSet& chain_set)
+{
+  const auto chains = usableChains(chain_set.chains);
+  const PoseMatrix draws = pooledDraws(chain_set.chains);
+
+  Summary summary;
+  summary.num_chains = static_cast<int>(chain_set.chains.size());
+  summary.num_diverged_chains = summary.num_chains - static_cast<int>(chains.size());
+  summary.num_draws = draws.rows();
+  summary.mean = meanPose(draws);
+  for (const auto convention : conventions)
+    summary.covariances[static_cast<std::size_t>(convention)] =
+        covarianceAbout(summary.mean, draws, convention);
+
+  const PoseMatrix errors =
+      errorsAbout(summary.mean, draws, CovarianceConvention::Parameters);
+  for (int k = 0; k < 6; ++k) {
+    auto& coordinate = summary.coordinates[static_cast<std::size_t>(k)];
+    coordinate.mean = summary.mean[k];
+    coordinate.standard_deviation =
+        std::sqrt(summary.covariance(CovarianceConvention::Parameters)(k, k));
+    summarizeCoordinate(
+        errors.col(k), coordinateErrors(summary.mean, chains, k), coordinate);
+  }
+  const WorstDiagnostics worst(summary);
+  summary.status = statusOf(summary, chain_set.cancelled, worst);
+  summary.message = messageOf(summary, worst);
+  return summary;
+}
+
+} // namespace bayesian_icp

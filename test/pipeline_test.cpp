@@ -1,0 +1,275 @@
+// The front door without PCL: options, statuses, and the posterior of small problems.
+#include "test_support.h"
+
+#include <bayesian_icp/diagnostics.h>
+#include <bayesian_icp/pipeline.h>
+
+#include <gtest/gtest.h>
+
+namespace bayesian_icp {
+namespace {
+
+/** A source, and the target it becomes under a known pose. */
+struct Problem {
+  Eigen::Matrix3Xd source;
+  Eigen::Matrix3Xd target;
+  Vector6d truth;
+};
+
+Problem
+someProblem(Eigen::Index num_points = 100)
+{
+  Random random(51, 0);
+  Problem problem;
+  problem.source = test::randomPoints(random, num_points);
+  problem.truth << 0.02, -0.01, 0.015, 0.03, -0.02, 0.04;
+  movePoints(problem.truth, problem.source, problem.target);
+  return problem;
+}
+
+Options
+quickOptions()
+{
+  Options options;
+  options.chains.num_draws = 200;
+  options.mini_batch.batch_size = 20;
+  return options;
+}
+
+TEST(OptionsValidation, DefaultsAreThePaper)
+{
+  const Options options;
+  EXPECT_EQ(options.validate(), "");
+  EXPECT_EQ(options.preset, Preset::Paper);
+  EXPECT_EQ(options.likelihood.effective_points, 6000.0);
+  EXPECT_EQ(options.likelihood.measurement_sigma, 1.0);
+  EXPECT_EQ(options.prior.variance, Vector6d(Vector6d::Constant(0.125)));
+  EXPECT_EQ(options.prior.frame, PriorFrame::Origin);
+  EXPECT_EQ(options.mini_batch.batch_size, 160);
+  EXPECT_EQ(options.sgld.step_size, 1e-4);
+  EXPECT_EQ(options.sgld.decay_rate, 0.9);
+  EXPECT_EQ(options.sgld.lambda_rms, 1e-8);
+  EXPECT_EQ(options.chains.num_chains, 4);
+  EXPECT_EQ(options.chains.num_draws, 2000);
+  EXPECT_EQ(options.chains.num_burn_in, 0);
+  EXPECT_EQ(options.chains.thinning, 1);
+}
+
+/** One bad value, and what the complaint has to name. */
+struct BadOption {
+  const char* field;
+  const char* value;
+  std::function<void(Options&)> set;
+};
+
+TEST(OptionsValidation, NamesFieldValueAndRange)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const BadOption bad_options[] = {
+      {"effective_points", "0", [](Options& o) { o.likelihood.effective_points = 0; }},
+      {"measurement_sigma",
+       "-1",
+       [](Options& o) { o.likelihood.measurement_sigma = -1; }},
+      {"prior.variance[z]", "0", [](Options& o) { o.prior.variance[2] = 0; }},
+      {"prior.variance[yaw]", "nan", [=](Options& o) { o.prior.variance[5] = nan; }},
+      {"prior.mean", "nan", [](Options& o) { o.prior.mean[0] = 0; }},
+      {"batch_size", "0", [](Options& o) { o.mini_batch.batch_size = 0; }},
+      {"step_size", "inf", [](Options& o) { o.sgld.step_size = 1.0 / 0.0; }},
+      {"decay_rate", "1", [](Options& o) { o.sgld.decay_rate = 1; }},
+      {"lambda_rms", "0", [](Options& o) { o.sgld.lambda_rms = 0; }},
+      {"noise_factor", "-2", [](Options& o) { o.sgld.noise_factor = -2; }},
+      {"block_decay_factor",
+       "1.5",
+       [](Options& o) { o.sgld.block_decay_factor = 1.5; }},
+      {"block_decay_interval",
+       "0",
+       [](Options& o) { o.sgld.block_decay_interval = 0; }},
+      {"block_decay_start", "-1", [](Options& o) { o.sgld.block_decay_start = -1; }},
+      {"num_chains", "0", [](Options& o) { o.chains.num_chains = 0; }},
+      {"num_draws", "3", [](Options& o) { o.chains.num_draws = 3; }},
+      {"num_burn_in", "-1", [](Options& o) { o.chains.num_burn_in = -1; }},
+      {"thinning", "0", [](Options& o) { o.chains.thinning = 0; }},
+      {"initial_spread", "-1", [](Options& o) { o.chains.initial_spread[1] = -1; }},
+      {"num_threads", "-4", [](Options& o) { o.chains.num_threads = -4; }},
+      {"preset", "exact", [](Options& o) { o.preset = Preset::Exact; }},
+      {"preset", "calibrated", [](Options& o) { o.preset = Preset::Calibrated; }},
+  };
+  for (const auto& bad : bad_options) {
+    Options options;
+    bad.set(options);
+    const std::string complaint = options.validate();
+    EXPECT_NE(complaint.find(bad.field), std::string::npos) << bad.field << complaint;
+    EXPECT_NE(complaint.find(bad.value), std::string::npos) << bad.field << complaint;
+    EXPECT_NE(complaint.find("must be"), std::string::npos) << bad.field << complaint;
+  }
+}
+
+TEST(Pipeline, BadOptionsAreAStatus)
+{
+  const Problem problem = someProblem();
+  Options options = quickOptions();
+  options.sgld.step_size = -1.0;
+  const auto estimate = estimatePosterior(problem.source,
+                                          test::BruteForceSearch(problem.target),
+                                          Vector6d::Zero(),
+                                          options);
+  EXPECT_EQ(estimate.summary.status, Status::InvalidOptions);
+  EXPECT_NE(estimate.summary.message.find("step_size"), std::string::npos);
+  EXPECT_EQ(estimate.samples.rows(), 0);
+}
+
+TEST(Pipeline, NonFiniteInputIsAStatus)
+{
+  Problem problem = someProblem();
+  const test::BruteForceSearch search(problem.target);
+  Vector6d guess = Vector6d::Zero();
+  guess[1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(
+      estimatePosterior(problem.source, search, guess, quickOptions()).summary.status,
+      Status::InvalidInput);
+  problem.source(1, 1) = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(estimatePosterior(problem.source, search, Vector6d::Zero(), quickOptions())
+                .summary.status,
+            Status::InvalidInput);
+}
+
+TEST(Pipeline, NoOverlapWithinTheGateIsAStatus)
+{
+  const Problem problem = someProblem();
+  const test::BruteForceSearch search(problem.target, 0.1);
+  Vector6d guess = Vector6d::Zero();
+  guess[0] = 50.0;
+  EXPECT_EQ(
+      estimatePosterior(problem.source, search, guess, quickOptions()).summary.status,
+      Status::TooFewCorrespondences);
+  EXPECT_EQ(
+      estimatePosterior(Eigen::Matrix3Xd(3, 0), search, Vector6d::Zero(), Options())
+          .summary.status,
+      Status::TooFewCorrespondences);
+}
+
+TEST(Pipeline, AllPointsLeavingTheGateIsReportedAsDivergence)
+{
+  // Without a correspondence V decays to 0 and A grows to 1e8: the chain must not be
+  // averaged in.
+  const Problem problem = someProblem();
+  Options options = quickOptions();
+  options.chains.num_draws = 2000;
+  const auto estimate = estimatePosterior(problem.source,
+                                          test::BruteForceSearch(problem.target, 0.02),
+                                          problem.truth,
+                                          options);
+  EXPECT_EQ(estimate.summary.status, Status::Diverged);
+  EXPECT_GT(estimate.summary.num_diverged_chains, 0);
+  EXPECT_EQ(estimate.samples.rows(), estimate.summary.num_draws);
+}
+
+TEST(Pipeline, SamplesAreTheChainsPutTogether)
+{
+  const Problem problem = someProblem();
+  const auto estimate = estimatePosterior(problem.source,
+                                          test::BruteForceSearch(problem.target),
+                                          Vector6d::Zero(),
+                                          quickOptions());
+  ASSERT_EQ(estimate.chains.size(), 4u);
+  ASSERT_EQ(estimate.samples.rows(), 200);
+  for (std::size_t c = 0; c < 4; ++c)
+    EXPECT_EQ(estimate.samples.middleRows(50 * static_cast<Eigen::Index>(c), 50),
+              estimate.chains[c].draws);
+}
+
+TEST(Pipeline, DrawsAreBitIdenticalForEveryNumberOfThreads)
+{
+  const Problem problem = someProblem();
+  const test::BruteForceSearch search(problem.target);
+  Options options = quickOptions();
+  options.chains.num_threads = 1;
+  const auto reference =
+      estimatePosterior(problem.source, search, Vector6d::Zero(), options);
+  for (const int num_threads : {2, 3, 8}) {
+    options.chains.num_threads = num_threads;
+    const auto estimate =
+        estimatePosterior(problem.source, search, Vector6d::Zero(), options);
+    EXPECT_EQ(estimate.samples, reference.samples);
+    EXPECT_EQ(estimate.summary.covariances[0], reference.summary.covariances[0]);
+  }
+}
+
+TEST(Pipeline, PriorMeanIsTheGuessUnlessSet)
+{
+  // Without data (weight ~ 0) the draws are about the prior mean.
+  const Problem problem = someProblem();
+  const test::BruteForceSearch search(problem.target);
+  Options options = quickOptions();
+  options.likelihood.effective_points = 1e-12;
+  options.prior.variance.setConstant(1e-4);
+  options.sgld.step_size = 1e-7;
+  options.chains.num_draws = 8000;
+  options.sgld.block_decay_factor = 1.0;
+  Vector6d guess = Vector6d::Zero();
+  guess[0] = 0.3;
+  const auto about_guess = estimatePosterior(problem.source, search, guess, options);
+  EXPECT_NEAR(about_guess.summary.mean[0],
+              0.3,
+              4.0 * about_guess.summary.coordinates[0].mcse + 1e-3);
+  options.prior.mean = Vector6d::Zero();
+  options.chains.num_burn_in = 4000;
+  const auto about_zero = estimatePosterior(problem.source, search, guess, options);
+  EXPECT_LT(std::abs(about_zero.summary.mean[0]), 0.1);
+}
+
+TEST(Pipeline, CancellationKeepsWhatWasDrawn)
+{
+  const Problem problem = someProblem();
+  const auto estimate =
+      estimatePosterior(problem.source,
+                        test::BruteForceSearch(problem.target),
+                        Vector6d::Zero(),
+                        quickOptions(),
+                        [](const Progress& p) { return p.steps < 40; });
+  EXPECT_EQ(estimate.summary.status, Status::Cancelled);
+  EXPECT_GE(estimate.samples.rows(), 40);
+  EXPECT_LT(estimate.samples.rows(), 50);
+}
+
+TEST(Pipeline, AThreadUnsafeSearchGivesTheSameDraws)
+{
+  const Problem problem = someProblem();
+  const double no_gate = std::numeric_limits<double>::infinity();
+  const auto parallel =
+      estimatePosterior(problem.source,
+                        test::BruteForceSearch(problem.target, no_gate),
+                        Vector6d::Zero(),
+                        quickOptions());
+  const auto serial =
+      estimatePosterior(problem.source,
+                        test::BruteForceSearch(problem.target, no_gate, false),
+                        Vector6d::Zero(),
+                        quickOptions());
+  EXPECT_EQ(parallel.samples, serial.samples);
+}
+
+TEST(Pipeline, TheMeanOfManyDrawsIsNearTheTruth)
+{
+  // The step size that algorithm.md measured to come near the stated posterior, and a
+  // long run. The posterior is centred on the truth (the target is the moved source).
+  // The start is not: a gradient of exactly zero makes the literal preconditioner 1e8.
+  const Problem problem = someProblem(300);
+  const Vector6d start = problem.truth + Vector6d::Constant(0.01);
+  Options options;
+  options.sgld.step_size = 1e-5;
+  options.sgld.block_decay_factor = 1.0;
+  options.mini_batch.batch_size = 40;
+  options.chains.num_draws = 12000;
+  options.chains.num_burn_in = 1000;
+  const auto estimate = estimatePosterior(
+      problem.source, test::BruteForceSearch(problem.target), start, options);
+  ASSERT_EQ(estimate.samples.rows(), 12000);
+  for (int k = 0; k < 6; ++k) {
+    const auto& c = estimate.summary.coordinates[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(c.mean, problem.truth[k], 5.0 * c.mcse) << k;
+  }
+}
+
+} // namespace
+} // namespace bayesian_icp

@@ -1,0 +1,79 @@
+// Shared by the tests of the PCL class: a scan of a bumpy surface and its moved twin.
+#pragma once
+
+#include <bayesian_icp/pose.h>
+#include <bayesian_icp/random.h>
+
+#include <pcl/common/transforms.h>
+#include <pcl/registration/bayesian_icp.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cmath>
+
+namespace pcl {
+namespace test {
+
+using Cloud = PointCloud<PointXYZ>;
+using Icp = IterativeClosestPoint<PointXYZ, PointXYZ>;
+using BayesianIcp = BayesianIterativeClosestPoint<PointXYZ, PointXYZ>;
+
+/** Points of a smooth surface of 1 m with bumps, seen twice with noise of 1 mm. */
+template <typename PointT>
+typename PointCloud<PointT>::Ptr
+bumpySurface(std::uint64_t seed, std::size_t num_points = 900)
+{
+  bayesian_icp::Random random(seed, 0);
+  typename PointCloud<PointT>::Ptr cloud(new PointCloud<PointT>);
+  for (std::size_t i = 0; i < num_points; ++i) {
+    const double x = random.uniform() - 0.5, y = random.uniform() - 0.5;
+    const double z = 0.15 * std::sin(7.0 * x) * std::cos(5.0 * y) + 0.1 * x * y;
+    PointT point;
+    point.x = static_cast<float>(x);
+    point.y = static_cast<float>(y);
+    point.z = static_cast<float>(z + 0.001 * random.normal());
+    cloud->push_back(point);
+  }
+  return (cloud);
+}
+
+/** A small source-to-target motion. */
+inline bayesian_icp::Vector6d
+smallPose()
+{
+  bayesian_icp::Vector6d pose;
+  pose << 0.03, -0.02, 0.01, 0.04, -0.03, 0.05;
+  return (pose);
+}
+
+/** Source and target of a registration whose truth is smallPose(). */
+template <typename PointT>
+struct Scans {
+  typename PointCloud<PointT>::Ptr source = bumpySurface<PointT>(1);
+  typename PointCloud<PointT>::Ptr target = bumpySurface<PointT>(2);
+
+  Scans()
+  {
+    transformPointCloud(
+        *target, *target, bayesian_icp::matrixOf(smallPose()).cast<float>().eval());
+  }
+};
+
+/** A registration with few draws, so that tests of ICP's part are quick. */
+template <typename Registration>
+void
+useFewSamples(Registration& registration)
+{
+  registration.setNumberOfSamples(40);
+  registration.setMiniBatchSize(20);
+}
+
+/** Silences PCL's messages for the lifetime of this object (the test provokes them). */
+class QuietConsole {
+public:
+  QuietConsole() { console::setVerbosityLevel(console::L_ALWAYS); }
+  ~QuietConsole() { console::setVerbosityLevel(console::L_INFO); }
+};
+
+} // namespace test
+} // namespace pcl
