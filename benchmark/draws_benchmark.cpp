@@ -1,8 +1,8 @@
-// 1000 draws of Algorithm 1 against the nearest-neighbour queries that they need, on one
-// thread: draws_benchmark source.pcd target.pcd [Google Benchmark options]
+// 1000 draws of Algorithm 1 against the nearest-neighbour queries that they need, on
+// one thread: draws_benchmark source.pcd target.pcd [Google Benchmark options]
 #include <pcl/io/pcd_io.h>
-#include <pcl/point_types.h>
 #include <pcl/registration/bayesian_icp.h>
+#include <pcl/point_types.h>
 
 #include <benchmark/benchmark.h>
 
@@ -17,7 +17,9 @@ constexpr int batch_size = 160;
 
 /** Queries of source points, in random order as in a mini-batch, to PCL's tree. */
 void
-flannQueries(benchmark::State& state, const Cloud::Ptr& source, const Cloud::Ptr& target)
+flannQueries(benchmark::State& state,
+             const Cloud::Ptr& source,
+             const Cloud::Ptr& target)
 {
   pcl::KdTreeFLANN<pcl::PointXYZ> tree;
   tree.setInputCloud(target);
@@ -60,7 +62,8 @@ main(int argc, char** argv)
   const Cloud::Ptr source(new Cloud), target(new Cloud);
   if (argc != 3 || pcl::io::loadPCDFile(argv[1], *source) < 0 ||
       pcl::io::loadPCDFile(argv[2], *target) < 0) {
-    std::fprintf(stderr, "Usage: %s source.pcd target.pcd [--benchmark_...]\n", argv[0]);
+    std::fprintf(
+        stderr, "Usage: %s source.pcd target.pcd [--benchmark_...]\n", argv[0]);
     return 2;
   }
   benchmark::RegisterBenchmark("160000_flann_queries", flannQueries, source, target)

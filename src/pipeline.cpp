@@ -96,7 +96,7 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
       source_points, search, prior, options.likelihood.weight(), mini_batches);
 
   SamplerTarget target;
-  target.make_gradient = [&gradient](int) { return gradient; };
+  target.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
   target.has_diverged = [&prior, &limit](const Vector6d& pose) {
     const Eigen::Vector3d translation = prior.deviation(pose).head<3>();
     return (translation.cwiseAbs().array() > limit.array()).any();
