@@ -1,99 +1,37 @@
 #include "output.h"
 
+#include "io/output_folder.h"
 #include "record.h"
 
 #include <pcl/io/pcd_io.h>
+#include <pcl/conversions.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
 
 namespace bayesian_icp {
 namespace simulator {
 
-namespace fs = std::filesystem;
-
 namespace {
 
-/** \brief Files under temporary names; those not renamed are removed at the end. */
-class PendingFiles {
-public:
-  explicit PendingFiles(const fs::path& folder) : folder_(folder) {}
-  PendingFiles(const PendingFiles&) = delete;
-  PendingFiles&
-  operator=(const PendingFiles&) = delete;
-
-  ~PendingFiles()
-  {
-    std::error_code ignored;
-    for (const File& file : files_)
-      fs::remove(file.temporary, ignored);
-  }
-
-  /** \brief Announce a file; returns the name under which to write it. */
-  fs::path
-  add(const std::string& name)
-  {
-    const fs::path final_path = folder_ / name;
-    if (fs::is_directory(final_path))
-      throw std::runtime_error("cannot write " + final_path.string() +
-                               ": there is a folder of this name");
-    const std::string suffix = ".partial." + std::to_string(getpid());
-    files_.push_back({folder_ / (name + suffix), final_path});
-    return files_.back().temporary;
-  }
-
-  void
-  renameAll() const
-  {
-    for (const File& file : files_)
-      fs::rename(file.temporary, file.final_path);
-  }
-
-private:
-  struct File {
-    fs::path temporary;
-    fs::path final_path;
-  };
-
-  fs::path folder_;
-  std::vector<File> files_;
-};
-
+/** \brief Binary compressed, x, y, z only. */
 void
-writeText(const fs::path& path, const std::string& text)
-{
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file)
-    throw std::runtime_error("cannot write " + path.string());
-}
-
-void
-writeCloud(const fs::path& path, const Eigen::Matrix3Xf& points)
+writeCloud(const Eigen::Matrix3Xf& points, std::ostream& stream)
 {
   pcl::PointCloud<pcl::PointXYZ> cloud;
   cloud.reserve(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i)
     cloud.push_back(pcl::PointXYZ(points(0, i), points(1, i), points(2, i)));
-  int status = 0;
-  try {
-    status = pcl::PCDWriter().writeBinaryCompressed(path.string(), cloud);
-  }
-  catch (const pcl::IOException& error) {
-    throw std::runtime_error("cannot write " + path.string() + error.what());
-  }
-  if (status != 0)
-    throw std::runtime_error("cannot write " + path.string());
+  pcl::PCLPointCloud2 blob;
+  pcl::toPCLPointCloud2(cloud, blob);
+  if (pcl::PCDWriter().writeBinaryCompressed(
+          stream, blob, cloud.sensor_origin_, cloud.sensor_orientation_) < 0)
+    throw std::runtime_error("PCL cannot write the cloud");
 }
 
 std::string
@@ -114,13 +52,18 @@ writePair(const std::string& folder,
           const SimulationOptions& options,
           const ScanPair& pair)
 {
-  fs::create_directories(folder);
-  PendingFiles files(folder);
-  writeCloud(files.add("source.pcd"), pair.source);
-  writeCloud(files.add("target.pcd"), pair.target);
-  writeText(files.add("T_target_source.txt"), textOfMatrix(pair.T_target_source));
-  writeText(files.add("scene.json"), recordOf(options, pair).dump(2) + '\n');
-  files.renameAll();
+  io::OutputFolder files(folder);
+  files.add("source.pcd",
+            [&](std::ostream& stream) { writeCloud(pair.source, stream); });
+  files.add("target.pcd",
+            [&](std::ostream& stream) { writeCloud(pair.target, stream); });
+  files.add("T_target_source.txt", [&](std::ostream& stream) {
+    stream << textOfMatrix(pair.T_target_source);
+  });
+  files.add("scene.json", [&](std::ostream& stream) {
+    stream << recordOf(options, pair).dump(2) << '\n';
+  });
+  files.commit();
 }
 
 } // namespace simulator
