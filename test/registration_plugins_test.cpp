@@ -80,6 +80,56 @@ TEST_F(PluginTest, AnEmptyListOfIndicesMeansTheWholeCloud)
   EXPECT_EQ(output.size(), scans.source->size());
 }
 
+TEST_F(PluginTest, IndicesOfTheEstimationApplyToIcpAndToEveryMiniBatch)
+{
+  const IndicesPtr indices(new Indices);
+  for (index_t i = 100; i < 900; i += 3)
+    indices->push_back(i);
+  const pcl::shared_ptr<Estimation> estimation(new Estimation);
+  estimation->setIndicesSource(indices);
+  Icp reference;
+  reference.setInputSource(scans.source);
+  reference.setInputTarget(scans.target);
+  reference.setCorrespondenceEstimation(estimation);
+  reference.align(output);
+
+  BayesianIcp of_indices;
+  useFewSamples(of_indices);
+  of_indices.setInputSource(scans.source);
+  of_indices.setInputTarget(scans.target);
+  of_indices.setIndices(indices);
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(1e3f);
+  for (const bool has_rejector : {false, true}) {
+    if (has_rejector) {
+      icp.addCorrespondenceRejector(rejector);
+      of_indices.addCorrespondenceRejector(rejector);
+    }
+    icp.setCorrespondenceEstimation(estimation);
+    icp.align(output);
+    of_indices.align(output);
+    EXPECT_EQ(icp.getFinalTransformation(), reference.getFinalTransformation());
+    EXPECT_EQ(icp.getSamples(), of_indices.getSamples());
+    EXPECT_EQ(estimation->getIndicesSource(), indices);
+  }
+}
+
+TEST_F(PluginTest, AChainThatRunsAwayDoesNotReachThePlugins)
+{
+  // Without a prior nothing stops it, and PCL's trees assert that queries are finite.
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(1e3f);
+  icp.addCorrespondenceRejector(rejector);
+  icp.setPrior(bayesian_icp::Vector6d::Constant(std::nan("")),
+               bayesian_icp::Vector6d::Constant(HUGE_VAL));
+  icp.setStepSize(1e40);
+  icp.align(output);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_NE(icp.getSummary().status, bayesian_icp::Status::Ok);
+}
+
 /** The default estimation, counting the points it is asked about. */
 struct CountingEstimation : Estimation {
   void

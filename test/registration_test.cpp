@@ -111,6 +111,13 @@ INSTANTIATE_TEST_SUITE_P(ForEverySetting,
                          ::testing::ValuesIn(allSettings()),
                          [](const auto& setting) { return setting.param.name; });
 
+TEST(DropIn, HasThePublicMembersOfIcp)
+{
+  BayesianIcp icp;
+  EXPECT_EQ(icp.convergence_criteria_, icp.getConvergeCriteria());
+  EXPECT_EQ(icp.getClassName(), "BayesianIterativeClosestPoint");
+}
+
 TEST(DropIn, IsHeldByThePointersOfItsBases)
 {
   const Scans<PointXYZ> scans;
@@ -420,6 +427,26 @@ TEST(BadInput, NaNSourcePointsAreSkippedAndKept)
     EXPECT_TRUE(isXYZFinite((*scans.source)[pair.index_query]));
 }
 
+TEST(BadInput, SourcePointsTooFarForFloatDistancesAreSkipped)
+{
+  const Scans<PointXYZ> scans;
+  const Cloud::Ptr with_far_points(new Cloud(*scans.source));
+  with_far_points->push_back(PointXYZ(1e30f, 0.0f, 0.0f));
+  with_far_points->push_back(PointXYZ(0.0f, -3e38f, 3e38f));
+  const QuietConsole quiet;
+  BayesianIcp icp, reference;
+  Cloud output;
+  for (auto* registration : {&icp, &reference}) {
+    useFewSamples(*registration);
+    registration->setInputTarget(scans.target);
+    registration->setInputSource(registration == &icp ? with_far_points : scans.source);
+    registration->align(output);
+  }
+  EXPECT_EQ(icp.getFinalTransformation(), reference.getFinalTransformation());
+  EXPECT_EQ(icp.getSamples(), reference.getSamples());
+  EXPECT_EQ(icp.getFitnessScore(), reference.getFitnessScore());
+}
+
 TEST(BadInput, NaNTargetPointsAreIgnored)
 {
   Scans<PointXYZ> scans;
@@ -523,6 +550,33 @@ TEST(BadInput, NonFiniteGuessFails)
   Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
   guess(1, 1) = nan_value;
   expectFailure(scans.source, scans.target, guess, 10.0);
+}
+
+TEST(BadInput, GuessTooFarForFloatDistancesFails)
+{
+  const Scans<PointXYZ> scans;
+  for (const float x : {1e30f, 3e38f}) {
+    Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+    guess.topRightCorner<3, 1>().setConstant(x);
+    guess(0, 0) = x;
+    expectFailure(scans.source, scans.target, guess, 10.0);
+  }
+}
+
+TEST(BadInput, GuessBeyondTheRangeOfFloatFails)
+{
+  const Scans<PointXYZ> scans;
+  BayesianIterativeClosestPoint<PointXYZ, PointXYZ, double> icp;
+  icp.setInputSource(scans.source);
+  icp.setInputTarget(scans.target);
+  Eigen::Matrix4d guess = Eigen::Matrix4d::Identity();
+  guess(0, 3) = 1e300;
+  const QuietConsole quiet;
+  Cloud output;
+  icp.align(output, guess);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidInput);
+  EXPECT_EQ(output[0].getVector3fMap(), (*scans.source)[0].getVector3fMap());
 }
 
 TEST(BadInput, DegenerateCloudsDoNotCrash)

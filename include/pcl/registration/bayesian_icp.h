@@ -26,12 +26,11 @@ namespace pcl {
  * Ry(pitch) Rx(roll). Whether the posterior can be trusted is getSummary().status;
  * hasConverged() keeps ICP's meaning and says nothing about it.
  *
- * Other than pcl::IterativeClosestPoint of PCL 1.13, source points with non-finite
- * coordinates are skipped (and kept in the output), and indices are honoured in the
- * estimate (the output is the whole cloud, as in PCL). The sampler applies rejectors
- * and a user's own correspondence estimation to each mini-batch; source indices set on
- * that estimation itself do not apply there. One object is for one thread at a time, as
- * in PCL.
+ * Other than pcl::IterativeClosestPoint of PCL 1.13, source points that are not finite
+ * (or further out than 1e18 m) are skipped and kept in the output, and indices are
+ * honoured in the estimate (the output is the whole cloud, as in PCL). The sampler
+ * applies rejectors and a user's own correspondence estimation to each mini-batch. One
+ * object is for one thread at a time, as in PCL.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration
@@ -254,10 +253,13 @@ public:
   }
   /** \} */
 
+  using Base::convergence_criteria_; // public in PCL's class, too
+  using Base::getClassName;
   using Base::getFitnessScore;
 
   /** \brief Mean squared distance [m^2] of the transformed source to the target, as
-   * PCL's, leaving out non-finite points (PCL 1.13 aborts on them).
+   * PCL's, leaving out non-finite points (PCL 1.13 aborts on them, also where it is
+   * called through a pointer to PCL's class).
    * \param[in] max_range largest squared distance that counts [m^2]
    * \return the largest double if no point is in range */
   double
@@ -265,13 +267,11 @@ public:
 
 protected:
   using Base::converged_;
-  using Base::convergence_criteria_;
   using Base::corr_dist_threshold_;
   using Base::correspondence_estimation_;
   using Base::correspondence_rejectors_;
   using Base::correspondences_;
   using Base::final_transformation_;
-  using Base::getClassName;
   using Base::indices_;
   using Base::input_;
   using Base::min_number_correspondences_;

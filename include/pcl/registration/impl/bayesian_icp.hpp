@@ -4,9 +4,9 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/registration/bayesian_icp.h>
 #include <pcl/registration/impl/bayesian_icp_search.hpp>
+#include <pcl/registration/impl/bayesian_icp_selection.hpp>
 #include <pcl/registration/transformation_estimation_svd.h>
 
-#include <numeric>
 #include <typeinfo>
 #include <utility>
 
@@ -31,36 +31,6 @@ private:
   T& variable_;
   T original_;
 };
-
-/** Those of \p indices whose point is finite; an empty list means the whole cloud, as
- * it does to pcl::IterativeClosestPoint. */
-template <typename PointT>
-Indices
-finitePoints(const PointCloud<PointT>& cloud, Indices indices)
-{
-  if (indices.empty()) {
-    indices.resize(cloud.size());
-    std::iota(indices.begin(), indices.end(), 0);
-  }
-  Indices finite;
-  finite.reserve(indices.size());
-  for (const auto index : indices)
-    if (isXYZFinite(cloud[index]))
-      finite.push_back(index);
-  return (finite);
-}
-
-/** Whether \p indices is 0, 1, ..., num_points - 1. */
-inline bool
-isWholeCloud(const Indices& indices, std::size_t num_points)
-{
-  if (indices.size() != num_points)
-    return (false);
-  for (std::size_t i = 0; i < num_points; ++i)
-    if (indices[i] != static_cast<index_t>(i))
-      return (false);
-  return (true);
-}
 
 } // namespace bayesian_icp_detail
 
@@ -114,7 +84,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getFitnessScore
   std::size_t num_in_range = 0;
   PointTarget query;
   for (const auto& point : moved) {
-    if (!isXYZFinite(point))
+    if (!bayesian_icp_detail::canBeQueried(point.getVector3fMap()))
       continue;
     copyPoint(point, query);
     if (tree_->nearestKSearch(query, 1, index, squared_distance) > 0 &&
@@ -134,8 +104,12 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::computeTransfor
 {
   estimate_ = bayesian_icp::PosteriorEstimate();
   const PointCloudSourceConstPtr whole = input_;
-  const Indices usable = bayesian_icp_detail::finitePoints(*whole, *indices_);
-  if (!guess.allFinite() || !targetIsUsable() ||
+  const bayesian_icp_detail::SourceSelection<PointSource, PointTarget, Scalar>
+      selection(*correspondence_estimation_, *whole, *indices_);
+  const Eigen::Matrix4f float_guess = guess.template cast<float>();
+  const Indices usable =
+      bayesian_icp_detail::usablePoints(*whole, selection.indices(), float_guess);
+  if (!float_guess.allFinite() || !targetIsUsable() ||
       usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
     failWithoutCorrespondences(output, guess);
     return;
@@ -183,7 +157,7 @@ void
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
     failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess)
 {
-  const bool is_guess_finite = guess.allFinite();
+  const bool is_guess_finite = guess.template cast<float>().allFinite();
   auto& summary = estimate_.summary;
   summary.status = bayesian_icp::Status::InvalidInput;
   summary.message = is_guess_finite ? "fewer finite points than the registration needs"

@@ -19,6 +19,18 @@
 namespace pcl {
 namespace bayesian_icp_detail {
 
+/** Largest coordinate of a query [m]. Beyond it a squared distance overflows a float:
+ * PCL's trees then leave the answer as it was, and assert that the query is finite. */
+constexpr double max_coordinate = 1e18;
+
+/** Whether coordinates are finite and within max_coordinate. */
+template <typename Derived>
+bool
+canBeQueried(const Eigen::MatrixBase<Derived>& coordinates)
+{
+  return ((coordinates.template cast<double>().array().abs() < max_coordinate).all());
+}
+
 /** The coordinates of a cloud, 3 x n [m]. */
 template <typename PointT>
 Eigen::Matrix3Xd
@@ -42,10 +54,7 @@ public:
   index_t
   find(const Eigen::Vector3d& position, double max_squared_distance)
   {
-    // Beyond this a squared distance overflows a float, and PCL asserts that it is
-    // finite.
-    constexpr double max_coordinate = 1e18;
-    if (!(position.cwiseAbs().maxCoeff() < max_coordinate))
+    if (!canBeQueried(position))
       return (-1);
     query_.getVector3fMap() = position.template cast<float>();
     squared_distance_[0] = std::numeric_limits<float>::infinity();
@@ -168,16 +177,18 @@ public:
   void
   find(const bayesian_icp::Vector6d& pose,
        const std::vector<std::size_t>& source_indices,
-       const Eigen::Matrix3Xd& /* moved_points */,
+       const Eigen::Matrix3Xd& moved_points,
        bayesian_icp::Correspondences& correspondences) const override
   {
+    correspondences.clear();
+    if (!canBeQueried(moved_points)) // a chain that has run away
+      return;
     const auto batch = moveBatch(pose, source_indices);
     PCLPointCloud2::Ptr batch_blob;
     if (needsBlob()) {
       batch_blob.reset(new PCLPointCloud2);
       toPCLPointCloud2(*batch, *batch_blob);
     }
-    correspondences.clear();
     for (const auto& pair : reject(estimate(batch, batch_blob), batch_blob))
       if (pair.index_match >= 0)
         correspondences.push_back(
