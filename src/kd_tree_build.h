@@ -1,0 +1,30 @@
+/** \file
+ * \brief Internal: building the tree of KdTree.
+ */
+#pragma once
+
+#include "kd_tree_kernels.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace bayesian_icp {
+namespace kd_tree {
+
+struct Storage {
+  std::vector<Node> nodes;
+  std::vector<Leaf> leaves;
+  /** Number of the first leaf, see View. */
+  std::uint32_t first_leaf = 0;
+  /** Points in the tree. */
+  std::size_t num_points = 0;
+};
+
+/** Build the tree over the finite points among \p num_points points x, y, z, x, y, z,
+ * ... The result does not depend on \p num_threads, at least 1. */
+Storage
+build(const float* points, std::size_t num_points, int num_threads);
+
+} // namespace kd_tree
+} // namespace bayesian_icp
