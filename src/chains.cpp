@@ -1,80 +1,10 @@
+#include "run_state.h"
+
 #include <bayesian_icp/chains.h>
-
-#include <omp.h>
-
-#include <algorithm>
-#include <atomic>
-#include <exception>
-#include <mutex>
 
 namespace bayesian_icp {
 
 namespace {
-
-/** What the chains of one run share: progress, cancellation and the first exception. */
-class RunState {
-public:
-  RunState(const ProgressCallback& progress, long total_steps)
-  : progress_(progress)
-  , total_steps_(total_steps)
-  {}
-
-  bool
-  stopped() const
-  {
-    return stopped_;
-  }
-
-  bool
-  cancelled() const
-  {
-    return cancelled_;
-  }
-
-  /** Runs \p work, keeping its exception for the thread that started the run: none may
-   * leave a parallel region. */
-  template <typename Work>
-  void
-  guard(const Work& work)
-  {
-    try {
-      work();
-    }
-    catch (...) {
-      stopped_ = true;
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (!exception_)
-        exception_ = std::current_exception();
-    }
-  }
-
-  void
-  rethrow() const
-  {
-    if (exception_)
-      std::rethrow_exception(exception_);
-  }
-
-  /** Counts a step of \p chain and tells the callback. */
-  void
-  reportStep(int chain, long chain_steps)
-  {
-    if (!progress_)
-      return;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_}))
-      cancelled_ = stopped_ = true;
-  }
-
-private:
-  const ProgressCallback& progress_;
-  const long total_steps_;
-  long steps_ = 0;
-  std::atomic<bool> stopped_{false};
-  std::atomic<bool> cancelled_{false};
-  std::exception_ptr exception_;
-  std::mutex mutex_;
-};
 
 long
 numStepsOf(const ChainOptions& options, int chain)
@@ -122,16 +52,6 @@ runChain(const Vector6d& start,
   return chain;
 }
 
-int
-numThreads(const ChainOptions& options, const SamplerTarget& target)
-{
-  if (!target.is_thread_safe || omp_in_parallel() != 0)
-    return 1;
-  const int offered =
-      options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
-  return std::min(offered, options.num_chains);
-}
-
 } // namespace
 
 ChainSet
@@ -148,13 +68,13 @@ runChains(const Vector6d& start,
   ChainSet result;
   result.chains.resize(static_cast<std::size_t>(options.num_chains));
   RunState run(progress, total_steps);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(numThreads(options, target))
-  for (int i = 0; i < options.num_chains; ++i)
-    run.guard([&] {
-      result.chains[static_cast<std::size_t>(i)] =
-          runChain(start, target, sgld, options, i, run);
-    });
-  run.rethrow();
+  forEachChain(options.num_chains,
+               numThreadsFor(options, target.is_thread_safe),
+               run,
+               [&](int i) {
+                 result.chains[static_cast<std::size_t>(i)] =
+                     runChain(start, target, sgld, options, i, run);
+               });
   result.cancelled = run.cancelled();
   return result;
 }

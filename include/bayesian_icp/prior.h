@@ -63,6 +63,20 @@ public:
   Vector6d
   deviation(const Vector6d& pose) const;
 
+  /** \brief The mean pose [m, rad]. */
+  const Vector6d&
+  mean() const
+  {
+    return mean_;
+  }
+
+  /** \brief c of the class description, source frame [m]. */
+  const Eigen::Vector3d&
+  referencePoint() const
+  {
+    return reference_point_;
+  }
+
   /** \brief The six variances [m^2, rad^2]. */
   const Vector6d&
   variance() const

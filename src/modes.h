@@ -1,0 +1,44 @@
+/** \file
+ * \brief Which chains are in one mode of the density, and how much each mode weighs.
+ */
+#pragma once
+
+#include <bayesian_icp/chains.h>
+#include <bayesian_icp/gaussian_fit.h>
+
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief Modes worse than the best by more than this are given up [nats]. */
+constexpr double max_evidence_loss = 10.0;
+
+/** \brief log of the integral of exp(-U) around \p gaussian, by importance sampling
+ * from it. */
+double
+logEvidence(StochasticEnergy& energy, const Gaussian& gaussian, Random& random);
+
+/** \brief log of the mean of exp(values). */
+double
+logMeanExp(const std::vector<double>& values);
+
+/** \brief Put chains together whose Gaussians overlap, or between which there is no
+ * energy barrier.
+ * \param[in] energy of any chain: all have the same values
+ * \param[in] log_evidences one a chain
+ * \return the best mode first */
+std::vector<ChainMode>
+groupByMode(const std::vector<GaussianFit>& fits,
+            const std::vector<double>& log_evidences,
+            StochasticEnergy& energy);
+
+/** \brief Move the chains of clearly worse modes to the first one.
+ * \param[in,out] set its modes are in order, the best one first */
+void
+moveFromWorseModes(ChainSet& set);
+
+/** \brief Put modes together whose draws overlap after all. */
+void
+mergeOverlappingModes(ChainSet& set);
+
+} // namespace bayesian_icp
