@@ -24,8 +24,6 @@ searchOf(InstructionSet instruction_set)
     return kd_tree::searchSse2;
   case InstructionSet::Avx2:
     return kd_tree::searchAvx2;
-  case InstructionSet::Avx512:
-    return kd_tree::searchAvx512;
 #endif
   default:
     return kd_tree::searchPlain;
@@ -51,8 +49,6 @@ supportedInstructionSets()
   supported.push_back(InstructionSet::Sse2);
   if (__builtin_cpu_supports("avx2"))
     supported.push_back(InstructionSet::Avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
-    supported.push_back(InstructionSet::Avx512);
 #endif
   return supported;
 }
@@ -78,10 +74,12 @@ KdTree::KdTree(Eigen::Matrix3Xf points, int num_threads, InstructionSet instruct
   tree->storage = kd_tree::build(points_.data(),
                                  num_points,
                                  num_threads > 0 ? num_threads : omp_get_max_threads());
-  tree->view = {tree->storage.nodes.data(),
-                tree->storage.leaves.data(),
-                tree->storage.first_leaf,
-                points_.data(),
+  const kd_tree::Storage& storage = tree->storage;
+  tree->view = {storage.nodes.data(),
+                storage.cells.data(),
+                storage.leaves.data(),
+                storage.first_leaf,
+                storage.leaf_of.data(),
                 num_points};
   tree_ = std::move(tree);
 }
@@ -115,8 +113,11 @@ KdTree::size() const
 std::size_t
 KdTree::numBytes() const
 {
-  return sizeof(Tree) + tree_->storage.nodes.size() * sizeof(kd_tree::Node) +
-         tree_->storage.leaves.size() * sizeof(kd_tree::Leaf);
+  const kd_tree::Storage& storage = tree_->storage;
+  return sizeof(Tree) + storage.nodes.size() * sizeof(kd_tree::Node) +
+         storage.cells.size() * sizeof(kd_tree::Cell) +
+         storage.leaves.size() * sizeof(kd_tree::Leaf) +
+         storage.leaf_of.size() * sizeof(std::uint32_t);
 }
 
 } // namespace bayesian_icp

@@ -1,54 +1,12 @@
-// Building the tree of KdTree. The points are put in an order in which every leaf is a
-// run of 16 and every subtree a run of 16 * 8^height points; what is left over makes
-// the last leaf, and the last subtree of every height, smaller. So the shape of the
-// tree follows from the number of points alone, and nodes need no pointers.
 #include "kd_tree_build.h"
 
-#include <algorithm>
+#include "kd_tree_arrange.h"
+
 #include <cmath>
-#include <limits>
 
 namespace bayesian_icp {
 namespace kd_tree {
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-/** Runs of fewer points are not worth a task of their own. */
-constexpr std::size_t min_task_size = 8192;
-
-struct Record {
-  float coordinates[3];
-  std::uint32_t index;
-};
-
-struct Box {
-  float lower[3] = {infinity, infinity, infinity};
-  float upper[3] = {-infinity, -infinity, -infinity};
-
-  void
-  include(const float* lower_corner, const float* upper_corner)
-  {
-    for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], lower_corner[axis]);
-      upper[axis] = std::max(upper[axis], upper_corner[axis]);
-    }
-  }
-};
-
-/** Points along an axis, equal coordinates by index: makes the order of the points, and
- * so the tree, unique. It also puts the smaller index of two equal points to the left
- * wherever they are separated. */
-struct IsBefore {
-  int axis;
-
-  bool
-  operator()(const Record& a, const Record& b) const
-  {
-    return a.coordinates[axis] < b.coordinates[axis] ||
-           (a.coordinates[axis] == b.coordinates[axis] && a.index < b.index);
-  }
-};
 
 std::vector<Record>
 finitePoints(const float* points, std::size_t num_points)
@@ -61,50 +19,6 @@ finitePoints(const float* points, std::size_t num_points)
       records.push_back({{p[0], p[1], p[2]}, static_cast<std::uint32_t>(i)});
   }
   return records;
-}
-
-int
-widestAxis(const Record* first, const Record* last)
-{
-  Box box;
-  for (; first != last; ++first)
-    box.include(first->coordinates, first->coordinates);
-  int widest = 0;
-  // Halves, because the whole width may overflow.
-  const auto half_width = [&box](int axis) {
-    return box.upper[axis] / 2 - box.lower[axis] / 2;
-  };
-  for (int axis = 1; axis < 3; ++axis)
-    if (half_width(axis) > half_width(widest))
-      widest = axis;
-  return widest;
-}
-
-/** Order a run such that all subtrees in it are runs.
- * \param[in] child_size a power of 8 times 16, the points of a subtree that is full */
-void
-arrange(Record* first, Record* last, std::size_t child_size)
-{
-  const auto size = static_cast<std::size_t>(last - first);
-  if (size <= leaf_size) {
-    std::sort(first, last, [](const Record& a, const Record& b) {
-      return a.index < b.index;
-    });
-    return;
-  }
-  while (child_size >= size)
-    child_size /= fan_out;
-  const std::size_t num_children = (size + child_size - 1) / child_size;
-  Record* middle = first + child_size * ((num_children + 1) / 2);
-  std::nth_element(first, middle, last, IsBefore{widestAxis(first, last)});
-  if (size > min_task_size) {
-#pragma omp task
-    arrange(first, middle, child_size);
-  }
-  else {
-    arrange(first, middle, child_size);
-  }
-  arrange(middle, last, child_size);
 }
 
 Leaf
@@ -181,29 +95,6 @@ setBox(Node& node, std::size_t child, const Box& box)
   }
 }
 
-/** The nodes, or the leaves, of the same depth. */
-struct Level {
-  /** Number of the first one. */
-  std::size_t begin;
-  /** How many there are; they are the first ones of the complete level. */
-  std::size_t size;
-};
-
-/** From the root to the leaves. */
-std::vector<Level>
-levels(std::size_t num_leaves)
-{
-  std::size_t depth = 0;
-  for (std::size_t capacity = 1; capacity < num_leaves; capacity *= fan_out)
-    ++depth;
-  std::vector<Level> levels(depth + 1, {0, num_leaves});
-  for (std::size_t d = depth; d > 0; --d)
-    levels[d - 1].size = (levels[d].size + fan_out - 1) / fan_out;
-  for (std::size_t d = 1; d <= depth; ++d)
-    levels[d].begin = fan_out * levels[d - 1].begin + 1;
-  return levels;
-}
-
 void
 makeNodes(const std::vector<Record>& records,
           const Level& level,
@@ -225,11 +116,16 @@ makeNodes(const std::vector<Record>& records,
 }
 
 void
-arrangeInParallel(std::vector<Record>& records, std::size_t child_size, int num_threads)
+makeLeaves(const std::vector<Record>& records, Storage& storage, int num_threads)
 {
-#pragma omp parallel num_threads(num_threads)
-#pragma omp single
-  arrange(records.data(), records.data() + records.size(), child_size);
+  const Record* last = records.data() + records.size();
+#pragma omp parallel for num_threads(num_threads) schedule(static)
+  for (std::size_t i = 0; i < storage.leaves.size(); ++i) {
+    storage.leaves[i] = makeLeaf(records.data() + i * leaf_size, last);
+    for (const std::uint32_t index : storage.leaves[i].index)
+      if (index != no_leaf)
+        storage.leaf_of[index] = static_cast<std::uint32_t>(i);
+  }
 }
 
 } // namespace
@@ -238,27 +134,20 @@ Storage
 build(const float* points, std::size_t num_points, int num_threads)
 {
   std::vector<Record> records = finitePoints(points, num_points);
-  const std::size_t num_leaves =
-      std::max<std::size_t>((records.size() + leaf_size - 1) / leaf_size, 1);
-  const std::vector<Level> levels = kd_tree::levels(num_leaves);
-
-  std::size_t child_size = leaf_size;
-  for (std::size_t depth = 1; depth < levels.size(); ++depth)
-    child_size *= fan_out;
-  arrangeInParallel(records, child_size, num_threads);
+  const std::vector<Level> levels = levelsOf(records.size());
 
   Storage storage;
   storage.num_points = records.size();
   storage.first_leaf = static_cast<std::uint32_t>(levels.back().begin);
-  storage.leaves.resize(num_leaves);
-#pragma omp parallel for num_threads(num_threads) schedule(static)
-  for (std::size_t i = 0; i < num_leaves; ++i)
-    storage.leaves[i] =
-        makeLeaf(records.data() + i * leaf_size, records.data() + records.size());
+  storage.leaves.resize(levels.back().size);
+  storage.leaf_of.assign(num_points, no_leaf);
   if (levels.size() > 1) {
     const Level& lowest = levels[levels.size() - 2];
     storage.nodes.resize(lowest.begin + lowest.size);
+    storage.cells.resize(storage.nodes.size());
   }
+  arrange(records, levels, storage.cells.data(), num_threads);
+  makeLeaves(records, storage, num_threads);
   for (std::size_t depth = levels.size() - 1; depth > 0; --depth)
     makeNodes(records, levels[depth - 1], levels[depth], storage, num_threads);
   return storage;

@@ -12,10 +12,12 @@
 namespace bayesian_icp {
 namespace kd_tree {
 
+/** What View points to. */
 struct Storage {
   std::vector<Node> nodes;
+  std::vector<Cell> cells;
   std::vector<Leaf> leaves;
-  /** Number of the first leaf, see View. */
+  std::vector<std::uint32_t> leaf_of;
   std::uint32_t first_leaf = 0;
   /** Points in the tree. */
   std::size_t num_points = 0;

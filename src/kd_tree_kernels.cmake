@@ -9,14 +9,10 @@ set_source_files_properties(kd_tree_kernels_plain.cpp PROPERTIES COMPILE_OPTIONS
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID_P EQUAL 8)
   target_sources(
-    bayesian_icp_core PRIVATE kd_tree_kernels_sse2.cpp kd_tree_kernels_avx2.cpp
-                              kd_tree_kernels_avx512.cpp)
+    bayesian_icp_core PRIVATE kd_tree_kernels_sse2.cpp kd_tree_kernels_avx2.cpp)
   target_compile_definitions(bayesian_icp_core PRIVATE BAYESIAN_ICP_X86_KERNELS)
   set_source_files_properties(kd_tree_kernels_sse2.cpp PROPERTIES COMPILE_OPTIONS
                                                                   "${kernel_options}")
   set_source_files_properties(
     kd_tree_kernels_avx2.cpp PROPERTIES COMPILE_OPTIONS "${kernel_options};-mavx2")
-  set_source_files_properties(
-    kd_tree_kernels_avx512.cpp PROPERTIES COMPILE_OPTIONS
-                                          "${kernel_options};-mavx512f;-mavx512vl")
 endif()

@@ -17,6 +17,8 @@ namespace kd_tree {
 constexpr std::size_t fan_out = 8;
 constexpr std::size_t leaf_size = 16;
 
+constexpr std::uint32_t no_leaf = 0xffffffff;
+
 /** The bounding boxes of a node's children; boxes of no child are at infinity. */
 struct alignas(64) Node {
   float lower[3][fan_out];
@@ -29,16 +31,25 @@ struct alignas(64) Leaf {
   std::uint32_t index[leaf_size];
 };
 
+/** The part of space that belongs to a node: every point with all coordinates strictly
+ * inside is in the node. */
+struct Cell {
+  float lower[3];
+  float upper[3];
+};
+
 /** What a search sees. Nodes and leaves are numbered together as in a heap: the root is
  * 0, the children of k are 8 * k + 1 to 8 * k + 8, numbers from first_leaf on are
  * leaves. */
 struct View {
   const Node* nodes;
+  /** Of the nodes. */
+  const Cell* cells;
   const Leaf* leaves;
   std::uint32_t first_leaf;
-  /** x, y, z, x, y, z, ... of the point with index 0, 1, ... */
-  const float* points;
-  std::size_t num_points;
+  /** For each index the leaf that its point is in, counted from 0, or no_leaf. */
+  const std::uint32_t* leaf_of;
+  std::size_t num_indices;
 };
 
 /** The best point so far. Before any has been found: the largest squared distance
@@ -49,7 +60,8 @@ struct Best {
 };
 
 /** Improve \p best to the point nearest to the finite \p query, among equally near ones
- * that of the smallest index. \p hint is looked at first, unless it is no index. */
+ * that of the smallest index. The search begins around the point with index \p hint, if
+ * there is one. */
 using Search = void (*)(const View& tree,
                         const float* query,
                         std::uint32_t hint,
@@ -63,8 +75,6 @@ void
 searchSse2(const View& tree, const float* query, std::uint32_t hint, Best& best);
 void
 searchAvx2(const View& tree, const float* query, std::uint32_t hint, Best& best);
-void
-searchAvx512(const View& tree, const float* query, std::uint32_t hint, Best& best);
 #endif
 
 } // namespace kd_tree

@@ -29,7 +29,7 @@ struct OneFloat {
 void
 searchPlain(const View& tree, const float* query, std::uint32_t hint, Best& best)
 {
-  search<OneFloat, OneFloat>(tree, query, hint, best);
+  search<OneFloat>(tree, query, hint, best);
 }
 
 } // namespace kd_tree

@@ -37,7 +37,7 @@ struct FourFloats {
 void
 searchSse2(const View& tree, const float* query, std::uint32_t hint, Best& best)
 {
-  search<FourFloats, FourFloats>(tree, query, hint, best);
+  search<FourFloats>(tree, query, hint, best);
 }
 
 } // namespace kd_tree

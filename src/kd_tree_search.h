@@ -40,16 +40,32 @@ isBetter(float squared_distance, std::uint32_t index, const Best& best)
          (squared_distance == best.squared_distance && index < best.index);
 }
 
-inline void
-tryPoint(const View& tree, std::uint32_t index, const float* query, Best& best)
+/** Whether all that is as near as \p best is strictly inside the cell. */
+inline bool
+isDecidedIn(const Cell& cell, const float* query, const Best& best)
 {
-  const float* point = tree.points + std::size_t(3) * index;
-  const float x = point[0] - query[0];
-  const float y = point[1] - query[1];
-  const float z = point[2] - query[2];
-  const float squared_distance = (x * x + y * y) + z * z;
-  if (isBetter(squared_distance, index, best))
-    best = {squared_distance, index};
+  float margin = query[0] - cell.lower[0];
+  for (int axis = 0; axis < 3; ++axis) {
+    const float below = query[axis] - cell.lower[axis];
+    const float above = cell.upper[axis] - query[axis];
+    margin = below < margin ? below : margin;
+    margin = above < margin ? above : margin;
+  }
+  return margin > 0.f && margin * margin > best.squared_distance;
+}
+
+/** The lowest node above a leaf that has all points as near as \p best; or the leaf
+ * itself, if it is the root. */
+inline std::uint32_t
+climb(const View& tree, std::uint32_t leaf, const float* query, const Best& best)
+{
+  std::uint32_t number = tree.first_leaf + leaf;
+  while (number > 0) {
+    number = (number - 1) / fan_out;
+    if (number == 0 || isDecidedIn(tree.cells[number], query, best))
+      break;
+  }
+  return number;
 }
 
 template <typename Pack>
@@ -136,26 +152,27 @@ descend(std::uint32_t number, const float* bounds, unsigned promising, Pending*&
   return nearest;
 }
 
-template <typename NodePack, typename LeafPack>
+/** Search a subtree completely, but for the leaf that has been searched. */
+template <typename Pack>
 inline void
-search(const View& tree, const float* query, std::uint32_t hint, Best& best)
+searchBelow(const View& tree,
+            Pending current,
+            std::uint32_t searched_leaf,
+            const float* query,
+            Best& best)
 {
-  if (hint < tree.num_points)
-    tryPoint(tree, hint, query, best);
   Pending pending[max_pending];
   Pending* end = pending;
-  Pending current{0.f, 0};
   for (;;) {
     unsigned promising = 0;
     if (current.number < tree.first_leaf) {
       alignas(64) float bounds[fan_out];
-      promising =
-          boundChildren<NodePack>(tree.nodes[current.number], query, best, bounds);
+      promising = boundChildren<Pack>(tree.nodes[current.number], query, best, bounds);
       if (promising)
         current = descend(current.number, bounds, promising, end);
     }
-    else {
-      searchLeaf<LeafPack>(tree.leaves[current.number - tree.first_leaf], query, best);
+    else if (current.number - tree.first_leaf != searched_leaf) {
+      searchLeaf<Pack>(tree.leaves[current.number - tree.first_leaf], query, best);
     }
     if (promising)
       continue;
@@ -166,6 +183,19 @@ search(const View& tree, const float* query, std::uint32_t hint, Best& best)
     }
     while (current.bound > best.squared_distance);
   }
+}
+
+template <typename Pack>
+inline void
+search(const View& tree, const float* query, std::uint32_t hint, Best& best)
+{
+  const std::uint32_t leaf = hint < tree.num_indices ? tree.leaf_of[hint] : no_leaf;
+  Pending top{0.f, 0};
+  if (leaf != no_leaf) {
+    searchLeaf<Pack>(tree.leaves[leaf], query, best);
+    top.number = climb(tree, leaf, query, best);
+  }
+  searchBelow<Pack>(tree, top, leaf, query, best);
 }
 
 } // namespace

@@ -16,7 +16,7 @@
 namespace bayesian_icp {
 
 /** \brief The instructions a search is made of. All of them give the same bits. */
-enum class InstructionSet { Plain, Sse2, Avx2, Avx512 };
+enum class InstructionSet { Plain, Sse2, Avx2 };
 
 /** \brief What this build of the library and this processor can run, Plain first, the
  * fastest last. */
@@ -31,7 +31,7 @@ supportedInstructionSets();
  * (dx * dx + dy * dy) + dz * dz with d = point - query; clouds far from the origin
  * should be centred by the caller.
  *
- * Memory: the points (12 bytes each) and at most 20 bytes a point + 1 kB for the tree,
+ * Memory: the points (12 bytes each) and at most 24 bytes a point + 1 kB for the tree,
  * another 16 bytes a point while it is built. */
 class BAYESIAN_ICP_EXPORT KdTree {
 public:
