@@ -63,24 +63,36 @@ planSteps(const GaussianFit& fit,
   return plan;
 }
 
-LangevinChain::LangevinChain(const Vector6d& start, Random& random)
-: position_(start)
+LangevinChain::LangevinChain(const StepPlan& plan,
+                             const Vector6d& start,
+                             StochasticEnergy& energy,
+                             Random& random)
+: plan_(plan)
+, noise_amplitudes_(
+      (2.0 * plan.step_sizes.array() * (1.0 - plan.noise_shares.array())).sqrt())
+, energy_(energy)
+, random_(random)
+, position_(start)
 , last_noise_(random.normal6())
 {}
 
 void
-LangevinChain::step(const StepPlan& plan, StochasticEnergy& energy, Random& random)
+LangevinChain::step()
 {
-  const SplitGradient g = energy.gradient(position_, plan.batch_size, random);
-  Vector6d drift = plan.step_sizes.cwiseProduct(plan.directions.transpose() *
-                                                (g.likelihood + g.prior));
+  const SplitGradient g = energy_.gradient(position_, plan_.batch_size, random_);
+  Vector6d drift = plan_.step_sizes.cwiseProduct(plan_.directions.transpose() *
+                                                 (g.likelihood + g.prior));
   drift *= std::min(1.0, max_drift / std::max(drift.norm(), 1e-12));
-  const Vector6d noise = random.normal6();
-  const Vector6d amplitude =
-      (2.0 * plan.step_sizes.array() * (1.0 - plan.noise_shares.array())).sqrt();
-  const Vector6d kick = 0.5 * amplitude.cwiseProduct(noise + last_noise_);
-  position_ += plan.directions * (kick - drift);
+  const Vector6d noise = random_.normal6();
+  const Vector6d kick = 0.5 * noise_amplitudes_.cwiseProduct(noise + last_noise_);
+  position_ += plan_.directions * (kick - drift);
   last_noise_ = noise;
+}
+
+const Vector6d&
+LangevinChain::position() const
+{
+  return position_;
 }
 
 } // namespace bayesian_icp

@@ -2,9 +2,11 @@
 #include "run_state.h"
 
 #include <bayesian_icp/langevin.h>
+#include <bayesian_icp/metropolis.h>
 #include <bayesian_icp/preconditioned_sampler.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace bayesian_icp {
 
@@ -14,6 +16,10 @@ namespace {
 constexpr int num_joint_pairs = 40;
 constexpr int min_joint_iterations = 2;
 constexpr int max_joint_iterations = 8;
+/** Metropolis steps from which the thinning is found, and their burn-in; the thinning
+ * for acceptance 1, and the largest one. */
+constexpr int num_pilot_steps = 90;
+constexpr double pilot_thinning = 2.0, max_thinning = 60.0;
 
 /** One run, from the starts to the draws. */
 class PreconditionedRun {
@@ -36,6 +42,7 @@ private:
   struct ChainState {
     std::unique_ptr<StochasticEnergy> energy;
     std::unique_ptr<Random> random;
+    std::unique_ptr<SamplingChain> sampling;
   };
 
   template <typename Work>
@@ -62,8 +69,14 @@ private:
   void
   measureEvidence();
 
+  StepPlan
+  startLangevin();
+
+  StepPlan
+  startMetropolis();
+
   void
-  planSampling();
+  startSampling();
 
   void
   sample(std::size_t chain);
@@ -77,9 +90,10 @@ private:
   int num_threads_;
   RunState run_;
   std::vector<ChainState> states_;
-  /** One a mode, like the plans. */
+  /** One a mode. */
   std::vector<GaussianFit> fits_;
-  std::vector<StepPlan> plans_;
+  int num_burn_in_ = 0;
+  int thinning_ = 1;
   ChainSet result_;
 };
 
@@ -96,7 +110,7 @@ PreconditionedRun::run()
     refineJointly();
   if (!run_.stopped()) {
     measureEvidence();
-    planSampling();
+    startSampling();
     forEach([this](std::size_t i) { sample(i); });
     mergeOverlappingModes(result_);
   }
@@ -200,53 +214,86 @@ PreconditionedRun::measureEvidence()
   }
 }
 
-void
-PreconditionedRun::planSampling()
+/** Both return burn-in and thinning that serve all modes. */
+StepPlan
+PreconditionedRun::startLangevin()
 {
-  int num_burn_in = options_.num_burn_in, thinning = options_.thinning;
+  std::vector<StepPlan> plans;
+  StepPlan common;
   for (const auto& fit : fits_) {
-    plans_.push_back(planSteps(fit,
-                               states_.front().energy->numTerms(),
-                               sampler_.batch_size,
-                               sampler_.max_step_size));
-    if (options_.num_burn_in == 0)
-      num_burn_in = std::max(num_burn_in, plans_.back().num_burn_in);
-    if (options_.thinning == 1)
-      thinning = std::max(thinning, plans_.back().thinning);
+    plans.push_back(planSteps(fit,
+                              states_.front().energy->numTerms(),
+                              sampler_.batch_size,
+                              sampler_.max_step_size));
+    common.num_burn_in = std::max(common.num_burn_in, plans.back().num_burn_in);
+    common.thinning = std::max(common.thinning, plans.back().thinning);
   }
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    auto& state = states_[i];
+    const std::size_t mode = modeOf(i);
+    state.sampling =
+        std::make_unique<LangevinChain>(plans[mode],
+                                        fits_[mode].gaussian.draw(*state.random),
+                                        *state.energy,
+                                        *state.random);
+  }
+  return common;
+}
+
+StepPlan
+PreconditionedRun::startMetropolis()
+{
+  std::vector<double> acceptances(states_.size());
+  forEach([&](std::size_t i) {
+    auto& state = states_[i];
+    const Gaussian& gaussian = fits_[modeOf(i)].gaussian;
+    auto chain = std::make_unique<MetropolisChain>(
+        gaussian, gaussian.draw(*state.random), *state.energy, *state.random);
+    for (int step = 0; step < num_pilot_steps && !run_.stopped(); ++step)
+      chain->step();
+    acceptances[i] = chain->acceptance();
+    state.sampling = std::move(chain);
+    run_.reportWarmUp(static_cast<int>(i));
+  });
+  const double least = *std::min_element(acceptances.begin(), acceptances.end());
+  StepPlan common;
+  common.thinning = static_cast<int>(
+      std::min(max_thinning, std::ceil(pilot_thinning / std::max(least, 1e-3))));
+  return common;
+}
+
+void
+PreconditionedRun::startSampling()
+{
+  const StepPlan common = sampler_.metropolis ? startMetropolis() : startLangevin();
+  num_burn_in_ = options_.num_burn_in > 0 ? options_.num_burn_in : common.num_burn_in;
+  thinning_ = options_.thinning > 1 ? options_.thinning : common.thinning;
   long total_steps = 0;
   for (int i = 0; i < options_.num_chains; ++i)
-    total_steps += num_burn_in + static_cast<long>(thinning) * options_.numDrawsOf(i);
+    total_steps += num_burn_in_ + static_cast<long>(thinning_) * options_.numDrawsOf(i);
   run_.setTotalSteps(total_steps);
-  for (auto& plan : plans_) {
-    plan.num_burn_in = num_burn_in;
-    plan.thinning = thinning;
-  }
 }
 
 void
 PreconditionedRun::sample(std::size_t chain_index)
 {
   auto& state = states_[chain_index];
-  const std::size_t mode = modeOf(chain_index);
-  const StepPlan& plan = plans_[mode];
   const int num_draws = options_.numDrawsOf(static_cast<int>(chain_index));
-  const long num_steps =
-      plan.num_burn_in + static_cast<long>(plan.thinning) * num_draws;
+  const long num_steps = num_burn_in_ + static_cast<long>(thinning_) * num_draws;
 
   Chain& chain = result_.chains[chain_index];
   chain.draws.resize(num_draws, 6);
   Eigen::Index num_kept = 0;
-  LangevinChain langevin(fits_[mode].gaussian.draw(*state.random), *state.random);
   for (long step = 1; step <= num_steps && !run_.stopped(); ++step) {
-    langevin.step(plan, *state.energy, *state.random);
-    chain.diverged = state.energy->hasDiverged(langevin.position());
+    state.sampling->step();
+    const Vector6d& position = state.sampling->position();
+    chain.diverged = state.energy->hasDiverged(position);
     if (chain.diverged)
       break;
-    const long sampled = step - plan.num_burn_in;
-    if (sampled > 0 && sampled % plan.thinning == 0)
+    const long sampled = step - num_burn_in_;
+    if (sampled > 0 && sampled % thinning_ == 0)
       chain.draws.row(num_kept++) =
-          canonicalPose(target_.to_pose(langevin.position())).transpose();
+          canonicalPose(target_.to_pose(position)).transpose();
     run_.reportStep(static_cast<int>(chain_index), step);
   }
   chain.draws.conservativeResize(num_kept, 6);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <bayesian_icp/gaussian_fit.h>
+#include <bayesian_icp/sampling_chain.h>
 
 namespace bayesian_icp {
 
@@ -33,21 +34,26 @@ planSteps(const GaussianFit& fit,
 
 /** \brief State of one chain of Leimkuhler and Matthews' scheme (2013), which on
  * Gaussians has the right variance for every step size. */
-class BAYESIAN_ICP_EXPORT LangevinChain {
+class BAYESIAN_ICP_EXPORT LangevinChain : public SamplingChain {
 public:
-  LangevinChain(const Vector6d& start, Random& random);
+  /** \p energy and \p random must outlive this object. */
+  LangevinChain(const StepPlan& plan,
+                const Vector6d& start,
+                StochasticEnergy& energy,
+                Random& random);
 
   /** \brief One step with the gradient of the next batch. */
   void
-  step(const StepPlan& plan, StochasticEnergy& energy, Random& random);
+  step() override;
 
   const Vector6d&
-  position() const
-  {
-    return position_;
-  }
+  position() const override;
 
 private:
+  StepPlan plan_;
+  Vector6d noise_amplitudes_;
+  StochasticEnergy& energy_;
+  Random& random_;
   Vector6d position_;
   Vector6d last_noise_;
 };
