@@ -16,10 +16,54 @@ struct IsBefore {
   bool
   operator()(const Record& a, const Record& b) const
   {
-    return a.coordinates[axis] < b.coordinates[axis] ||
-           (a.coordinates[axis] == b.coordinates[axis] && a.index < b.index);
+    const float x = a.coordinates[axis];
+    const float y = b.coordinates[axis];
+    return (x < y) | ((x == y) & (a.index < b.index));
   }
 };
+
+/** A record that probably is a little beyond \p nth, on the side where there are more:
+ * the two rounds that select() then needs are over the whole run and half of it. */
+Record
+choosePivot(const Record* first, const Record* nth, const Record* last, IsBefore before)
+{
+  constexpr std::size_t max_sample_size = 64;
+  const auto size = static_cast<std::size_t>(last - first);
+  const std::size_t sample_size = size < 256 ? 7 : size < 2048 ? 16 : max_sample_size;
+  Record sample[max_sample_size];
+  for (std::size_t i = 0; i < sample_size; ++i)
+    sample[i] = first[i * (size / sample_size)];
+  const auto rank = static_cast<std::size_t>(nth - first) * sample_size / size;
+  const std::size_t margin = std::max<std::size_t>(sample_size / 8, 1);
+  const std::size_t pivot = rank < sample_size / 2 ? rank + margin : rank - margin;
+  std::nth_element(sample, sample + pivot, sample + sample_size, before);
+  return sample[pivot];
+}
+
+/** Like std::nth_element, but without a branch that depends on the points: these cannot
+ * be predicted and take most of its time. No two records are equal. */
+void
+select(Record* first, Record* nth, Record* last, IsBefore before)
+{
+  constexpr std::ptrdiff_t small_size = 16;
+  // Pivots may be bad, but hardly that often; std::nth_element has a guard of its own.
+  constexpr int max_rounds = 64;
+  for (int round = 0; last - first > small_size && round < max_rounds; ++round) {
+    const Record pivot = choosePivot(first, nth, last, before);
+    Record* end_before = first;
+    for (Record* record = first; record != last; ++record) {
+      const Record moved = *record;
+      *record = *end_before;
+      *end_before = moved;
+      end_before += before(moved, pivot);
+    }
+    if (nth < end_before)
+      last = end_before;
+    else
+      first = end_before;
+  }
+  std::nth_element(first, nth, last, before);
+}
 
 int
 widestAxis(const Record* first, const Record* last)
@@ -79,7 +123,7 @@ Arrangement::arrange(Record* first, Record* last, std::size_t depth, Cell cell) 
   const std::size_t num_children = (size + child_size - 1) / child_size;
   Record* middle = first + child_size * ((num_children + 1) / 2);
   const int axis = widestAxis(first, last);
-  std::nth_element(first, middle, last, IsBefore{axis});
+  select(first, middle, last, IsBefore{axis});
   Cell left = cell;
   left.upper[axis] = middle->coordinates[axis];
   cell.lower[axis] = middle->coordinates[axis];

@@ -21,7 +21,7 @@ namespace kd_tree {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-struct Record {
+struct alignas(16) Record {
   float coordinates[3];
   std::uint32_t index;
 };
