@@ -18,6 +18,10 @@ constexpr double min_batch = 24.0;
 /** From this share of all terms on, the exact gradient is cheaper than its noise. */
 constexpr double full_batch_share = 0.7;
 constexpr double max_noise_share = 0.9;
+/** Long steps widen a rough density: they shrink with its mean nonlinearity, down to
+ * this share of the maximum. */
+constexpr double roughness_gain = 2.0;
+constexpr double min_rough_share = 0.45;
 /** Longest drift of a step in posterior standard deviations. */
 constexpr double max_drift = 5.0;
 
@@ -52,8 +56,11 @@ planSteps(const GaussianFit& fit,
       (plan.directions.transpose() * fit.nonlinearity * plan.directions)
           .diagonal()
           .cwiseMax(0.0);
+  const double longest =
+      max_step_size *
+      std::max(min_rough_share, 1.0 / (1.0 + roughness_gain * nonlinear.mean()));
   for (int k = 0; k < 6; ++k) {
-    const double b = std::min(max_step_size, step_gain / (1.0 + w[k] + nonlinear[k]));
+    const double b = std::min(longest, step_gain / (1.0 + w[k] + nonlinear[k]));
     plan.step_sizes[k] = b;
     plan.noise_shares[k] = std::min(max_noise_share, b * w[k] / (2.0 - b));
   }

@@ -4,6 +4,7 @@
 #include <bayesian_icp/langevin.h>
 #include <bayesian_icp/metropolis.h>
 #include <bayesian_icp/preconditioned_sampler.h>
+#include <bayesian_icp/summary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,10 @@ constexpr int max_joint_iterations = 8;
  * for acceptance 1, and the largest one. */
 constexpr int num_pilot_steps = 90;
 constexpr double pilot_thinning = 2.0, max_thinning = 60.0;
+/** Effective draws, over all chains, below which an automatic thinning is doubled: as
+ * an absolute number and as a share of the draws. How often that is done. */
+constexpr double wanted_ess = 900.0, wanted_ess_share = 0.45;
+constexpr int max_extensions = 3;
 
 /** One run, from the starts to the draws. */
 class PreconditionedRun {
@@ -43,6 +48,7 @@ private:
     std::unique_ptr<StochasticEnergy> energy;
     std::unique_ptr<Random> random;
     std::unique_ptr<SamplingChain> sampling;
+    long num_steps = 0;
   };
 
   template <typename Work>
@@ -79,7 +85,13 @@ private:
   startSampling();
 
   void
-  sample(std::size_t chain);
+  sample(std::size_t chain, int num_burn_in);
+
+  bool
+  needsExtension() const;
+
+  void
+  extend();
 
   std::size_t
   modeOf(std::size_t chain) const;
@@ -111,8 +123,10 @@ PreconditionedRun::run()
   if (!run_.stopped()) {
     measureEvidence();
     startSampling();
-    forEach([this](std::size_t i) { sample(i); });
+    forEach([this](std::size_t i) { sample(i, num_burn_in_); });
     mergeOverlappingModes(result_);
+    for (int i = 0; i < max_extensions && needsExtension(); ++i)
+      extend();
   }
   result_.cancelled = run_.cancelled();
   return std::move(result_);
@@ -271,32 +285,68 @@ PreconditionedRun::startSampling()
   long total_steps = 0;
   for (int i = 0; i < options_.num_chains; ++i)
     total_steps += num_burn_in_ + static_cast<long>(thinning_) * options_.numDrawsOf(i);
-  run_.setTotalSteps(total_steps);
+  run_.addSteps(total_steps);
 }
 
 void
-PreconditionedRun::sample(std::size_t chain_index)
+PreconditionedRun::sample(std::size_t chain_index, int num_burn_in)
 {
   auto& state = states_[chain_index];
   const int num_draws = options_.numDrawsOf(static_cast<int>(chain_index));
-  const long num_steps = num_burn_in_ + static_cast<long>(thinning_) * num_draws;
-
   Chain& chain = result_.chains[chain_index];
-  chain.draws.resize(num_draws, 6);
-  Eigen::Index num_kept = 0;
+  Eigen::Index num_kept = chain.draws.rows();
+  const long num_steps = num_burn_in + static_cast<long>(thinning_) *
+                                           (num_draws - static_cast<long>(num_kept));
+  chain.draws.conservativeResize(num_draws, 6);
   for (long step = 1; step <= num_steps && !run_.stopped(); ++step) {
     state.sampling->step();
     const Vector6d& position = state.sampling->position();
     chain.diverged = state.energy->hasDiverged(position);
     if (chain.diverged)
       break;
-    const long sampled = step - num_burn_in_;
+    const long sampled = step - num_burn_in;
     if (sampled > 0 && sampled % thinning_ == 0)
       chain.draws.row(num_kept++) =
           canonicalPose(target_.to_pose(position)).transpose();
-    run_.reportStep(static_cast<int>(chain_index), step);
+    run_.reportStep(static_cast<int>(chain_index), ++state.num_steps);
   }
   chain.draws.conservativeResize(num_kept, 6);
+}
+
+/** Whether one mode's chains fall short of what an automatic thinning is to reach. */
+bool
+PreconditionedRun::needsExtension() const
+{
+  if (options_.thinning > 1 || run_.stopped() || result_.modes.size() > 1)
+    return false;
+  const Summary summary = summarize(result_);
+  if (summary.num_diverged_chains > 0)
+    return false;
+  const double wanted =
+      std::min(wanted_ess, wanted_ess_share * static_cast<double>(summary.num_draws));
+  for (const auto& coordinate : summary.coordinates)
+    if (coordinate.rhat > max_rhat || coordinate.bulk_ess < wanted ||
+        coordinate.tail_ess < wanted)
+      return true;
+  return false;
+}
+
+/** Keeps every other draw and makes up for the rest with twice the thinning. */
+void
+PreconditionedRun::extend()
+{
+  thinning_ *= 2;
+  long more_steps = 0;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    PoseMatrix& draws = result_.chains[i].draws;
+    const Eigen::Index half = draws.rows() / 2;
+    for (Eigen::Index row = 0; row < half; ++row)
+      draws.row(row) = draws.row(2 * row + 1).eval();
+    more_steps += static_cast<long>(thinning_) * (draws.rows() - half);
+    draws.conservativeResize(half, 6);
+  }
+  run_.addSteps(more_steps);
+  forEach([this](std::size_t i) { sample(i, 0); });
 }
 
 std::size_t

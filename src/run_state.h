@@ -23,11 +23,11 @@ public:
   , total_steps_(total_steps)
   {}
 
-  /** \brief Before the first step is reported. */
+  /** \brief Makes the run longer; while no chain is sampling. */
   void
-  setTotalSteps(long total_steps)
+  addSteps(long more_steps)
   {
-    total_steps_ = total_steps;
+    total_steps_ += more_steps;
   }
 
   bool

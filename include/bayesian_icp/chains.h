@@ -45,7 +45,8 @@ struct Progress {
   int chain;
   long chain_steps;
   /** Steps of all chains so far, and of the complete run. Both are 0 while the chains
-   * of preset `exact` warm up: how many steps they need is not known before. */
+   * of preset `exact` warm up: how many steps they need is not known before, and more
+   * are added if the draws have not mixed. */
   long steps;
   long total_steps;
 };
