@@ -8,6 +8,10 @@ namespace bayesian_icp {
 namespace kd_tree {
 namespace {
 
+/** Worth some 5 ms. For less, waking a thread may cost more than it saves, by far if
+ * other programs keep the cores busy. */
+constexpr std::size_t min_points_per_thread = 50000;
+
 std::vector<Record>
 finitePoints(const float* points, std::size_t num_points)
 {
@@ -103,7 +107,7 @@ makeNodes(const std::vector<Record>& records,
           int num_threads)
 {
   const bool are_leaves = children.begin == storage.first_leaf;
-#pragma omp parallel for num_threads(num_threads) schedule(static)
+#pragma omp parallel for num_threads(num_threads) schedule(static) if (are_leaves)
   for (std::size_t i = 0; i < level.size; ++i)
     for (std::size_t child = 0; child < fan_out; ++child) {
       const std::size_t below = fan_out * i + child;
@@ -128,6 +132,14 @@ makeLeaves(const std::vector<Record>& records, Storage& storage, int num_threads
   }
 }
 
+int
+usefulThreads(int num_threads, std::size_t num_points)
+{
+  const std::size_t useful =
+      std::max<std::size_t>(num_points / min_points_per_thread, 1);
+  return static_cast<int>(std::min(useful, static_cast<std::size_t>(num_threads)));
+}
+
 } // namespace
 
 Storage
@@ -135,6 +147,7 @@ build(const float* points, std::size_t num_points, int num_threads)
 {
   std::vector<Record> records = finitePoints(points, num_points);
   const std::vector<Level> levels = levelsOf(records.size());
+  num_threads = usefulThreads(num_threads, records.size());
 
   Storage storage;
   storage.num_points = records.size();

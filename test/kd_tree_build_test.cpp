@@ -30,11 +30,12 @@ isSameMemory(const std::vector<T>& a, const std::vector<T>& b)
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
+// Of as many points as three threads are used for.
 TEST(KdTreeBuild, TreeIsTheSameForAnyNumberOfThreads)
 {
   Random random(1, 0);
   for (const Cloud& cloud : clouds()) {
-    const Eigen::Matrix3Xf points = cloud.make(random, 50000);
+    const Eigen::Matrix3Xf points = cloud.make(random, 150000);
     const Storage expected = buildTree(points, 1);
     for (const int num_threads : {2, 3}) {
       const Storage tree = buildTree(points, num_threads);

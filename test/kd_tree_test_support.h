@@ -5,12 +5,33 @@
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/random.h>
 
+#include <gtest/gtest.h>
+
 #include <limits>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp {
 namespace test {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/** A test to be run for every instruction set. */
+class KdTreePath : public testing::TestWithParam<InstructionSet> {
+protected:
+  KdTree
+  treeOf(const Eigen::Matrix3Xf& points) const
+  {
+    return KdTree(points, 1, GetParam());
+  }
+};
+
+inline std::string
+nameOf(const testing::TestParamInfo<InstructionSet>& tested)
+{
+  constexpr const char* names[] = {"Plain", "Sse2", "Avx2"};
+  return names[static_cast<int>(tested.param)];
+}
 
 struct Cloud {
   std::string name;
@@ -75,12 +96,15 @@ clouds()
           {"equal", equalPoints}};
 }
 
-/** In turn nothing, a centimetre, some metres. */
+/** In turn nothing, a centimetre, some metres, and half a lattice constant: as far from
+ * one place of a lattice as from the next. */
 inline Eigen::Vector3f
 offset(Random& random, int turn)
 {
+  if (turn % 4 == 3)
+    return 0.5f * Eigen::Vector3f::Unit(static_cast<Eigen::Index>(random.index(3)));
   constexpr float sizes[] = {0.f, 0.01f, 3.f};
-  return sizes[turn % 3] * (uniformPoints(random, 1).array() - 0.5f).matrix();
+  return sizes[turn % 4] * (uniformPoints(random, 1).array() - 0.5f).matrix();
 }
 
 inline KdTree::Neighbor
@@ -88,7 +112,7 @@ bruteForce(const Eigen::Matrix3Xf& points,
            const Eigen::Vector3f& query,
            float max_squared_distance)
 {
-  KdTree::Neighbor nearest{KdTree::none, std::numeric_limits<float>::infinity()};
+  KdTree::Neighbor nearest{KdTree::none, infinity};
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const float x = points(0, i) - query.x();
     const float y = points(1, i) - query.y();
@@ -111,7 +135,7 @@ isSame(const KdTree::Neighbor& a, const KdTree::Neighbor& b)
 inline bool
 isNone(const KdTree::Neighbor& neighbor)
 {
-  return isSame(neighbor, {KdTree::none, std::numeric_limits<float>::infinity()});
+  return isSame(neighbor, {KdTree::none, infinity});
 }
 
 } // namespace test
