@@ -6,6 +6,7 @@
 #include <pcl/registration/impl/bayesian_icp_search.hpp>
 #include <pcl/registration/transformation_estimation_svd.h>
 
+#include <algorithm>
 #include <numeric>
 #include <typeinfo>
 #include <utility>
@@ -62,6 +63,15 @@ isWholeCloud(const Indices& indices, std::size_t num_points)
   return (true);
 }
 
+/** The gate of an option and PCL's, whose default (the root of the largest double) is
+ * none [m]. */
+inline double
+smallerGate(double gate, double pcl_gate)
+{
+  constexpr double no_gate = 1e18;
+  return (pcl_gate < no_gate ? std::min(gate, pcl_gate) : gate);
+}
+
 } // namespace bayesian_icp_detail
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -94,7 +104,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setPreset(
     bayesian_icp::Preset preset)
 {
   options_.preset = preset;
-  if (preset != bayesian_icp::Preset::Paper)
+  if (preset == bayesian_icp::Preset::Calibrated)
     PCL_ERROR("[pcl::%s::setPreset] The preset '%s' is not available in this version; "
               "no posterior will be estimated.\n",
               getClassName().c_str(),
@@ -219,12 +229,26 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
     return; // ICP has reported it
   }
   const Eigen::Matrix4d initial = guess.template cast<double>();
-  estimate_ = bayesian_icp::estimatePosterior(bayesian_icp_detail::pointMatrix(*source),
-                                              *makeCorrespondenceSearch(source),
-                                              bayesian_icp::poseOf(initial),
-                                              options_,
-                                              progress_callback_);
+  const auto points = bayesian_icp_detail::pointMatrix(*source);
+  const auto start = bayesian_icp::poseOf(initial);
+  bayesian_icp::Options options = options_;
+  options.exact.residual.max_distance = bayesian_icp_detail::smallerGate(
+      options.exact.residual.max_distance, corr_dist_threshold_);
+  if (options.preset == bayesian_icp::Preset::Exact && hasDefaultSearch() &&
+      !use_reciprocal_correspondence_)
+    estimate_ = bayesian_icp::estimatePosterior(
+        points,
+        bayesian_icp::KdTree(
+            bayesian_icp_detail::pointMatrix(*target_).template cast<float>(),
+            options.chains.num_threads),
+        start,
+        options,
+        progress_callback_);
+  else
+    estimate_ = bayesian_icp::estimatePosterior(
+        points, *makeCorrespondenceSearch(source), start, options, progress_callback_);
   if (summary.status == bayesian_icp::Status::NotMixed ||
+      summary.status == bayesian_icp::Status::SeveralModes ||
       summary.status == bayesian_icp::Status::Diverged)
     PCL_WARN("[pcl::%s::computeTransformation] Posterior: %s.\n",
              getClassName().c_str(),
@@ -236,22 +260,28 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::hasDefaultSearch()
+    const
+{
+  const auto& estimation = *correspondence_estimation_;
+  const auto& tree = *tree_;
+  const auto& representation = *tree.getPointRepresentation();
+  return (correspondence_rejectors_.empty() &&
+          typeid(estimation) ==
+              typeid(registration::
+                         CorrespondenceEstimation<PointSource, PointTarget, Scalar>) &&
+          typeid(tree) == typeid(search::KdTree<PointTarget>) &&
+          typeid(representation) == typeid(DefaultPointRepresentation<PointTarget>));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
 std::unique_ptr<bayesian_icp::CorrespondenceSearch>
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
     makeCorrespondenceSearch(const PointCloudSourceConstPtr& source)
 {
   using namespace bayesian_icp_detail;
-  const auto& estimation = *correspondence_estimation_;
-  const auto& tree = *tree_;
-  const auto& representation = *tree.getPointRepresentation();
-  const bool has_defaults =
-      correspondence_rejectors_.empty() &&
-      typeid(estimation) == typeid(registration::CorrespondenceEstimation<PointSource,
-                                                                          PointTarget,
-                                                                          Scalar>) &&
-      typeid(tree) == typeid(search::KdTree<PointTarget>) &&
-      typeid(representation) == typeid(DefaultPointRepresentation<PointTarget>);
-  if (has_defaults)
+  if (hasDefaultSearch())
     return (std::unique_ptr<bayesian_icp::CorrespondenceSearch>(
         new KdTreeSearch<PointSource, PointTarget>(
             tree_,
