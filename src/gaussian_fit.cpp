@@ -21,7 +21,7 @@ constexpr double min_slope = 0.1, max_slope = 10.0;
 constexpr double max_mean_step = 4.0;
 constexpr double cooling_factor = 4.0;
 constexpr int max_iterations_per_temperature = 6;
-constexpr int max_iterations = 45;
+constexpr int max_last_iterations = 20;
 /** Keeps a direction without prior finite: a standard deviation of 30 m or rad. */
 constexpr double least_prior_precision = 1e-3;
 
@@ -225,14 +225,16 @@ fitTempered(StochasticEnergy& energy,
       Gaussian(start, atLeastHalfThePrior(curvature / fit.temperature + prior, prior));
 
   int at_this_temperature = 0;
-  for (int i = 0; i < max_iterations && keep_going(); ++i) {
+  while (keep_going()) {
     ++at_this_temperature;
     updateFit(collectGradients(energy, fit, num_pairs_alone, random),
               at_this_temperature < 4 ? 1.0 : 0.6,
               prior,
               fit);
-    const bool is_done = (at_this_temperature >= 2 && fit.has_converged) ||
-                         at_this_temperature >= max_iterations_per_temperature;
+    const bool is_done =
+        (at_this_temperature >= 2 && fit.has_converged) ||
+        at_this_temperature >= (fit.temperature > 1.0 ? max_iterations_per_temperature
+                                                      : max_last_iterations);
     if (is_done && fit.temperature <= 1.0)
       break;
     if (is_done) {

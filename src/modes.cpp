@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp {
 
@@ -39,7 +40,8 @@ hasBarrier(const Vector6d& from, const Vector6d& to, StochasticEnergy& energy)
 {
   const double limit = std::max(energy.energy(from), energy.energy(to)) + max_barrier;
   for (int i = 1; i <= num_barrier_points; ++i)
-    if (energy.energy(from + (to - from) * i / (num_barrier_points + 1.0)) > limit)
+    // Not finite is a barrier, too.
+    if (!(energy.energy(from + (to - from) * i / (num_barrier_points + 1.0)) <= limit))
       return true;
   return false;
 }
@@ -95,7 +97,9 @@ logEvidence(StochasticEnergy& energy, const Gaussian& gaussian, Random& random)
     const Vector6d x = gaussian.draw(random);
     log_ratios.push_back(gaussian.energy(x) - energy.energy(x));
   }
-  return logMeanExp(log_ratios);
+  const double log_evidence = logMeanExp(log_ratios);
+  return std::isfinite(log_evidence) ? log_evidence
+                                     : std::numeric_limits<double>::lowest();
 }
 
 std::vector<ChainMode>
@@ -132,7 +136,7 @@ moveFromWorseModes(ChainSet& set)
 {
   auto& modes = set.modes;
   const double best = modes.front().log_evidence;
-  while (!(modes.back().log_evidence >= best - max_evidence_loss)) {
+  while (modes.back().log_evidence < best - max_evidence_loss) {
     set.num_moved_chains += static_cast<int>(modes.back().members.size());
     set.moved_by_nats = best - modes.back().log_evidence;
     mergeInto(modes.front(), modes.back());

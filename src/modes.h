@@ -14,7 +14,7 @@ namespace bayesian_icp {
 constexpr double max_evidence_loss = 10.0;
 
 /** \brief log of the integral of exp(-U) around \p gaussian, by importance sampling
- * from it. */
+ * from it; the lowest double if it is not finite. */
 double
 logEvidence(StochasticEnergy& energy, const Gaussian& gaussian, Random& random);
 

@@ -1,13 +1,31 @@
 #include <bayesian_icp/stochastic_energy.h>
 
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+
 namespace bayesian_icp {
+
+namespace {
+
+constexpr int num_newton_steps = 20;
+constexpr std::size_t newton_batch_size = 160;
+
+} // namespace
 
 StochasticEnergy::~StochasticEnergy() = default;
 
 Vector6d
-StochasticEnergy::burnIn(const Vector6d& start, Random& /* random */)
+StochasticEnergy::burnIn(const Vector6d& start, Random& random)
 {
-  return start;
+  Vector6d x = start;
+  const std::size_t batch_size = std::min(newton_batch_size, numTerms());
+  for (int step = 0; step < num_newton_steps; ++step) {
+    const Matrix6d curvature = roughCurvature(x, random) + priorPrecision();
+    const SplitGradient g = gradient(x, batch_size, random);
+    x -= curvature.ldlt().solve(g.likelihood + g.prior);
+  }
+  return x;
 }
 
 double

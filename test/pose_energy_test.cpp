@@ -93,7 +93,9 @@ TEST(Kernels, KnownValues)
 /** Keeps the matches that were found at one pose: what gradients hold fixed. */
 class FixedMatches : public Target {
 public:
-  FixedMatches(const Target& target, const Vector6d& pose) : target_(target), pose_(pose)
+  FixedMatches(const Target& target, const Vector6d& pose)
+  : target_(target)
+  , pose_(pose)
   {}
 
   void
@@ -141,10 +143,9 @@ TEST(Gradients, OfEveryResidualAndKernelAgreeWithFiniteDifferences)
     // Coordinates are single precision: 1e-7 m of 0.05 m residuals, step 1e-3, and the
     // curvature of the energy over that step.
     const double tolerance = 0.01 * gradient.norm() + 0.01;
-    EXPECT_LT((gradient - numerical).norm(), tolerance)
-        << nameOf(options) << "\n"
-        << gradient.transpose() << "\n"
-        << numerical.transpose();
+    EXPECT_LT((gradient - numerical).norm(), tolerance) << nameOf(options) << "\n"
+                                                        << gradient.transpose() << "\n"
+                                                        << numerical.transpose();
   }
 }
 
@@ -221,8 +222,7 @@ TEST(Energy, FarOutEveryPointCostsTheGate)
   const PoseEnergy energy(scan.source, target, prior, 100.0, options);
   Vector6d far = scan.pose;
   far[0] += 50.0;
-  EXPECT_NEAR(
-      energy.energy(far) - prior.energy(far), 100.0 * 0.5 * 0.05 * 0.05, 1e-9);
+  EXPECT_NEAR(energy.energy(far) - prior.energy(far), 100.0 * 0.5 * 0.05 * 0.05, 1e-9);
 }
 
 TEST(BatchTerms, CurvatureIsTheGaussNewtonMatrixAndSecondMomentTheNoise)
@@ -246,15 +246,15 @@ TEST(BatchTerms, CurvatureIsTheGaussNewtonMatrixAndSecondMomentTheNoise)
     const Vector6d g = terms(phi, {i}, BatchTerms::Nothing).gradient;
     second_moment += g * g.transpose() / static_cast<double>(all.size());
   }
-  EXPECT_LT((terms(phi, all, BatchTerms::SecondMoment).second_moment - second_moment)
-                .norm(),
-            1e-5 * second_moment.norm());
+  EXPECT_LT(
+      (terms(phi, all, BatchTerms::SecondMoment).second_moment - second_moment).norm(),
+      1e-5 * second_moment.norm());
   // Translations of all points: the point-to-point curvature is the identity there.
   const auto curvature = terms(phi, all, BatchTerms::Curvature);
-  EXPECT_LT((curvature.point_curvature.topLeftCorner<3, 3>() -
-             Eigen::Matrix3d::Identity())
-                .norm(),
-            1e-6);
+  EXPECT_LT(
+      (curvature.point_curvature.topLeftCorner<3, 3>() - Eigen::Matrix3d::Identity())
+          .norm(),
+      1e-6);
   EXPECT_NEAR((curvature.plane_curvature.topLeftCorner<3, 3>().trace()), 1.0, 1e-5);
 }
 

@@ -58,7 +58,8 @@ public:
   virtual Vector6d
   drawStart(Random& random) = 0;
 
-  /** \brief A point near a mode, reached from \p start. The default does not move. */
+  /** \brief A point near a mode, reached from \p start. The default takes Newton steps
+   * with roughCurvature(). */
   virtual Vector6d
   burnIn(const Vector6d& start, Random& random);
 
