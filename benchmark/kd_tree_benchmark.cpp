@@ -6,134 +6,23 @@
 //
 // Without a file the target is a simulated scan of a table in four sizes.
 #include "kd_tree_benchmark_data.h"
+#include "kd_tree_benchmark_trees.h"
 
 #include <bayesian_icp/kd_tree.h>
 
+#include <pcl/common/point_tests.h>
 #include <pcl/io/pcd_io.h>
-#include <pcl/kdtree/kdtree_flann.h>
 #include <pcl/point_types.h>
 
 #include <benchmark/benchmark.h>
-#include <nanoflann.hpp>
 
-#include <limits>
-#include <memory>
 #include <string>
+#include <vector>
 
 namespace {
 
 using bayesian_icp::InstructionSet;
 using bayesian_icp::KdTree;
-
-constexpr float no_gate = std::numeric_limits<float>::infinity();
-
-class FlannTree {
-public:
-  explicit FlannTree(const Eigen::Matrix3Xf& points)
-  : cloud_(new pcl::PointCloud<pcl::PointXYZ>)
-  {
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      cloud_->emplace_back(points(0, i), points(1, i), points(2, i));
-    build();
-  }
-
-  void
-  build()
-  {
-    tree_.setInputCloud(cloud_);
-  }
-
-  int
-  nearest(const Eigen::Vector3f& query, std::uint32_t)
-  {
-    tree_.nearestKSearch({query.x(), query.y(), query.z()}, 1, index_, distance_);
-    return index_[0];
-  }
-
-private:
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud_;
-  pcl::KdTreeFLANN<pcl::PointXYZ> tree_;
-  pcl::Indices index_ = pcl::Indices(1);
-  std::vector<float> distance_ = std::vector<float>(1);
-};
-
-/** What nanoflann wants to know about a cloud. */
-struct NanoflannCloud {
-  const Eigen::Matrix3Xf& points;
-
-  std::size_t
-  kdtree_get_point_count() const
-  {
-    return static_cast<std::size_t>(points.cols());
-  }
-  float
-  kdtree_get_pt(std::size_t index, std::size_t axis) const
-  {
-    return points(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(index));
-  }
-  template <typename Box>
-  bool
-  kdtree_get_bbox(Box&) const
-  {
-    return false;
-  }
-};
-
-using NanoflannIndex = nanoflann::KDTreeSingleIndexAdaptor<
-    nanoflann::L2_Simple_Adaptor<float, NanoflannCloud>,
-    NanoflannCloud,
-    3,
-    std::uint32_t>;
-
-class NanoflannTree {
-public:
-  explicit NanoflannTree(const Eigen::Matrix3Xf& points)
-  : cloud_{points}
-  , tree_(3, cloud_, {10})
-  {
-    build();
-  }
-
-  void
-  build()
-  {
-    tree_.buildIndex();
-  }
-
-  std::uint32_t
-  nearest(const Eigen::Vector3f& query, std::uint32_t) const
-  {
-    std::uint32_t index = 0;
-    float squared_distance = 0.f;
-    tree_.knnSearch(query.data(), 1, &index, &squared_distance);
-    return index;
-  }
-
-private:
-  NanoflannCloud cloud_;
-  NanoflannIndex tree_;
-};
-
-class OwnTree {
-public:
-  OwnTree(const Eigen::Matrix3Xf& points,
-          bool is_seeded,
-          InstructionSet instruction_set)
-  : tree_(points, 0, instruction_set)
-  , is_seeded_(is_seeded)
-  {}
-
-  std::uint32_t
-  nearest(const Eigen::Vector3f& query, std::uint32_t last_neighbor) const
-  {
-    const std::uint32_t hint = is_seeded_ ? last_neighbor : KdTree::none;
-    return tree_.nearest(query, no_gate, hint).index;
-  }
-
-private:
-  KdTree tree_;
-  bool is_seeded_;
-};
 
 template <typename Tree>
 void
@@ -209,6 +98,17 @@ addBuilding(const Scene& scene)
         });
 }
 
+Eigen::Matrix3Xf
+finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud)
+{
+  Eigen::Matrix3Xf points(3, cloud.size());
+  Eigen::Index num_points = 0;
+  for (const auto& point : cloud)
+    if (pcl::isFinite(point))
+      points.col(num_points++) = point.getVector3fMap();
+  return points.leftCols(num_points);
+}
+
 std::vector<Scene>
 scenes(int argc, char** argv)
 {
@@ -216,7 +116,7 @@ scenes(int argc, char** argv)
   if (argc > 1) {
     pcl::PointCloud<pcl::PointXYZ> cloud;
     if (pcl::io::loadPCDFile(argv[1], cloud) == 0)
-      scenes.push_back(makeScene(cloud.getMatrixXfMap().topRows<3>()));
+      scenes.push_back(makeScene(finitePoints(cloud)));
     return scenes;
   }
   for (const int width : {86, 276, 599, 1366})

@@ -53,6 +53,9 @@ supportedInstructionSets()
   return supported;
 }
 
+// For users who compile as C++14, where a static member is no inline variable.
+constexpr std::uint32_t KdTree::none;
+
 struct KdTree::Tree {
   kd_tree::Storage storage;
   kd_tree::View view;
