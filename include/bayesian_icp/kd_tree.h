@@ -48,9 +48,9 @@ public:
   /** \brief Build the tree.
    * \param[in] points 3 x n [m], fewer than 2^32 - 1 columns; columns with a non-finite
    *            coordinate are never found
-   * \param[in] num_threads threads to build with at most, 0: as many as OpenMP would
-   * use; small clouds are built by one \throws std::invalid_argument if there are too
-   * many points */
+   * \param[in] num_threads threads to build with at most, 0: as OpenMP would; a small
+   *            cloud is built by one
+   * \throws std::invalid_argument if there are too many points */
   explicit KdTree(Eigen::Matrix3Xf points, int num_threads = 0);
 
   /** \brief Build the tree for an instruction set of supportedInstructionSets() instead
