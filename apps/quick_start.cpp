@@ -21,8 +21,7 @@ main(int argc, char** argv)
   icp.setInputTarget(target);
   pcl::PointCloud<pcl::PointXYZ> aligned;
   icp.align(aligned);
-  // final transformation, convergence and cloud are those of IterativeClosestPoint; new
-  // are
+  // the transformation and the cloud are those of IterativeClosestPoint; new are
   std::cout << icp.getSummary().message << "\n"       // can the posterior be trusted?
             << icp.getMean().transpose() << "\n"      // x y z [m], roll pitch yaw [rad]
             << icp.getCovariance() << "\n"            // 6x6 in the same order

@@ -12,11 +12,10 @@ namespace bayesian_icp {
 
 namespace {
 
-/** A chain further than this from the prior mean has run away: so many prior standard
- * deviations, on top of the deviation of its start, the size of the source for a
- * translation and a full turn for an angle. */
+/** A chain whose translation is further than this from the prior mean has run away: so
+ * many prior standard deviations, on top of the deviation of its start and the size of
+ * the source. Angles cannot run away, their prior is periodic. */
 constexpr double max_prior_deviations = 20.0;
-constexpr double full_turn = 6.28318530717958647692;
 
 PosteriorEstimate
 failure(Status status, const std::string& message)
@@ -83,19 +82,17 @@ makePrior(const PriorOptions& options,
   return Prior(mean, options.variance, source_points.rowwise().mean());
 }
 
-/** Largest deviation from the prior mean that is not called divergence [m, rad]. */
-Vector6d
-deviationLimit(const Prior& prior,
-               const Vector6d& initial_pose,
-               const Eigen::Matrix3Xd& source_points)
+/** Largest translation from the prior mean that is not called divergence [m]. */
+Eigen::Vector3d
+translationLimit(const Prior& prior,
+                 const Vector6d& initial_pose,
+                 const Eigen::Matrix3Xd& source_points)
 {
   const Eigen::Vector3d size =
       source_points.rowwise().maxCoeff() - source_points.rowwise().minCoeff();
-  Vector6d limit = max_prior_deviations * prior.variance().cwiseSqrt() +
-                   prior.deviation(initial_pose).cwiseAbs();
-  limit.head<3>().array() += size.norm();
-  limit.tail<3>().array() += full_turn;
-  return limit;
+  const Vector6d limit = max_prior_deviations * prior.variance().cwiseSqrt() +
+                         prior.deviation(initial_pose).cwiseAbs();
+  return limit.head<3>().array() + size.norm();
 }
 
 /** What is wrong with the arguments; the status is NotRun if nothing is. */
@@ -139,7 +136,7 @@ samplePaper(const Eigen::Matrix3Xd& source_points,
   const PosteriorGradient gradient(
       source_points, search, prior, options.likelihood.weight(), mini_batches);
   SamplerTarget target;
-  target.make_gradient = [&gradient](int) { return gradient; };
+  target.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
   target.has_diverged = has_diverged;
   target.is_thread_safe = search.isThreadSafe();
   return runChains(initial_pose, target, options.sgld, options.chains, progress);
@@ -157,9 +154,10 @@ estimate(const Eigen::Matrix3Xd& source_points,
   if (estimate.summary.status != Status::NotRun)
     return estimate;
   const Prior prior = makePrior(options.prior, initial_pose, source_points);
-  const Vector6d limit = deviationLimit(prior, initial_pose, source_points);
+  const Eigen::Vector3d limit = translationLimit(prior, initial_pose, source_points);
   const auto has_diverged = [&prior, &limit](const Vector6d& pose) {
-    return (prior.deviation(pose).cwiseAbs().array() > limit.array()).any();
+    const Eigen::Vector3d translation = prior.deviation(pose).head<3>();
+    return (translation.cwiseAbs().array() > limit.array()).any();
   };
   ChainSet chain_set;
   if (options.preset == Preset::Exact) {

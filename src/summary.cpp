@@ -168,12 +168,14 @@ messageOf(const Summary& summary, const WorstDiagnostics& worst)
   case Status::SeveralModes:
     return modesMessage(summary);
   case Status::Diverged:
-    std::snprintf(text,
-                  sizeof(text),
-                  "%d of %d chains diverged (ran away from the prior or became "
-                  "non-finite) and are left out; a smaller step size may help",
-                  summary.num_diverged_chains,
-                  summary.num_chains);
+    std::snprintf(
+        text,
+        sizeof(text),
+        "%d of %d chains diverged (ran away from the prior or became "
+        "non-finite) and are left out; a smaller step size or a larger maximum "
+        "correspondence distance may help",
+        summary.num_diverged_chains,
+        summary.num_chains);
     break;
   case Status::Cancelled:
     std::snprintf(text, sizeof(text), "cancelled after %ld draws", summary.num_draws);

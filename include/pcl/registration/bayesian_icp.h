@@ -79,6 +79,14 @@ public:
   Samples
   getChain(std::size_t index) const;
 
+  /** \brief Whether chain \p index ran away or became non-finite; its draws are not
+   * among getSamples(). False if there is no such chain. */
+  bool
+  hasChainDiverged(std::size_t index) const
+  {
+    return (index < estimate_.chains.size() && estimate_.chains[index].diverged);
+  }
+
   /** \brief Posterior mean pose [m, rad]; angles are averaged on the circle. */
   Vector6d
   getMean() const

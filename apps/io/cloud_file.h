@@ -1,0 +1,55 @@
+/** \file
+ * \brief Point clouds from .pcd and .ply files, and an aligned one back.
+ */
+#pragma once
+
+#include <Eigen/Core>
+
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+namespace pcl {
+struct PCLPointCloud2;
+}
+
+namespace bayesian_icp::io {
+
+/** \brief Keep PCL from printing: tools print what matters, once and with the file's
+ * name. */
+void
+silencePcl();
+
+/** \brief A cloud as it is in its file. */
+struct CloudFile {
+  std::string file;
+  /** All fields of all points. */
+  std::shared_ptr<const pcl::PCLPointCloud2> blob;
+  /** Where the sensor stood [m] and how it was turned (w, x, y, z): PCD's VIEWPOINT. */
+  Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
+  Eigen::Vector4f sensor_orientation = Eigen::Vector4f::UnitX();
+  /** x, y, z [m], a column a point, those that are not finite included. */
+  Eigen::Matrix3Xf points;
+  std::size_t num_finite = 0;
+  /** Largest |x|, |y|, |z| of the finite points [m]. */
+  double largest_coordinate = 0.0;
+};
+
+/** \brief Read a .pcd (any encoding) or .ply file. Coordinates may be of 32 or 64 bits.
+ * \throws FileError if the file cannot be read or has fewer than three finite points */
+CloudFile
+readCloud(const std::string& name);
+
+/** \brief Write \p source, moved into the frame of \p target, as a compressed PCD.
+ *
+ * All fields and the order of the source are kept; x, y, z are moved and normal_x,
+ * normal_y, normal_z turned where they are finite. The viewpoint is the target's, so
+ * that viewers, which apply it, put both clouds in one place. \throws std::exception if
+ * it cannot be encoded */
+void
+writeAligned(const CloudFile& source,
+             const CloudFile& target,
+             const Eigen::Matrix4d& T_target_source,
+             std::ostream& stream);
+
+} // namespace bayesian_icp::io

@@ -1,0 +1,38 @@
+/** \file
+ * \brief What a tool tells its user before it ends; the type decides the exit code.
+ */
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace bayesian_icp::io {
+
+/** \brief The tool was asked for something that it does not understand or have. */
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/** \brief A file cannot be read, used or written; the message names it and the reason.
+ */
+struct FileError : std::runtime_error {
+  FileError(const std::string& file, const std::string& reason)
+  : std::runtime_error(file + ": " + reason)
+  {}
+};
+
+/** \brief A piece of a file or of the command line in quotes, fit for a terminal: not
+ * too long, and without control characters. */
+inline std::string
+quoted(std::string_view text)
+{
+  constexpr std::size_t max_length = 60;
+  std::string shown(text.substr(0, max_length));
+  for (char& character : shown)
+    if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f)
+      character = '?';
+  return '\'' + shown + (text.size() > max_length ? "...'" : "'");
+}
+
+} // namespace bayesian_icp::io

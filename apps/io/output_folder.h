@@ -1,0 +1,45 @@
+/** \file
+ * \brief Files that appear in a folder complete and together, or not at all.
+ */
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::io {
+
+/** \brief Files on their way into a folder. Each is written under a temporary name;
+ * commit() gives all of them their own. Without it nothing is left behind. */
+class OutputFolder {
+public:
+  /** \brief Make the folder if it is missing, and see whether it can be written to.
+   * \throws FileError if not */
+  explicit OutputFolder(const std::string& folder);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder&
+  operator=(const OutputFolder&) = delete;
+
+  /** \brief Write a file under a temporary name.
+   * \throws FileError if that fails, for example because the disk is full */
+  void
+  add(const std::string& name, const std::function<void(std::ostream&)>& write);
+
+  /** \brief Rename what was added, replacing older files of these names.
+   * \throws FileError if that fails */
+  void
+  commit();
+
+private:
+  struct File {
+    std::string temporary_name;
+    std::string name;
+  };
+
+  std::string folder_;
+  std::vector<File> files_;
+};
+
+} // namespace bayesian_icp::io

@@ -1,0 +1,164 @@
+/** \file
+ * \brief pcl_bayesian_icp: registers a cloud to another and tells how sure that is.
+ */
+#include "io/errors.h"
+#include "io/numbers.h"
+#include "register/command_line.h"
+#include "register/interrupt.h"
+#include "register/output_files.h"
+#include "register/posterior_json.h"
+#include "register/progress_bar.h"
+#include "register/report_text.h"
+
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+namespace bayesian_icp::app {
+namespace {
+
+enum ExitCode {
+  Good = 0,
+  NoPosterior = 1,
+  BadUsage = 2,
+  BadFile = 3,
+  Interrupted = 130
+};
+
+using Clock = std::chrono::steady_clock;
+
+double
+secondsSince(Clock::time_point start)
+{
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void
+tell(const std::string& message)
+{
+  std::cerr << "pcl_bayesian_icp: " << message << '\n';
+}
+
+void
+print(const std::string& text)
+{
+  std::cout << text << std::flush;
+  if (!std::cout)
+    throw io::FileError("standard output", "cannot be written");
+}
+
+/** PCL registers coordinates of 32 bits. */
+void
+warnOfLostDigits(const io::CloudFile& cloud)
+{
+  constexpr double noticeable = 1e-3;
+  const auto largest = static_cast<float>(cloud.largest_coordinate);
+  const double resolution =
+      double(std::nextafter(largest, std::numeric_limits<float>::infinity())) - largest;
+  if (resolution > noticeable)
+    tell(cloud.file + ": note: coordinates of up to " +
+         io::textOf(cloud.largest_coordinate, 4) + " m are kept to " +
+         io::textOf(resolution, 2) +
+         " m only; move the clouds towards the origin for more");
+}
+
+Run
+runRegistration(const Request& request)
+{
+  io::silencePcl();
+  Run run;
+  const auto start = Clock::now();
+  run.source = io::readCloud(request.source_file);
+  run.target = io::readCloud(request.target_file);
+  run.reading_seconds = secondsSince(start);
+  if (!request.is_quiet) {
+    warnOfLostDigits(run.source);
+    warnOfLostDigits(run.target);
+  }
+  run.settings = request.settings;
+  run.settings.scaleToSource(run.source.num_finite);
+
+  ProgressBar bar(!request.is_quiet);
+  catchInterrupt();
+  run.result = registerClouds(run.source.points,
+                              run.target.points,
+                              run.settings,
+                              [&bar](const Progress& progress) {
+                                bar.update(progress);
+                                return !wasInterrupted();
+                              });
+  return run;
+}
+
+void
+report(const Request& request, const Run& run)
+{
+  if (request.is_json)
+    print(posteriorJson(run));
+  else if (!request.is_quiet)
+    print(reportText(run));
+  // The table has the status already.
+  if (run.result.summary.status != Status::Ok && (request.is_json || request.is_quiet))
+    tell(statusText(run.result.summary));
+}
+
+int
+registerAsAsked(const Request& request)
+{
+  if (!request.note.empty() && !request.is_quiet)
+    tell("note: " + request.note);
+  std::optional<io::OutputFolder> folder;
+  if (!request.output_folder.empty())
+    folder.emplace(request.output_folder);
+  const Run run = runRegistration(request);
+  const bool has_draws = run.result.summary.num_draws > 0;
+  if (folder && has_draws)
+    writeOutputFiles(run, *folder);
+  else if (folder)
+    tell("there are no draws, so no files are written");
+  report(request, run);
+  if (wasInterrupted())
+    return Interrupted;
+  return run.result.summary.status == Status::Ok ? Good : NoPosterior;
+}
+
+int
+runTool(int argc, char** argv)
+{
+  const Request request = parseCommandLine(argc, argv);
+  switch (request.kind) {
+  case Request::Kind::ShowHelp:
+    print(helpText());
+    return Good;
+  case Request::Kind::ShowVersion:
+    print("pcl_bayesian_icp " BAYESIAN_ICP_VERSION "\n");
+    return Good;
+  case Request::Kind::Register:
+    break;
+  }
+  return registerAsAsked(request);
+}
+
+} // namespace
+} // namespace bayesian_icp::app
+
+int
+main(int argc, char** argv)
+{
+  using namespace bayesian_icp;
+  try {
+    return app::runTool(argc, argv);
+  }
+  catch (const io::UsageError& error) {
+    app::tell(std::string(error.what()) + " (see --help)");
+    return app::BadUsage;
+  }
+  catch (const io::FileError& error) {
+    app::tell(error.what());
+    return app::BadFile;
+  }
+  catch (const std::exception& error) {
+    app::tell(std::string("failed: ") + error.what());
+    return app::NoPosterior;
+  }
+}

@@ -1,0 +1,61 @@
+/** \file
+ * \brief Options that are one of a few named values.
+ */
+#pragma once
+
+#include <bayesian_icp/options.h>
+
+#include <array>
+#include <string>
+
+namespace bayesian_icp::app {
+
+/** \brief All values of an enumeration; its toString() names them. */
+inline std::array<Preset, 3>
+choicesOf(Preset)
+{
+  return {Preset::Paper, Preset::Exact, Preset::Calibrated};
+}
+
+inline std::array<PriorFrame, 2>
+choicesOf(PriorFrame)
+{
+  return {PriorFrame::Origin, PriorFrame::SourceCentroid};
+}
+
+inline std::array<MiniBatchSampling, 2>
+choicesOf(MiniBatchSampling)
+{
+  return {MiniBatchSampling::WithReplacement, MiniBatchSampling::ShuffledEpochs};
+}
+
+/** \brief "one, two or three". */
+template <typename Choice>
+std::string
+namesOfChoices(Choice choice)
+{
+  const auto choices = choicesOf(choice);
+  std::string names;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    names += (i == 0                   ? ""
+              : i + 1 < choices.size() ? ", "
+                                       : " or ") +
+             std::string(toString(choices[i]));
+  return names;
+}
+
+/** \brief Set \p choice to the value of this name.
+ * \return whether there is one */
+template <typename Choice>
+bool
+readChoice(const std::string& name, Choice& choice)
+{
+  for (const Choice candidate : choicesOf(choice))
+    if (name == toString(candidate)) {
+      choice = candidate;
+      return true;
+    }
+  return false;
+}
+
+} // namespace bayesian_icp::app

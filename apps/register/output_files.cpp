@@ -1,0 +1,39 @@
+#include "register/output_files.h"
+
+#include "io/numbers.h"
+#include "register/posterior_json.h"
+
+#include <ostream>
+
+namespace bayesian_icp::app {
+
+void
+writeSamples(const std::vector<Chain>& chains, std::ostream& stream)
+{
+  stream << "chain,draw,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad\n";
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    if (chains[i].diverged)
+      continue;
+    for (Eigen::Index draw = 0; draw < chains[i].draws.rows(); ++draw) {
+      std::string line = io::textOf(i) + ',' + io::textOf(draw);
+      for (int k = 0; k < 6; ++k)
+        line += ',' + io::textOf(chains[i].draws(draw, k), 17);
+      stream << line << '\n';
+    }
+  }
+}
+
+void
+writeOutputFiles(const Run& run, io::OutputFolder& folder)
+{
+  folder.add("aligned.pcd", [&](std::ostream& stream) {
+    writeAligned(run.source, run.target, run.result.final_matrix, stream);
+  });
+  folder.add("samples.csv",
+             [&](std::ostream& stream) { writeSamples(run.result.chains, stream); });
+  folder.add("posterior.json",
+             [&](std::ostream& stream) { stream << posteriorJson(run); });
+  folder.commit();
+}
+
+} // namespace bayesian_icp::app

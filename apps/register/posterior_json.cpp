@@ -1,0 +1,156 @@
+#include "register/posterior_json.h"
+
+#include "register/json_values.h"
+#include "register/settings_json.h"
+
+#include <bayesian_icp/pose.h>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* const coordinate_names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
+
+/** A convention of a covariance in words. */
+struct Convention {
+  CovarianceConvention convention;
+  std::array<const char*, 6> order;
+  const char* meaning;
+};
+
+const Convention conventions[] = {
+    {CovarianceConvention::Parameters,
+     {"x", "y", "z", "roll", "pitch", "yaw"},
+     "errors of the parameters: translation in the target frame, angles of "
+     "R = Rz(yaw) Ry(pitch) Rx(roll)"},
+    {CovarianceConvention::R3xSO3,
+     {"t_x", "t_y", "t_z", "w_x", "w_y", "w_z"},
+     "error t of the translation in the target frame, t_mean + t, and a small rotation "
+     "w "
+     "about the target's fixed axes, R = exp(w) R_mean: ROS PoseWithCovariance"},
+    {CovarianceConvention::LeftSE3,
+     {"v_x", "v_y", "v_z", "w_x", "w_y", "w_z"},
+     "twist (v, w) in the target frame, T = exp(xi) T_mean"},
+    {CovarianceConvention::RightSE3,
+     {"v_x", "v_y", "v_z", "w_x", "w_y", "w_z"},
+     "twist (v, w) in the source frame, T = T_mean exp(xi): GTSAM's, which puts the "
+     "rotation first"}};
+
+ordered_json
+cloudJson(const io::CloudFile& cloud)
+{
+  return {{"file", cloud.file},
+          {"points", cloud.points.cols()},
+          {"finite_points", cloud.num_finite}};
+}
+
+ordered_json
+icpJson(const RegistrationResult& result)
+{
+  const bool has_fitness = result.icp_fitness < std::numeric_limits<double>::max();
+  return {{"has_converged", result.icp_has_converged},
+          {"mean_squared_distance_m2",
+           has_fitness ? jsonOf(result.icp_fitness) : ordered_json(nullptr)},
+          {"T_target_source", jsonOf(result.icp_matrix)}};
+}
+
+ordered_json
+meanJson(const Vector6d& mean)
+{
+  ordered_json json;
+  for (int k = 0; k < 6; ++k)
+    json[std::string(coordinate_names[k]) + (k < 3 ? "_m" : "_rad")] = jsonOf(mean[k]);
+  json["T_target_source"] = jsonOf(matrixOf(mean));
+  return json;
+}
+
+ordered_json
+coordinatesJson(const Summary& summary)
+{
+  auto list = ordered_json::array();
+  for (std::size_t k = 0; k < 6; ++k) {
+    const CoordinateSummary& coordinate = summary.coordinates[k];
+    list.push_back({{"name", coordinate_names[k]},
+                    {"unit", k < 3 ? "m" : "rad"},
+                    {"mean", jsonOf(coordinate.mean)},
+                    {"standard_deviation", jsonOf(coordinate.standard_deviation)},
+                    {"quantile_2.5_percent", jsonOf(coordinate.quantile_2_5)},
+                    {"median", jsonOf(coordinate.median)},
+                    {"quantile_97.5_percent", jsonOf(coordinate.quantile_97_5)},
+                    {"rhat", jsonOf(coordinate.rhat)},
+                    {"bulk_ess", jsonOf(coordinate.bulk_ess)},
+                    {"tail_ess", jsonOf(coordinate.tail_ess)},
+                    {"mcse_of_mean", jsonOf(coordinate.mcse)}});
+  }
+  return list;
+}
+
+ordered_json
+covariancesJson(const Summary& summary)
+{
+  auto list = ordered_json::array();
+  for (const Convention& convention : conventions)
+    list.push_back({{"convention", toString(convention.convention)},
+                    {"order", convention.order},
+                    {"units", {"m", "m", "m", "rad", "rad", "rad"}},
+                    {"meaning", convention.meaning},
+                    {"matrix", jsonOf(summary.covariance(convention.convention))}});
+  return list;
+}
+
+ordered_json
+chainsJson(const std::vector<Chain>& chains)
+{
+  auto list = ordered_json::array();
+  for (std::size_t i = 0; i < chains.size(); ++i)
+    list.push_back({{"chain", i},
+                    {"draws", chains[i].draws.rows()},
+                    {"has_diverged", chains[i].diverged}});
+  return list;
+}
+
+ordered_json
+posteriorOf(const RegistrationResult& result)
+{
+  return {{"draws", result.summary.num_draws},
+          {"draws_note",
+           "draws of chains that have diverged are left out here and in samples.csv"},
+          {"mean", meanJson(result.summary.mean)},
+          {"coordinates", coordinatesJson(result.summary)},
+          {"covariances", covariancesJson(result.summary)},
+          {"chains", chainsJson(result.chains)}};
+}
+
+} // namespace
+
+std::string
+posteriorJson(const Run& run)
+{
+  const RegistrationResult& result = run.result;
+  const ordered_json document = {
+      {"schema", posterior_schema_name},
+      {"schema_version", posterior_schema_version},
+      {"program", {{"name", "pcl_bayesian_icp"}, {"version", BAYESIAN_ICP_VERSION}}},
+      {"source", cloudJson(run.source)},
+      {"target", cloudJson(run.target)},
+      {"frame", "poses and T_target_source map source points into the target frame"},
+      {"status",
+       {{"name", toString(result.summary.status)},
+        {"message", result.summary.message}}},
+      {"final_transformation",
+       {{"is", result.is_final_the_mean ? "posterior mean" : "ICP's result"},
+        {"T_target_source", jsonOf(result.final_matrix)}}},
+      {"icp", icpJson(result)},
+      {"posterior", posteriorOf(result)},
+      {"options", jsonOf(run.settings)},
+      {"time",
+       {{"reading_s", run.reading_seconds},
+        {"icp_s", result.icp_seconds},
+        {"sampling_s", result.sampling_seconds}}}};
+  // Names of files need not be UTF-8.
+  return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,45 @@
+/** \file
+ * \brief A progress bar on the terminal.
+ */
+#pragma once
+
+#include <bayesian_icp/chains.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace bayesian_icp::app {
+
+/** \brief Shows what is going on, on standard error if that is a terminal, and only if
+ * the run lasts over two seconds. Leaves nothing on the screen when it goes. */
+class ProgressBar {
+public:
+  /** \brief The run begins now, with ICP. A bar that is not wanted never shows. */
+  explicit ProgressBar(bool is_wanted);
+  ~ProgressBar();
+  ProgressBar(const ProgressBar&) = delete;
+  ProgressBar&
+  operator=(const ProgressBar&) = delete;
+
+  /** \brief The chains have come so far. */
+  void
+  update(const Progress& progress);
+
+private:
+  void
+  drawUntilStopped();
+
+  void
+  draw() const;
+
+  std::atomic<long> steps_{0};
+  std::atomic<long> total_steps_{0};
+  bool is_stopped_ = false;
+  std::mutex mutex_;
+  std::condition_variable stop_;
+  std::thread thread_;
+};
+
+} // namespace bayesian_icp::app

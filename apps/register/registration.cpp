@@ -1,0 +1,107 @@
+#include "register/registration.h"
+
+#include <bayesian_icp/pose.h>
+
+#include <pcl/registration/bayesian_icp.h>
+#include <pcl/registration/correspondence_rejection_one_to_one.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using Icp = pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
+
+Cloud::Ptr
+cloudOf(const Eigen::Matrix3Xf& points)
+{
+  Cloud::Ptr cloud(new Cloud);
+  cloud->reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    cloud->push_back({points(0, i), points(1, i), points(2, i)});
+  cloud->is_dense = points.allFinite();
+  return cloud;
+}
+
+void
+configure(const Settings& settings, Icp& icp)
+{
+  icp.setOptions(settings.options);
+  icp.setMaximumIterations(settings.icp_iterations);
+  icp.setUseReciprocalCorrespondences(settings.is_reciprocal);
+  if (std::isfinite(settings.max_distance))
+    icp.setMaxCorrespondenceDistance(settings.max_distance);
+  if (settings.is_one_to_one)
+    icp.addCorrespondenceRejector(
+        pcl::make_shared<pcl::registration::CorrespondenceRejectorOneToOne>());
+}
+
+std::vector<Chain>
+chainsOf(const Icp& icp)
+{
+  std::vector<Chain> chains;
+  for (int i = 0; i < icp.getSummary().num_chains; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    chains.push_back({icp.getChain(index), icp.hasChainDiverged(index)});
+  }
+  return chains;
+}
+
+/** Aligns, and measures ICP and sampling, which begins with the first step of a chain.
+ */
+void
+align(const Eigen::Matrix4d& guess,
+      const ProgressCallback& progress,
+      Icp& icp,
+      RegistrationResult& result)
+{
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  const auto start = Clock::now();
+  Clock::time_point first_step = Clock::time_point::max();
+  icp.setProgressCallback([&](const Progress& state) {
+    first_step = std::min(first_step, Clock::now());
+    return progress(state);
+  });
+  Cloud moved_source;
+  icp.align(moved_source, guess.cast<float>());
+  const auto end = Clock::now();
+  first_step = std::min(first_step, end);
+  result.icp_seconds = Seconds(first_step - start).count();
+  result.sampling_seconds = Seconds(end - first_step).count();
+}
+
+} // namespace
+
+RegistrationResult
+registerClouds(const Eigen::Matrix3Xf& source,
+               const Eigen::Matrix3Xf& target,
+               const Settings& settings,
+               const ProgressCallback& progress)
+{
+  Icp icp;
+  configure(settings, icp);
+  icp.setInputSource(cloudOf(source));
+  icp.setInputTarget(cloudOf(target));
+  RegistrationResult result;
+  align(settings.guess, progress, icp, result);
+  result.icp_has_converged = icp.hasConverged();
+  result.icp_matrix = icp.getFinalTransformation().cast<double>();
+  result.icp_fitness = icp.getFitnessScore();
+  result.summary = icp.getSummary();
+  result.chains = chainsOf(icp);
+  result.is_final_the_mean =
+      settings.use_mean && (result.summary.status == Status::Ok ||
+                            result.summary.status == Status::NotMixed);
+  result.final_matrix =
+      result.is_final_the_mean ? matrixOf(result.summary.mean) : result.icp_matrix;
+  return result;
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,40 @@
+/** \file
+ * \brief One run of pcl::BayesianIterativeClosestPoint.
+ */
+#pragma once
+
+#include "register/settings.h"
+
+#include <bayesian_icp/chains.h>
+#include <bayesian_icp/summary.h>
+
+#include <vector>
+
+namespace bayesian_icp::app {
+
+/** \brief What a run found. Matrices are T_target_source. */
+struct RegistrationResult {
+  bool icp_has_converged = false;
+  Eigen::Matrix4d icp_matrix = Eigen::Matrix4d::Identity();
+  /** Mean squared distance of the source, moved by ICP, to the target [m^2]. */
+  double icp_fitness = 0.0;
+  Summary summary;
+  /** Every chain, the diverged ones included. */
+  std::vector<Chain> chains;
+  Eigen::Matrix4d final_matrix = Eigen::Matrix4d::Identity();
+  /** Whether final_matrix is that of the posterior mean, not ICP's. */
+  bool is_final_the_mean = false;
+  double icp_seconds = 0.0;
+  double sampling_seconds = 0.0;
+};
+
+/** \brief Run ICP and sample the posterior.
+ * \param[in] source,target x, y, z [m], a column a point; not finite ones are skipped
+ * \param[in] progress called after each step of the chains */
+RegistrationResult
+registerClouds(const Eigen::Matrix3Xf& source,
+               const Eigen::Matrix3Xf& target,
+               const Settings& settings,
+               const ProgressCallback& progress);
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,165 @@
+#include "register/report_text.h"
+
+#include "io/numbers.h"
+
+#include <bayesian_icp/pose.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+constexpr double degrees_per_radian = 57.295779513082320877;
+constexpr std::size_t label_width = 12;
+constexpr std::size_t column_width = 12;
+constexpr std::size_t diagnostic_width = 10;
+
+std::string
+leftAligned(std::string text, std::size_t width)
+{
+  text.resize(std::max(width, text.size()), ' ');
+  return text;
+}
+
+std::string
+rightAligned(const std::string& text, std::size_t width)
+{
+  return std::string(width > text.size() ? width - text.size() : 1, ' ') + text;
+}
+
+std::string
+cell(double value, int num_decimals, std::size_t width)
+{
+  const bool is_short = std::abs(value) < 1e9;
+  return rightAligned(!std::isfinite(value) ? "-"
+                      : is_short            ? io::fixedTextOf(value, num_decimals)
+                                            : io::textOf(value, 5),
+                      width);
+}
+
+/** Mean, deviation and interval, each times \p factor. */
+std::string
+estimateCells(const CoordinateSummary& coordinate, double factor, int num_decimals)
+{
+  std::string cells;
+  for (const double value : {coordinate.mean,
+                             coordinate.standard_deviation,
+                             coordinate.quantile_2_5,
+                             coordinate.quantile_97_5})
+    cells += cell(factor * value, num_decimals, column_width);
+  return cells;
+}
+
+std::string
+coordinateTable(const Summary& summary)
+{
+  const char* names[] = {
+      "x [m]", "y [m]", "z [m]", "roll [rad]", "pitch [rad]", "yaw [rad]"};
+  std::string table = std::string(label_width, ' ');
+  for (const char* title : {"mean", "std. dev.", "2.5 %", "97.5 %"})
+    table += rightAligned(title, column_width);
+  for (const char* title : {"R-hat", "bulk ESS", "tail ESS"})
+    table += rightAligned(title, diagnostic_width);
+  table += '\n';
+  for (std::size_t k = 0; k < 6; ++k) {
+    const CoordinateSummary& coordinate = summary.coordinates[k];
+    table += leftAligned(names[k], label_width) + estimateCells(coordinate, 1.0, 6) +
+             cell(coordinate.rhat, 3, diagnostic_width) +
+             cell(coordinate.bulk_ess, 0, diagnostic_width) +
+             cell(coordinate.tail_ess, 0, diagnostic_width) + '\n';
+  }
+  const char* names_in_degrees[] = {"roll [deg]", "pitch [deg]", "yaw [deg]"};
+  for (std::size_t k = 0; k < 3; ++k)
+    table += leftAligned(names_in_degrees[k], label_width) +
+             estimateCells(summary.coordinates[k + 3], degrees_per_radian, 4) + '\n';
+  return table;
+}
+
+/** The argument of `pcl_transform_point_cloud -matrix`: 16 numbers row by row. */
+std::string
+pasteable(const Eigen::Matrix4d& matrix)
+{
+  std::string text = "  -matrix ";
+  for (Eigen::Index i = 0; i < 16; ++i)
+    text += (i > 0 ? "," : "") + io::textOf(matrix(i / 4, i % 4), 9);
+  return text + '\n';
+}
+
+/** Lines of at most 88 characters, those after the first indented. */
+std::string
+wrapped(const std::string& text)
+{
+  constexpr std::size_t max_length = 88;
+  const std::string indent(8, ' ');
+  std::string lines, line;
+  for (const auto word : io::words(text, " ")) {
+    if (line.size() + 1 + word.size() > max_length) {
+      lines += line + '\n';
+      line = indent + std::string(word);
+    }
+    else
+      line += (line.empty() ? "" : " ") + std::string(word);
+  }
+  return lines + line + '\n';
+}
+
+std::string
+cloudLine(const char* role, const io::CloudFile& cloud)
+{
+  const auto num_points = static_cast<std::size_t>(cloud.points.cols());
+  std::string line =
+      std::string(role) + cloud.file + ", " + std::to_string(num_points) + " points";
+  if (cloud.num_finite < num_points)
+    line += ", " + std::to_string(cloud.num_finite) + " of them finite";
+  return line + '\n';
+}
+
+std::string
+icpLine(const RegistrationResult& result)
+{
+  std::string line = "ICP:    ";
+  line += result.icp_has_converged ? "converged" : "did not converge";
+  if (result.icp_fitness < std::numeric_limits<double>::max())
+    line += ", root mean square distance of the source to the target " +
+            io::textOf(std::sqrt(result.icp_fitness), 4) + " m";
+  return line + '\n';
+}
+
+} // namespace
+
+std::string
+statusText(const Summary& summary)
+{
+  std::string name = toString(summary.status);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + ": " + summary.message;
+}
+
+std::string
+reportText(const Run& run)
+{
+  const RegistrationResult& result = run.result;
+  const Summary& summary = result.summary;
+  std::string text =
+      cloudLine("Source: ", run.source) + cloudLine("Target: ", run.target);
+  text += "Time:   ICP " + io::fixedTextOf(result.icp_seconds, 2) + " s, sampling " +
+          io::fixedTextOf(result.sampling_seconds, 2) + " s\n";
+  if (summary.num_draws > 0)
+    text += "\nPosterior of the pose that maps source points into the target frame, " +
+            std::to_string(summary.num_draws) + " draws of " +
+            std::to_string(summary.num_chains - summary.num_diverged_chains) +
+            " chains:\n" + coordinateTable(summary);
+  text += "\n" + wrapped("Status: " + statusText(summary)) + icpLine(result);
+  text += "\nMatrices row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
+          "...\n";
+  if (summary.num_draws > 0)
+    text += "Posterior mean:\n" + pasteable(matrixOf(summary.mean));
+  text += std::string("Final transformation (") +
+          (result.is_final_the_mean ? "the posterior mean" : "ICP's result") + "):\n" +
+          pasteable(result.final_matrix);
+  return text;
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,78 @@
+#include "register/settings.h"
+
+#include "io/numbers.h"
+#include "register/setting_fields.h"
+
+#include <cmath>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** Finds the command line option of a field that Options::validate() complains about.
+ */
+struct OptionFinder {
+  std::string complaint;
+  std::string option;
+
+  template <typename T>
+  void
+  operator()(const Field& field, const T&)
+  {
+    const std::string key = field.key;
+    const std::string name = nameInComplaint();
+    const bool is_in_group = complaint.rfind(std::string(field.group) + '.', 0) == 0 ||
+                             complaint.rfind("prior.", 0) != 0;
+    // Keys of a configuration file may end in a unit.
+    if (is_in_group && (key == name || key.rfind(name + "_m", 0) == 0 ||
+                        key.rfind(name + "_rad", 0) == 0))
+      option = "--" + longNameOf(field);
+  }
+
+  /** "prior.variance[x] is ..." speaks of "variance". */
+  std::string
+  nameInComplaint() const
+  {
+    const std::string path = complaint.substr(0, complaint.find_first_of(" ["));
+    return path.substr(path.find('.') == std::string::npos ? 0 : path.find('.') + 1);
+  }
+};
+
+std::string
+withOptionName(const Settings& settings, const std::string& complaint)
+{
+  if (complaint.empty())
+    return complaint;
+  OptionFinder finder{complaint, ""};
+  visitSettings(settings, finder);
+  return finder.option.empty() ? complaint : finder.option + ": " + complaint;
+}
+
+} // namespace
+
+void
+Settings::scaleToSource(std::size_t num_points)
+{
+  const auto size = static_cast<double>(num_points);
+  if (is_step_size_times_points)
+    options.sgld.step_size /= size;
+  if (is_effective_points_source_size)
+    options.likelihood.effective_points = size;
+  is_step_size_times_points = is_effective_points_source_size = false;
+}
+
+std::string
+Settings::validate() const
+{
+  if (!(max_distance > 0.0))
+    return "--max-distance: is " + io::textOf(max_distance) +
+           ", but must be positive (m)";
+  if (icp_iterations < 1)
+    return "--iterations: is " + io::textOf(icp_iterations) +
+           ", but must be at least 1";
+  if (!guess.allFinite())
+    return "--guess: must be finite";
+  return withOptionName(*this, options.validate());
+}
+
+} // namespace bayesian_icp::app

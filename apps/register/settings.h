@@ -1,0 +1,46 @@
+/** \file
+ * \brief Everything that decides the result of a run of pcl_bayesian_icp.
+ */
+#pragma once
+
+#include <bayesian_icp/options.h>
+
+#include <Eigen/Core>
+
+#include <limits>
+#include <string>
+
+namespace bayesian_icp::app {
+
+/** \brief Options of ICP and of the posterior; setting_fields.h names them for users.
+ */
+struct Settings {
+  Options options;
+  /** T_target_source at which ICP and the chains start. */
+  Eigen::Matrix4d guess = Eigen::Matrix4d::Identity();
+  /** Largest distance of corresponding points [m]. */
+  double max_distance = std::numeric_limits<double>::infinity();
+  /** ICP's, as in pcl_icp. */
+  int icp_iterations = 50;
+  bool is_reciprocal = false;
+  bool is_one_to_one = false;
+  /** Whether the posterior mean, not ICP's result, is the final transformation. */
+  bool use_mean = false;
+
+  /** \brief Set by the authors' configuration files: step_size is still to be divided
+   * by the number of finite source points, which effective_points is to become. */
+  bool is_step_size_times_points = false;
+  bool is_effective_points_source_size = false;
+
+  /** \brief Carry out what the two flags above say.
+   * \param[in] num_points finite points of the source */
+  void
+  scaleToSource(std::size_t num_points);
+
+  /** \brief What is wrong with the first bad setting, with its command line option;
+   * empty if all is well. */
+  std::string
+  validate() const;
+};
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,90 @@
+/** \file
+ * \brief The usual sensor, views, frame and offset for each scene.
+ */
+#include "simulation.h"
+
+namespace bayesian_icp {
+namespace simulator {
+
+using Eigen::Vector3d;
+
+namespace {
+
+/** \brief A camera in front of things whose frame is the object's, the source taken
+ * from another side and then moved by a known offset. */
+SimulationOptions
+cameraOnObject(const std::string& scene,
+               const Vector3d& target_eye,
+               const Vector3d& source_eye)
+{
+  SimulationOptions options;
+  options.scene = scene;
+  options.target_view = {target_eye, Vector3d::Zero()};
+  options.source_view = {source_eye, Vector3d::Zero()};
+  options.frame = CloudFrame::Object;
+  options.offset << 0.03, -0.02, 0.015, 0.08, -0.06, 0.12;
+  return options;
+}
+
+/** \brief A LiDAR that looks down more than up, carried on a little between target and
+ * source. */
+SimulationOptions
+movingLidar(const std::string& scene, const View& target_view, const View& source_view)
+{
+  SimulationOptions options;
+  options.scene = scene;
+  options.sensor.kind = SensorKind::Lidar;
+  options.sensor.max_range = 30.0;
+  options.sensor.lidar.rings = 32;
+  options.sensor.lidar.min_elevation = -30.0;
+  options.sensor.lidar.max_elevation = 10.0;
+  options.target_view = target_view;
+  options.source_view = source_view;
+  options.frame = CloudFrame::Sensor;
+  return options;
+}
+
+/** \brief A camera carried on a little between target and source. */
+SimulationOptions
+movingCamera(const std::string& scene, const View& target_view, const View& source_view)
+{
+  SimulationOptions options;
+  options.scene = scene;
+  options.target_view = target_view;
+  options.source_view = source_view;
+  options.frame = CloudFrame::Sensor;
+  return options;
+}
+
+} // namespace
+
+SimulationOptions
+defaultOptions(const std::string& scene)
+{
+  makeScene(scene);
+  if (scene == "corridor")
+    return movingCamera(scene,
+                        {{0.0, 0.0, 1.3}, {3.0, 0.0, 1.1}},
+                        {{0.15, 0.03, 1.3}, {3.15, 0.15, 1.15}});
+  if (scene == "room")
+    return movingLidar(scene,
+                       {{0.0, 0.0, 1.2}, {1.0, 0.0, 1.2}},
+                       {{0.15, 0.1, 1.2}, {1.15, 0.2, 1.2}});
+  if (scene == "stairs")
+    return movingCamera(scene,
+                        {{-1.3, 0.0, 1.4}, {0.6, 0.0, 0.4}},
+                        {{-1.2, 0.05, 1.4}, {0.7, 0.0, 0.4}});
+  if (scene == "ground")
+    return movingLidar(
+        scene, {{0.0, 0.0, 1.8}, {1.0, 0.0, 1.8}}, {{0.4, 0.05, 1.8}, {1.4, 0.1, 1.8}});
+  if (scene == "table_top")
+    return cameraOnObject(scene, {0.0, -0.2, 0.5}, {0.04, -0.22, 0.5});
+  if (scene == "table")
+    return cameraOnObject(scene, {0.0, -1.2, 0.9}, {0.3, -1.15, 0.9});
+  if (scene == "bowl")
+    return cameraOnObject(scene, {0.0, -0.7, 0.45}, {0.18, -0.68, 0.45});
+  return cameraOnObject(scene, {0.0, -0.62, 0.32}, {0.16, -0.6, 0.32});
+}
+
+} // namespace simulator
+} // namespace bayesian_icp

@@ -1,0 +1,16 @@
+/** \file
+ * \brief The options of the command line with their help texts.
+ */
+#pragma once
+
+#include <boost/program_options/options_description.hpp>
+
+namespace bayesian_icp {
+namespace simulator {
+
+/** \brief Every option takes text, which command_line.cpp turns into numbers. */
+boost::program_options::options_description
+allOptions();
+
+} // namespace simulator
+} // namespace bayesian_icp

@@ -1,0 +1,76 @@
+/** \file
+ * \brief How the scenes are put together: pieces used by several of them, and the
+ * functions that make each scene. Internal to scenes.cpp and its helpers.
+ */
+#pragma once
+
+#include "distance_functions.h"
+#include "scenes.h"
+
+#include <string>
+#include <utility>
+
+namespace bayesian_icp {
+namespace simulator {
+
+/** \brief The solid with its origin moved to \p origin. */
+inline DistanceFunction
+movedTo(const Eigen::Vector3d& origin, DistanceFunction distance)
+{
+  return [origin, distance = std::move(distance)](const Eigen::Vector3d& point) {
+    return distance(point - origin);
+  };
+}
+
+/** \brief A box between two opposite corners. */
+inline ScenePart
+box(const std::string& name,
+    const Eigen::Vector3d& lower_corner,
+    const Eigen::Vector3d& upper_corner)
+{
+  return {name, [lower_corner, upper_corner](const Eigen::Vector3d& point) {
+            return boxDistance(point, lower_corner, upper_corner);
+          }};
+}
+
+/** \brief The floor z = 0. */
+inline ScenePart
+floorPart()
+{
+  return {"floor", [](const Eigen::Vector3d& point) { return point.z(); }};
+}
+
+Scene
+makeBowl();
+
+Scene
+makeCan();
+
+/** \brief Mug with its handle on the +x side, in full view from -y. */
+Scene
+makeMug();
+
+/** \brief The same mug with its handle on the +y side, hidden from -y. */
+Scene
+makeMugHiddenHandle();
+
+Scene
+makeTableTop();
+
+Scene
+makeTable();
+
+Scene
+makeCorridor();
+
+Scene
+makeStairs();
+
+Scene
+makeRoom();
+
+Scene
+makeGround();
+
+} // namespace simulator
+} // namespace bayesian_icp

@@ -1,0 +1,55 @@
+/** \file
+ * \brief The scenes that can be scanned, as signed distance functions in metres.
+ *
+ * The world frame has z up. Its origin lies on the object: in the middle of the height
+ * of a bowl, can or mug, on its axis; in the middle of the upper side of a table; on
+ * the floor elsewhere.
+ */
+#pragma once
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp {
+namespace simulator {
+
+/** \brief Signed distance [m] of a point of the world frame [m] to a surface. */
+using DistanceFunction = std::function<double(const Eigen::Vector3d&)>;
+
+/** \brief A named piece of a scene, such as the handle of a mug. */
+struct ScenePart {
+  std::string name;
+  DistanceFunction distance;
+};
+
+/** \brief The union of its parts. */
+struct Scene {
+  /** One line for people. */
+  std::string description;
+  /** The motions that a registration of two scans cannot or can barely see. */
+  std::string unobservable;
+  std::vector<ScenePart> parts;
+
+  /** \brief Signed distance to the nearest part [m]; a lower bound outside. */
+  double
+  distance(const Eigen::Vector3d& point) const;
+
+  /** \brief Name of the part whose surface is nearest to \p point. */
+  const std::string&
+  nearestPart(const Eigen::Vector3d& point) const;
+};
+
+/** \brief The names that makeScene() knows, in the order in which they are listed. */
+const std::vector<std::string>&
+sceneNames();
+
+/** \brief Build a scene.
+ * \throws std::invalid_argument if there is no scene of this name */
+Scene
+makeScene(const std::string& name);
+
+} // namespace simulator
+} // namespace bayesian_icp

@@ -1,0 +1,27 @@
+# Shared by scripts/demo and scripts/test: where things are, and how to build.
+# shellcheck shell=bash
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+build=$root/build
+
+# Parallel compile jobs: one a processor, and 2 GB of free memory for each.
+num_jobs() {
+  local processors memory
+  processors=$(nproc)
+  memory=$(awk '/^MemAvailable:/ { print int($2 / 2000000) }' /proc/meminfo)
+  echo $((memory < 1 ? 1 : memory < processors ? memory : processors))
+}
+
+# Configures build/. Arguments go to CMake; an existing build folder keeps its generator.
+configure() {
+  local generator=()
+  if [[ ! -f $build/CMakeCache.txt ]] && command -v ninja >/dev/null; then
+    generator=(-G Ninja)
+  fi
+  cmake -S "$root" -B "$build" "${generator[@]}" "$@"
+}
+
+# Builds the targets named by the arguments, or everything.
+compile() {
+  cmake --build "$build" --parallel "$(num_jobs)" "${@/#/--target=}"
+}

@@ -1,0 +1,85 @@
+"""Runs the real pcl_bayesian_icp; the environment says where it and the scans are."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import cloud_files
+
+TOOL = os.environ["PCL_BAYESIAN_ICP"]
+DATA = pathlib.Path(os.environ["PCL_BAYESIAN_ICP_DATA"])
+
+# The pose that brings the source of small_pair() onto its target.
+SMALL_PAIR_POSE = (0.01, -0.02, 0.015, 0.05, -0.04, 0.08)
+FAST = ["--samples", "60", "--chains", "2", "--step-size", "1e-6"]
+
+
+def run(*arguments, **options):
+    """The completed process; nothing that the tool does may take longer than a minute."""
+    options.setdefault("stdout", subprocess.PIPE)
+    command = [TOOL, *map(str, arguments)]
+    return subprocess.run(
+        command, stderr=subprocess.PIPE, text=True, timeout=60, check=False, **options
+    )
+
+
+def strict_json(text):
+    """NaN and Infinity are no JSON."""
+
+    def refuse(constant):
+        raise ValueError(f"{constant} in JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+class ToolTest(unittest.TestCase):
+    """A folder of its own for every test, and what is asked of all runs."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def file(self, name, content):
+        path = self.folder / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def small_pair(self, **writing):
+        """A box and the same box moved, as two PCD files."""
+        target = cloud_files.box_surface(seed=1)
+        matrix = cloud_files.matrix_of(*SMALL_PAIR_POSE)
+        source = [
+            tuple(map(cloud_files.as_float32, cloud_files.inverse_moved(matrix, point)))
+            for point in cloud_files.box_surface(seed=2)
+        ]
+        return (
+            self.file("source.pcd", cloud_files.pcd_bytes(source, **writing)),
+            self.file("target.pcd", cloud_files.pcd_bytes(target, **writing)),
+        )
+
+    def assert_refused(self, exit_code, result, *parts):
+        """One line on standard error that has all \\p parts, and nothing else."""
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        self.assertEqual(result.stdout, "")
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("pcl_bayesian_icp: "), result.stderr)
+        for part in parts:
+            self.assertIn(str(part), lines[0])
+
+    def assert_ran(self, result):
+        """A posterior was sampled, whatever is to be thought of it."""
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+
+    def run_to_files(self, *arguments):
+        """Run with -o; (samples.csv as text, posterior.json parsed)."""
+        output = self.folder / "output"
+        result = run(*arguments, "-o", output, "--quiet")
+        self.assert_ran(result)
+        self.assertEqual(result.stdout, "")
+        samples = (output / "samples.csv").read_text()
+        return samples, strict_json((output / "posterior.json").read_text())

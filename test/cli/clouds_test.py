@@ -1,0 +1,249 @@
+"""Clouds that are read in every encoding, and clouds that cannot be."""
+
+import math
+import resource
+import subprocess
+import unittest
+
+import cloud_files
+from cli_tool import DATA, FAST, TOOL, ToolTest, run, strict_json
+from cloud_files import XYZ, pcd_bytes, pcd_header, ply_bytes
+
+POINTS = cloud_files.box_surface(num_points=50)
+
+
+class BrokenClouds(ToolTest):
+    def refuse(self, name, content, *reason):
+        """As source and as target: exit 3, the file and the reason."""
+        bad = self.file(name, content) if content is not None else self.folder / name
+        good = self.file("good.pcd", pcd_bytes(POINTS))
+        for clouds in ((bad, good), (good, bad)):
+            self.assert_refused(3, run(*clouds, *FAST), f"{bad}: ", *reason)
+
+    def test_no_such_thing(self):
+        self.refuse("missing.pcd", None, "no such file")
+        self.refuse("empty.pcd", "", "is empty")
+        self.refuse("empty.ply", "", "is empty")
+        self.refuse("cloud.xyz", "1 2 3\n", "neither .pcd nor .ply")
+        (self.folder / "folder.pcd").mkdir()
+        self.refuse("folder.pcd", None, "is a directory")
+        (self.folder / "null.pcd").symlink_to("/dev/null")
+        self.refuse("null.pcd", None, "is not a regular file")
+
+    def test_no_cloud(self):
+        self.refuse("text.pcd", "Dear reader,\nthis is no cloud.\n", "has no PCD header")
+        self.refuse("text.ply", "Dear reader,\nthis is no cloud.\n", "has no PLY header")
+        self.refuse("binary.pcd", bytes(range(256)) * 400, "has no PCD header")
+        self.refuse("escape.ply", "ply\n\x1b[31m\n", "'?[31m'")
+
+    def test_headers_cut_off_anywhere(self):
+        for encoding in ("ascii", "binary"):
+            header = pcd_header(XYZ, 50, encoding)
+            for length in range(60, len(header) - len(encoding), 25):
+                self.refuse("cut.pcd", header[:length])
+        header = ply_bytes(POINTS).split(b"end_header")[0]
+        for length in range(8, len(header), 25):
+            self.refuse("cut.ply", header[:length])
+
+    def test_bodies_cut_off(self):
+        for encoding in ("ascii", "binary", "binary_compressed"):
+            content = pcd_bytes(POINTS, encoding=encoding)
+            start = len(pcd_header(XYZ, 50, encoding))
+            # In ASCII a number that lost digits is a number still; 24 bytes are a whole one.
+            for length in (start, start + 5, (start + len(content)) // 2, len(content) - 24):
+                with self.subTest(encoding=encoding, length=length):
+                    self.refuse("cut.pcd", content[:length])
+        for encoding in ("ascii", "binary_little_endian", "binary_big_endian"):
+            content = ply_bytes(POINTS, encoding=encoding)
+            start = content.index(b"end_header") + len("end_header\n")
+            for length in (start, start + 5, (start + len(content)) // 2, len(content) - 14):
+                with self.subTest(encoding=encoding, length=length):
+                    self.refuse("cut.ply", content[:length])
+
+    def test_headers_that_lie(self):
+        def changed(encoding, old, new):
+            return pcd_bytes(POINTS, encoding=encoding).replace(old, new)
+
+        for encoding in ("ascii", "binary", "binary_compressed"):
+            for count in (b"51", b"2000000000"):
+                more = changed(encoding, b"WIDTH 50", b"WIDTH " + count)
+                more = more.replace(b"POINTS 50", b"POINTS " + count)
+                self.refuse("lie.pcd", more, f"it says {count.decode()} points")
+            huge = changed(encoding, b"POINTS 50", b"POINTS 1000000000000")
+            self.refuse("lie.pcd", huge, "POINTS 1000000000000")
+        self.refuse("lie.pcd", changed("binary", b"WIDTH 50", b"WIDTH 49"), "inconsistent")
+        self.refuse("lie.pcd", changed("binary", b"SIZE 4", b"SIZE 3"), "'x'", "SIZE")
+        self.refuse("lie.pcd", changed("binary", b"COUNT 1 1 1", b"COUNT 1 1"), "COUNT")
+        self.refuse("lie.pcd", changed("binary", b"DATA binary", b"DATA zip"), "zip")
+        fewer = changed("ascii", b" 50", b" 49")
+        self.refuse("lie.pcd", fewer, "more points than the 49")
+        vertices = ply_bytes(POINTS, encoding="binary_little_endian")
+        vertices = vertices.replace(b"vertex 50", b"vertex 2000000000")
+        self.refuse("lie.ply", vertices, "2000000000")
+
+    def test_lying_headers_allocate_nothing(self):
+        """With an address space that could not hold a tenth of what the header claims."""
+        lie = pcd_bytes(POINTS).replace(b" 50", b" 2000000000")
+        limit = 2 * 1024**3
+        result = subprocess.run(
+            [TOOL, self.file("lie.pcd", lie), self.file("good.pcd", pcd_bytes(POINTS))],
+            capture_output=True,
+            text=True,
+            check=False,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
+        )
+        self.assert_refused(3, result, "lie.pcd", "cut off")
+
+    def test_values_that_are_no_numbers(self):
+        content = pcd_bytes(POINTS, encoding="ascii")
+        bad = content.replace(b"\nDATA ascii\n", b"\nDATA ascii\n1 2 three\n")
+        self.refuse("word.pcd", bad, "point 1: 'three' is not a number")
+        bad = content.replace(b"\nDATA ascii\n", b"\nDATA ascii\n1 2\n")
+        self.refuse("short.pcd", bad, "point 1 has 2 values in place of 3")
+
+    def test_no_usable_points(self):
+        nan = math.nan
+        self.refuse("nan.pcd", pcd_bytes([(nan, nan, nan)] * 9), "has no finite points")
+        self.refuse("nan.pcd", pcd_bytes([(nan, 1, 1)] * 9, encoding="ascii"), "no finite points")
+        two_finite = [(nan, 1, 1)] * 9 + [(0, 0, 0), (1, 1, 1)]
+        self.refuse("two.pcd", pcd_bytes(two_finite), "has only 2 finite points")
+        self.refuse("none.pcd", pcd_bytes([]), "has no points")
+        self.refuse("none.pcd", pcd_bytes([], encoding="binary_compressed"), "has no points")
+        self.refuse("none.ply", ply_bytes([]), "has no points")
+        for count in (1, 2):
+            reason = f"has only {count} finite points"
+            self.refuse("few.pcd", pcd_bytes(POINTS[:count]), reason)
+
+    def test_no_coordinates(self):
+        flat = [("x", "f"), ("y", "f"), ("intensity", "f")]
+        self.refuse("flat.pcd", pcd_bytes(POINTS, flat), "no floating-point fields x, y and z")
+        whole = [("x", "i"), ("y", "i"), ("z", "i")]
+        rows = [(1, 2, 3)] * 9
+        self.refuse("whole.pcd", pcd_bytes(rows, whole), "no floating-point fields")
+        self.refuse("flat.ply", ply_bytes(POINTS, flat), "no floating-point fields")
+
+
+class Encodings(ToolTest):
+    """The same points give the same draws, however they are written."""
+
+    def samples_of(self, name, content_of):
+        pairs = []
+        for role, seed in (("source", 2), ("target", 1)):
+            points = cloud_files.box_surface(seed=seed)
+            pairs.append(self.file(f"{role}_{name}", content_of(points)))
+        return self.run_to_files(*pairs, *FAST)[0]
+
+    def test_all_encodings_give_the_same_draws(self):
+        expected = self.samples_of("a.pcd", pcd_bytes)
+        self.assertEqual(len(expected.splitlines()), 61)
+        double = [(name, "d") for name, _ in XYZ]
+        colour = XYZ + [("red", "B"), ("green", "B"), ("blue", "B")]
+
+        def without(content, *lines):
+            kept = [x for x in content.split(b"\n") if not x.startswith(lines)]
+            return b"\n".join(kept)
+
+        variants = {
+            "ascii.pcd": lambda p: pcd_bytes(p, encoding="ascii"),
+            "compressed.pcd": lambda p: pcd_bytes(p, encoding="binary_compressed"),
+            "CAPITAL.PCD": pcd_bytes,
+            "double.pcd": lambda p: pcd_bytes(p, double),
+            "double_ascii.pcd": lambda p: pcd_bytes(p, double, "ascii"),
+            "windows.pcd": lambda p: pcd_bytes(p, encoding="ascii").replace(b"\n", b"\r\n"),
+            "padded.pcd": lambda p: pcd_bytes(p) + bytes(4096),
+            "organised.pcd": lambda p: pcd_bytes(p, height=10),
+            "moved_viewpoint.pcd": lambda p: pcd_bytes(p, viewpoint="1 2 3 0 1 0 0"),
+            "no_count.pcd": lambda p: without(pcd_bytes(p, encoding="ascii"), b"COUNT"),
+            "no_size.pcd": lambda p: without(
+                pcd_bytes(p, encoding="ascii"), b"WIDTH", b"HEIGHT", b"VIEWPOINT"
+            ),
+            "columns.pcd": lambda p: pcd_bytes(p).replace(b"FIELDS", b"COLUMNS"),
+            "ascii.ply": ply_bytes,
+            "little.ply": lambda p: ply_bytes(p, encoding="binary_little_endian"),
+            "big.ply": lambda p: ply_bytes(p, encoding="binary_big_endian"),
+            "double.ply": lambda p: ply_bytes(p, double, "binary_little_endian"),
+            "colour.ply": lambda p: ply_bytes([q + (1, 2, 3) for q in p], colour),
+        }
+        for name, content_of in variants.items():
+            with self.subTest(file=name):
+                self.assertEqual(self.samples_of(name, content_of), expected)
+
+    def test_points_that_are_not_finite_are_skipped(self):
+        nan = math.nan
+        with_nan = lambda p: pcd_bytes([(nan, nan, nan)] + p[:9] + [(1, math.inf, 1)] + p[9:])
+        self.assertEqual(self.samples_of("n.pcd", with_nan), self.samples_of("a.pcd", pcd_bytes))
+
+
+class DegenerateClouds(ToolTest):
+    """Nothing to register: an answer, no crash, and JSON that is JSON."""
+
+    def run_on(self, points, *options):
+        path = self.file("cloud.pcd", pcd_bytes(points))
+        result = run(path, path, "--json", *FAST, *options)
+        self.assert_ran(result)
+        return strict_json(result.stdout), result
+
+    def test_degenerate_shapes(self):
+        shapes = {
+            "three points": POINTS[:3],
+            "one place": [(0.5, 0.25, 1.0)] * 40,
+            "line": [(0.01 * i, 0.02 * i, 0.0) for i in range(40)],
+            "plane": [(x, y, 0.0) for x, y, _ in POINTS],
+            "micrometres": [tuple(1e-6 * a for a in p) for p in POINTS],
+            "far apart": [tuple(1e4 * a for a in p) for p in POINTS],
+        }
+        for name, points in shapes.items():
+            with self.subTest(shape=name):
+                document, _ = self.run_on(points)
+                self.assertEqual(document["source"]["points"], len(points))
+
+    def test_far_from_the_origin(self):
+        document, result = self.run_on([tuple(a + 1e6 for a in p) for p in POINTS])
+        self.assertEqual(document["source"]["finite_points"], 50)
+        self.assertIn("kept to 0.062 m", result.stderr)
+
+    def test_numbers_near_the_largest(self):
+        self.run_on([tuple(a * 1e37 for a in p) for p in POINTS])
+
+    def test_nothing_within_the_distance(self):
+        far = [tuple(a + 100 for a in p) for p in POINTS]
+        source = self.file("source.pcd", pcd_bytes(POINTS))
+        target = self.file("target.pcd", pcd_bytes(far))
+        output = self.folder / "output"
+        result = run(source, target, "-d", "0.1", "--json", "-o", output)
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(strict_json(result.stdout)["status"]["name"], "too_few_correspondences")
+        self.assertIn("too few correspondences", result.stderr)
+        self.assertEqual(list(output.iterdir()), [])
+
+
+class CommittedScans(ToolTest):
+    def test_every_pair_is_registered(self):
+        folders = sorted(path.parent for path in DATA.glob("*/source.pcd"))
+        self.assertEqual(len(folders), 7)
+        for folder in folders:
+            with self.subTest(pair=folder.name):
+                self.check(folder)
+
+    def check(self, folder):
+        """With a small step the posterior holds the truth within four deviations; where
+        the translation is observable, ICP halves the error of the guess at least."""
+        pair = (folder / "source.pcd", folder / "target.pcd")
+        _, document = self.run_to_files(*pair, "--step-size", "1e-5")
+        header = (folder / "source.pcd").read_bytes()[:400]
+        num_points = int(header.split(b"POINTS ")[1].split(b"\n")[0])
+        self.assertEqual(document["source"]["points"], num_points)
+
+        numbers = list(map(float, (folder / "T_target_source.txt").read_text().split()))
+        truth = numbers[3:12:4]
+        self.assertGreater(document["posterior"]["draws"], 0)
+        for coordinate, true_value in zip(document["posterior"]["coordinates"], truth):
+            error = abs(coordinate["mean"] - true_value)
+            self.assertLess(error, 4 * coordinate["standard_deviation"], coordinate["name"])
+        if folder.name not in ("table_top", "corridor"):
+            found = [row[3] for row in document["icp"]["T_target_source"][:3]]
+            self.assertLess(math.dist(found, truth), math.hypot(*truth) / 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

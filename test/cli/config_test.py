@@ -1,0 +1,262 @@
+"""Configuration files in both layouts, and that a run can be repeated from what it wrote."""
+
+import copy
+import json
+import math
+import unittest
+
+import cloud_files
+from cli_tool import FAST, ToolTest, run, strict_json
+
+AUTHORS_CONFIG = {
+    "normalize-cloud": False,
+    "initial-guess": {"x": 0.01, "y": 0.0, "z": 0.0, "roll": 0.0, "pitch": 0.0, "yaw": 0.1},
+    "prior": {
+        "mean-x": 0.5,
+        "mean-y": 0.25,
+        "mean-z": 0.125,
+        "mean-roll": 0.1,
+        "mean-pitch": 0.2,
+        "mean-yaw": 0.3,
+        "variance": 0.75,
+    },
+    "method": "preconditioned_sgld",
+    "icp": {
+        "batch-size": 50,
+        "max-matching-distance": 1.0,
+        "max-iterations": 40,
+        "convergence-steps": 5,
+        "translational-convergence": 0.00005,
+        "rotational-convergence": 0.000005,
+        "filter": True,
+    },
+    "fixed": {"step-size": 1.0},
+    "adam": {"step-size": 0.1, "decay-rate-a": 0.9, "decay-rate-b": 0.999},
+    "adadelta": {"decay-rate": 0.96, "preconditioner": 1e-3},
+    "momentum": {"step-size": 1},
+    "rmsprop": {"step-size": 0.01, "decay-rate": 0.9},
+    "preconditioned_sgld": {"step-size": 0.003, "adjust_noise": 3, "decay-rate": 0.95},
+    "preconditioned_sgld2": {"step-size": 0.1, "adjust_noise": 30, "decay-rate": 0.9},
+}
+
+
+class ConfigTest(ToolTest):
+    def config(self, content):
+        text = content if isinstance(content, (str, bytes)) else json.dumps(content)
+        return self.file("config.json", text)
+
+    def refuse(self, exit_code, content, *reason):
+        path = self.config(content)
+        result = run(*self.small_pair(), *FAST, "--config", path)
+        self.assert_refused(exit_code, result, f"{path}: ", *reason)
+
+    def options(self, content, *arguments):
+        path = self.config(content)
+        result = run(*self.small_pair(), "--config", path, "--json", *arguments)
+        self.assert_ran(result)
+        return strict_json(result.stdout)["options"], result
+
+
+class OwnLayout(ConfigTest):
+    def test_values_and_defaults(self):
+        options, _ = self.options({"chains": {"num_draws": 44, "seed": 5}})
+        self.assertEqual(options["chains"]["num_draws"], 44)
+        self.assertEqual(options["chains"]["seed"], 5)
+        self.assertEqual(options["chains"]["num_chains"], 4)
+
+    def test_null_is_no_gate_no_mean_no_prior(self):
+        content = {
+            "registration": {"max_distance_m": None},
+            "prior": {"mean_m_rad": None, "variance_m2_rad2": [1, 1, None, 1, 1, 1]},
+        }
+        options, _ = self.options(content, *FAST)
+        self.assertIsNone(options["registration"]["max_distance_m"])
+        self.assertIsNone(options["prior"]["mean_m_rad"])
+        self.assertEqual(options["prior"]["variance_m2_rad2"], [1, 1, None, 1, 1, 1])
+
+    def test_command_line_comes_first(self):
+        content = {"chains": {"num_draws": 44, "seed": 5}}
+        options, _ = self.options(content, "--samples", "45")
+        self.assertEqual(options["chains"]["num_draws"], 45)
+        self.assertEqual(options["chains"]["seed"], 5)
+
+    def test_broken_files(self):
+        self.refuse(3, "", "is empty")
+        self.refuse(3, '{\n  "chains": {"seed" 5}\n}', "broken JSON", "line 2, column 21")
+        self.refuse(3, '{"chains": ', "broken JSON", "line 1")
+        self.refuse(3, '{"chains": {"seed": NaN}}', "broken JSON")
+        self.refuse(3, b'{"chains": "\xff"}', "broken JSON")
+        self.refuse(3, '{"sgld": {"step_size": 1e999}}', "broken JSON")
+        self.refuse(3, "[" * 100000, "broken JSON")
+        self.refuse(2, "[]", "is not a JSON object")
+        result = run(*self.small_pair(), "--config", "no_such.json")
+        self.assert_refused(3, result, "no_such.json: no such file")
+        result = run(*self.small_pair(), "--config", self.folder)
+        self.assert_refused(3, result, "is a directory")
+
+    def test_unknown_keys(self):
+        self.refuse(2, {"chain": {}}, "unknown key 'chain'")
+        self.refuse(2, {"chains": {"sed": 5}}, "unknown key 'chains.sed'")
+
+    def test_malformed_values(self):
+        bad = [
+            ("chains", "num_draws", "9"),
+            ("chains", "num_draws", 9.5),
+            ("chains", "num_draws", 1e12),
+            ("chains", "seed", -1),
+            ("chains", "seed", None),
+            ("sgld", "step_size", None),
+            ("sgld", "step_size", [1]),
+            ("prior", "frame", "Origin"),
+            ("prior", "mean_m_rad", [1, 2, 3, 4, 5]),
+            ("prior", "variance_m2_rad2", 1),
+            ("registration", "reciprocal", 1),
+            ("registration", "guess_matrix", [[1, 0, 0, 0]] * 3),
+            ("registration", "guess_matrix", [[1, 0, 0, 0]] * 4),
+        ]
+        for group, key, value in bad:
+            with self.subTest(key=key, value=value):
+                self.refuse(2, {group: {key: value}}, f"{group}.{key}")
+        self.refuse(2, {"chains": 5}, "chains is '5'")
+
+    def test_values_out_of_range(self):
+        path = self.config({"sgld": {"decay_rate": 2}})
+        result = run(*self.small_pair(), "--config", path)
+        self.assert_refused(2, result, "--decay-rate: decay_rate is 2")
+
+    def test_other_schemas(self):
+        self.refuse(2, {"schema": "pcl_bayesian_icp/posterior", "schema_version": 2}, "version '2'")
+        self.refuse(2, {"schema": "x", "schema_version": 1}, "unknown schema '\"x\"'")
+        same = {"schema": "pcl_bayesian_icp/posterior", "schema_version": 1}
+        self.refuse(2, same, "'options' is missing")
+
+
+class AuthorsLayout(ConfigTest):
+    def changed(self, **groups):
+        content = copy.deepcopy(AUTHORS_CONFIG)
+        for group, value in groups.items():
+            group = group if group in content else group.replace("_", "-")
+            if isinstance(value, dict):
+                content[group].update(value)
+            else:
+                content[group] = value
+        return content
+
+    def test_what_it_becomes(self):
+        options, result = self.options(AUTHORS_CONFIG)
+        self.assertAlmostEqual(options["sgld"]["step_size"], 0.003 / 300, delta=1e-18)
+        self.assertEqual(options["posterior"]["effective_points"], 300)
+        self.assertEqual(options["posterior"]["measurement_sigma_m"], 1)
+        self.assertEqual(options["sgld"]["noise_factor"], 3)
+        self.assertEqual(options["sgld"]["decay_rate"], 0.95)
+        self.assertEqual(options["sgld"]["block_decay_factor"], 1)
+        self.assertEqual(options["chains"]["num_chains"], 1)
+        self.assertEqual(options["chains"]["num_draws"], 40)
+        self.assertEqual(options["chains"]["num_burn_in"], 0)
+        self.assertEqual(options["mini_batch"]["batch_size"], 50)
+        self.assertEqual(options["mini_batch"]["sampling"], "shuffled-epochs")
+        self.assertEqual(options["prior"]["mean_m_rad"], [0.5, 0.25, 0.125, 0.1, 0.2, 0.3])
+        self.assertEqual(options["prior"]["variance_m2_rad2"], [0.75] * 6)
+        self.assertEqual(options["registration"]["max_distance_m"], 1)
+        self.assertIs(options["registration"]["one_to_one"], True)
+        guess = cloud_files.matrix_of(0.01, 0, 0, 0, 0, 0.1)
+        for row, expected in zip(options["registration"]["guess_matrix"], guess):
+            for number, expected_number in zip(row, expected):
+                self.assertAlmostEqual(number, expected_number, delta=1e-15)
+        self.assertIn("note: icp.convergence-steps, ", result.stderr)
+
+    def test_finite_source_points_count(self):
+        nan = math.nan
+        points = cloud_files.box_surface(100) + [(nan, nan, nan)] * 50
+        source = self.file("nan.pcd", cloud_files.pcd_bytes(points))
+        config = self.config(AUTHORS_CONFIG)
+        result = run(source, self.small_pair()[1], "--config", config, "--json")
+        options = strict_json(result.stdout)["options"]
+        self.assertEqual(options["posterior"]["effective_points"], 100)
+        self.assertAlmostEqual(options["sgld"]["step_size"], 0.003 / 100, delta=1e-18)
+
+    def test_command_line_comes_first(self):
+        given = ["--step-size=1e-6", "--effective-points=77", "--samples=30", "--chains=2"]
+        options, _ = self.options(AUTHORS_CONFIG, *given)
+        self.assertEqual(options["sgld"]["step_size"], 1e-6)
+        self.assertEqual(options["posterior"]["effective_points"], 77)
+        self.assertEqual(options["chains"]["num_draws"], 30)
+        self.assertEqual(options["chains"]["num_chains"], 2)
+
+    def test_filter_as_number_and_none(self):
+        for value in (0, False):
+            options, _ = self.options(self.changed(icp={"filter": value}))
+            self.assertIs(options["registration"]["one_to_one"], False)
+
+    def test_quiet_silences_the_note(self):
+        path = self.config(AUTHORS_CONFIG)
+        result = run(*self.small_pair(), "--config", path, "--quiet")
+        self.assertNotIn("note", result.stderr)
+
+    def test_what_is_not_available(self):
+        for method in ("preconditioned_sgld2", "fixed", "adam", "adadelta", "momentum", "rmsprop"):
+            content = self.changed(method=method)
+            self.refuse(2, content, f"'{method}' is not available in this version")
+        content = self.changed(normalize_cloud=True)
+        self.refuse(2, content, "normalize-cloud is not available in this version")
+
+    def test_mistakes(self):
+        self.refuse(2, self.changed(method="sgd"), "unknown method 'sgd'")
+        self.refuse(2, self.changed(method=5), "method is '5'")
+        self.refuse(2, self.changed(icp={"batchsize": 5}), "unknown key 'icp.batchsize'")
+        self.refuse(2, self.changed(icp={"batch-size": "5"}), "icp.batch-size is '\"5\"'")
+        self.refuse(2, self.changed(icp={"batch-size": 2.5}), "icp.batch-size is '2.5'")
+        self.refuse(2, self.changed(icp={"filter": 2}), "icp.filter is '2'")
+        self.refuse(2, self.changed(icp={"convergence-steps": "x"}), "icp.convergence-steps")
+        self.refuse(2, self.changed(prior=5), "prior is '5'")
+        self.refuse(2, dict(AUTHORS_CONFIG, optimiser={}), "unknown key 'optimiser'")
+        for group, key in (("icp", "max-iterations"), ("prior", "mean-yaw")):
+            content = copy.deepcopy(AUTHORS_CONFIG)
+            del content[group][key]
+            self.refuse(2, content, f"'{group}.{key}' is missing")
+        result = run("a", "b", "--config", self.config(self.changed(prior={"variance": -1})))
+        self.assert_refused(2, result, "prior.variance[x] is -1")
+
+
+class Repeatability(ConfigTest):
+    OPTIONS = [
+        "--guess=0.001,0.002,0.003,0.01,0.02,0.03",
+        "--max-distance=0.5",
+        "--prior-variance=0.1,0.2,0.3,0.4,0.5,inf",
+        "--initial-spread=1e-3",
+        "--batch-sampling=shuffled-epochs",
+        "--seed=12345678901234567890",
+        "--step-size=1.1e-6",
+        "--samples=99",
+        "--mean",
+    ]
+
+    def test_a_run_is_repeated_from_its_posterior_json(self):
+        pair = self.small_pair()
+        expected, document = self.run_to_files(*pair, *self.OPTIONS)
+        whole = self.config(document)
+        self.assertEqual(self.run_to_files(*pair, "--config", whole)[0], expected)
+        part = self.file("options.json", json.dumps(document["options"]))
+        samples, repeated = self.run_to_files(*pair, "--config", part)
+        self.assertEqual(samples, expected)
+        self.assertEqual(repeated["options"], document["options"])
+
+    def test_a_run_of_the_authors_config_is_repeated(self):
+        pair = self.small_pair()
+        expected, document = self.run_to_files(*pair, "--config", self.config(AUTHORS_CONFIG))
+        samples, _ = self.run_to_files(*pair, "--config", self.config(document))
+        self.assertEqual(samples, expected)
+
+    def test_same_draws_on_any_number_of_threads(self):
+        pair = self.small_pair()
+        runs = [self.run_to_files(*pair, *FAST, "--threads", n)[0] for n in (1, 2, 5, 0)]
+        self.assertEqual(runs, runs[:1] * 4)
+
+    def test_other_seeds_give_other_draws(self):
+        pair = self.small_pair()
+        runs = {self.run_to_files(*pair, *FAST, "--seed", n)[0] for n in (1, 2, 3)}
+        self.assertEqual(len(runs), 3)
+
+
+if __name__ == "__main__":
+    unittest.main()

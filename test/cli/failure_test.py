@@ -1,0 +1,128 @@
+"""Runs that are cut short or cannot write: nothing is ever written by half."""
+
+import os
+import pty
+import resource
+import signal
+import subprocess
+import time
+import unittest
+
+from cli_tool import DATA, FAST, TOOL, ToolTest, run, strict_json
+
+# Minutes of work, of which each chain keeps a draw about every 50 ms.
+ENDLESS = ["--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
+
+
+class UnwritableOutput(ToolTest):
+    def test_folder_that_cannot_be_made(self):
+        obstacle = self.file("obstacle", "")
+        pair = self.small_pair()
+        for output in (obstacle, obstacle / "below", "/dev/full", "/proc/no_such"):
+            with self.subTest(output=output):
+                self.assert_refused(3, run(*pair, *FAST, "-o", output), output)
+
+    def test_name_that_is_taken_by_a_folder(self):
+        output = self.folder / "output"
+        (output / "samples.csv").mkdir(parents=True)
+        result = run(*self.small_pair(), *FAST, "-o", output)
+        self.assert_refused(3, result, output / "samples.csv", "is a directory")
+        self.assertEqual([path.name for path in output.iterdir()], ["samples.csv"])
+
+    def test_full_disk(self):
+        """No file may be larger than 4000 bytes; older files stay as they are."""
+        output = self.folder / "output"
+        output.mkdir()
+        (output / "aligned.pcd").write_text("old")
+
+        def limit_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
+
+        result = run(
+            *self.small_pair(),
+            *FAST,
+            "-o",
+            output,
+            preexec_fn=limit_files,
+            restore_signals=False,
+        )
+        self.assert_refused(3, result, output, "cannot be written: File too large")
+        self.assertEqual([path.name for path in output.iterdir()], ["aligned.pcd"])
+        self.assertEqual((output / "aligned.pcd").read_text(), "old")
+
+    def test_full_standard_output(self):
+        with open("/dev/full", "w", encoding="ascii") as full:
+            for words in (["--help"], [*self.small_pair(), *FAST]):
+                result = run(*words, stdout=full)
+                self.assertEqual(result.returncode, 3)
+                self.assertIn("standard output: cannot be written", result.stderr)
+
+
+class Interrupted(ToolTest):
+    def test_what_was_drawn_is_written(self):
+        output = self.folder / "output"
+        command = [TOOL, *self.small_pair(), *ENDLESS, "-o", output, "--json"]
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        with subprocess.Popen(command, **pipes) as process:
+            time.sleep(3)
+            process.send_signal(signal.SIGINT)
+            text, errors = process.communicate(timeout=30)
+        self.assertRegex(errors, r"^pcl_bayesian_icp: cancelled: .*\n$")
+        self.assertEqual(process.returncode, 130)
+        document = strict_json(text)
+        self.assertEqual(document["status"]["name"], "cancelled")
+        num_draws = document["posterior"]["draws"]
+        self.assertIn(num_draws, range(1, 4000))
+        samples = (output / "samples.csv").read_text()
+        self.assertEqual(len(samples.splitlines()), num_draws + 1)
+        self.assertEqual(strict_json((output / "posterior.json").read_text()), document)
+
+
+class Progress(ToolTest):
+    def standard_error_of(self, seconds, *options):
+        """What a terminal shows within so many seconds."""
+        controller, terminal = pty.openpty()
+        command = [TOOL, *self.small_pair(), *ENDLESS, *options]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=terminal) as process:
+            os.close(terminal)
+            time.sleep(seconds)
+            process.send_signal(signal.SIGINT)
+            shown = b""
+            try:
+                while chunk := os.read(controller, 4096):
+                    shown += chunk
+            except OSError:  # the other end is closed
+                pass
+            process.wait(timeout=30)
+        os.close(controller)
+        return shown.decode()
+
+    def test_bar_on_a_terminal_after_two_seconds(self):
+        shown = self.standard_error_of(3.5)
+        self.assertRegex(shown, r"\rsampling \[#*\.*\] +\d+ %")
+        self.assertTrue(shown.rstrip().endswith("\x1b[K"), shown)
+
+    def test_no_bar_before_or_when_quiet(self):
+        self.assertNotIn("sampling", self.standard_error_of(1.0))
+        self.assertNotIn("sampling", self.standard_error_of(3.0, "--quiet"))
+
+
+@unittest.skipUnless(
+    os.environ.get("PCL_BAYESIAN_ICP_REAL_DATA"), "PCL_BAYESIAN_ICP_REAL_DATA is not set"
+)
+class RealScans(ToolTest):
+    def test_every_pair_is_registered_from_its_guess(self):
+        root = type(DATA)(os.environ["PCL_BAYESIAN_ICP_REAL_DATA"])
+        guesses = sorted(root.glob("*/T_init.txt"))
+        self.assertTrue(guesses, f"no scans in {root}")
+        for guess in guesses:
+            with self.subTest(pair=guess.parent.name):
+                pair = [guess.parent / f"{role}.pcd" for role in ("source", "target")]
+                options = ["--guess", guess, "--step-size", "1e-6", "-i", "10"]
+                samples, document = self.run_to_files(*pair, *options)
+                self.assertEqual(len(samples.splitlines()), document["posterior"]["draws"] + 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

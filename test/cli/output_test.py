@@ -1,0 +1,281 @@
+"""What is printed, and what is written."""
+
+import csv
+import math
+import os
+import shutil
+import statistics
+import struct
+import subprocess
+import unittest
+
+import cloud_files
+from cli_tool import FAST, TOOL, ToolTest, run, strict_json
+
+NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
+
+
+def columns(samples):
+    """{column name: numbers} of samples.csv."""
+    rows = list(csv.DictReader(samples.splitlines()))
+    return {name: [float(row[name]) for row in rows] for name in rows[0]}
+
+
+def mean_and_errors(values, is_angle):
+    """Mean, of an angle the circular one, and errors about it."""
+    if not is_angle:
+        mean = math.fsum(values) / len(values)
+        return mean, [value - mean for value in values]
+    mean = math.atan2(math.fsum(map(math.sin, values)), math.fsum(map(math.cos, values)))
+    return mean, [math.remainder(value - mean, 2 * math.pi) for value in values]
+
+
+def floats(*values):
+    return [struct.unpack("<f", value)[0] for value in values]
+
+
+class Files(ToolTest):
+    def test_samples_csv(self):
+        options = ["--samples=61", "--chains=2", "--step-size=1e-6"]
+        samples, document = self.run_to_files(*self.small_pair(), *options)
+        lines = samples.splitlines()
+        self.assertEqual(lines[0], "chain,draw,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad")
+        indices = [tuple(line.split(",")[:2]) for line in lines[1:]]
+        expected = [("0", str(i)) for i in range(31)] + [("1", str(i)) for i in range(30)]
+        self.assertEqual(indices, expected)
+        for line in lines[1:]:
+            for text in line.split(",")[2:]:
+                self.assertEqual(float(text), float(format(float(text), ".17g")))
+                self.assertEqual(text, format(float(text), ".17g"))
+        counts = [chain["draws"] for chain in document["posterior"]["chains"]]
+        self.assertEqual(counts, [31, 30])
+
+    def test_posterior_json_agrees_with_the_draws(self):
+        samples, document = self.run_to_files(*self.small_pair(), *FAST)
+        posterior = document["posterior"]
+        draws = columns(samples)
+        covariance = posterior["covariances"][0]
+        self.assertEqual(covariance["order"], NAMES)
+        for k, name in enumerate(NAMES):
+            unit = "m" if k < 3 else "rad"
+            coordinate = posterior["coordinates"][k]
+            self.assertEqual((coordinate["name"], coordinate["unit"]), (name, unit))
+            mean, errors = mean_and_errors(draws[f"{name}_{unit}"], is_angle=k >= 3)
+            deviation = math.sqrt(math.fsum(e * e for e in errors) / (len(errors) - 1))
+            self.assertEqual(posterior["mean"][f"{name}_{unit}"], coordinate["mean"])
+            self.assertAlmostEqual(coordinate["mean"], mean, delta=1e-12)
+            self.assertAlmostEqual(
+                coordinate["median"], mean + statistics.median(errors), delta=1e-12
+            )
+            self.assertAlmostEqual(coordinate["standard_deviation"], deviation, delta=1e-12)
+            self.assertAlmostEqual(covariance["matrix"][k][k], deviation**2, delta=1e-12)
+        pose = [posterior["mean"][key] for key in list(posterior["mean"])[:6]]
+        for row, expected in zip(
+            posterior["mean"]["T_target_source"], cloud_files.matrix_of(*pose)
+        ):
+            for number, expected_number in zip(row, expected):
+                self.assertAlmostEqual(number, expected_number, delta=1e-12)
+
+    def test_posterior_json_describes_itself(self):
+        _, document = self.run_to_files(*self.small_pair(), *FAST)
+        self.assertEqual(document["schema"], "pcl_bayesian_icp/posterior")
+        self.assertEqual(document["schema_version"], 1)
+        self.assertEqual(document["source"]["points"], 300)
+        self.assertIn("source points into the target frame", document["frame"])
+        conventions = [c["convention"] for c in document["posterior"]["covariances"]]
+        self.assertEqual(conventions, ["parameters", "r3xso3", "left_se3", "right_se3"])
+        for covariance in document["posterior"]["covariances"]:
+            self.assertEqual(covariance["units"], ["m"] * 3 + ["rad"] * 3)
+            self.assertIn("frame", covariance["meaning"] + " frame")
+            matrix = covariance["matrix"]
+            for i in range(6):
+                for k in range(6):
+                    self.assertAlmostEqual(matrix[i][k], matrix[k][i], delta=1e-15)
+
+    def test_files_replace_older_ones_and_leave_nothing_else(self):
+        output = self.folder / "deep" / "output"
+        for seed in ("1", "2"):
+            self.assert_ran(run(*self.small_pair(), *FAST, "-o", output, "--seed", seed))
+        names = sorted(path.name for path in output.iterdir())
+        self.assertEqual(names, ["aligned.pcd", "posterior.json", "samples.csv"])
+        document = strict_json((output / "posterior.json").read_text())
+        self.assertEqual(document["options"]["chains"]["seed"], 2)
+        new_file = self.file("new", "")
+        for name in names:
+            self.assertEqual((output / name).stat().st_mode, new_file.stat().st_mode)
+
+    def test_names_that_are_not_utf8(self):
+        source, target = self.small_pair()
+        odd = os.fsencode(self.folder) + b"/\xff\xfe.pcd"
+        shutil.copyfile(source, odd)
+        command = [TOOL, odd, target, "--json", *FAST]
+        result = subprocess.run(command, stdout=subprocess.PIPE, check=False)
+        self.assertEqual(strict_json(result.stdout.decode())["source"]["points"], 300)
+
+    def run_with_some_diverged_chains(self, output):
+        """The tighter the prior, the more chains its gradient throws out: look for a run
+        that has chains of both kinds."""
+        pair = self.small_pair()
+        for variance in ("1e-3", "5e-4", "2e-4", "1e-4", "5e-5"):
+            for seed in range(6):
+                shutil.rmtree(output, ignore_errors=True)
+                options = ["--step-size=1e-5", "--samples=400", f"--seed={seed}"]
+                options += [f"--prior-variance={variance}", "--json", "-o", output]
+                result = run(*pair, *options)
+                document = strict_json(result.stdout)
+                chains = document["posterior"]["chains"]
+                good = [chain["chain"] for chain in chains if not chain["has_diverged"]]
+                if 0 < len(good) < len(chains):
+                    return result, document, good
+        return self.fail("no run has chains of both kinds")
+
+    def test_diverged_chains_are_left_out(self):
+        output = self.folder / "output"
+        result, document, good = self.run_with_some_diverged_chains(output)
+        self.assertEqual(result.returncode, 1)
+        self.assertEqual(document["status"]["name"], "diverged")
+        self.assertEqual(document["posterior"]["draws"], 100 * len(good))
+        written = columns((output / "samples.csv").read_text())["chain"]
+        self.assertEqual(written, [chain for chain in good for _ in range(100)])
+
+    def test_no_draws_no_files(self):
+        output = self.folder / "output"
+        options = ["--step-size=10", "--samples=400", "-o", output]
+        result = run(*self.small_pair(), *options)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("no files are written", result.stderr)
+        self.assertIn("Status: diverged: 4 of 4 chains", result.stdout)
+        self.assertEqual(list(output.iterdir()), [])
+
+
+class AlignedCloud(ToolTest):
+    FIELDS = cloud_files.XYZ + [
+        ("intensity", "f"),
+        ("normal_x", "f"),
+        ("normal_y", "f"),
+        ("normal_z", "f"),
+        ("curvature", "f"),
+        ("rgb", "I"),
+        ("ring", "H"),
+        ("label", "i"),
+        ("time", "d"),
+        ("flag", "B"),
+    ]
+
+    def source(self, **writing):
+        rows = []
+        for i, point in enumerate(cloud_files.box_surface(seed=2)):
+            normal = [0.0, 0.0, 0.0]
+            normal[i % 3] = 1.0
+            extras = (0.1 * i, 0xFF0000 + i, i, -i, 1e9 + i / 7, i % 256)
+            rows.append((*point, i / 3, *normal, *extras))
+        rows[7] = (math.nan,) * 3 + rows[7][3:]
+        rows[8] = rows[8][:4] + (math.nan,) * 3 + rows[8][7:]
+        return self.file("fields.pcd", cloud_files.pcd_bytes(rows, self.FIELDS, **writing))
+
+    def check(self, row, original, matrix):
+        moving = ("x", "y", "z", "normal_x", "normal_y", "normal_z")
+        for name, _ in self.FIELDS:
+            if name not in moving:
+                self.assertEqual(row[name], original[name], name)
+        names = (("xyz", moving[:3], cloud_files.moved), ("normal", moving[3:], cloud_files.rotated))
+        for label, fields, move in names:
+            before = floats(*(original[name] for name in fields))
+            after = floats(*(row[name] for name in fields))
+            if any(map(math.isnan, before)):
+                self.assertEqual([row[n] for n in fields], [original[n] for n in fields])
+                continue
+            for number, expected in zip(after, move(matrix, before)):
+                self.assertAlmostEqual(number, expected, delta=1e-6, msg=label)
+
+    def test_fields_and_order_are_kept(self):
+        for encoding, height in (("binary", 1), ("ascii", 10), ("binary_compressed", 10)):
+            source = self.source(encoding=encoding, height=height)
+            target = self.small_pair()[1]
+            _, document = self.run_to_files(source, target, *FAST)
+            header, rows = cloud_files.read_pcd(self.folder / "output" / "aligned.pcd")
+            self.assertEqual(header["HEIGHT"], [str(height)])
+            self.assertEqual(header["FIELDS"], [name for name, _ in self.FIELDS])
+            self.assertEqual(header["DATA"], ["binary_compressed"])
+            matrix = document["final_transformation"]["T_target_source"]
+            originals = cloud_files.read_pcd(self.source())[1]
+            self.assertEqual(len(rows), len(originals))
+            for row, original in zip(rows, originals):
+                self.check(row, original, matrix)
+
+    def test_viewpoint_is_the_targets(self):
+        source, _ = self.small_pair()
+        content = cloud_files.pcd_bytes(cloud_files.box_surface(), viewpoint="1 2 3 0 1 0 0")
+        self.run_to_files(source, self.file("seen.pcd", content), *FAST)
+        header, _ = cloud_files.read_pcd(self.folder / "output" / "aligned.pcd")
+        self.assertEqual(list(map(float, header["VIEWPOINT"])), [1, 2, 3, 0, 1, 0, 0])
+
+    def test_mean_in_place_of_icp(self):
+        pair = self.small_pair()
+        for option, key in (([], "icp"), (["--mean"], "posterior")):
+            _, document = self.run_to_files(*pair, *FAST, *option)
+            expected = document["icp"] if key == "icp" else document["posterior"]["mean"]
+            final = document["final_transformation"]["T_target_source"]
+            self.assertEqual(final, expected["T_target_source"])
+            _, rows = cloud_files.read_pcd(self.folder / "output" / "aligned.pcd")
+            _, originals = cloud_files.read_pcd(pair[0])
+            for row, original in zip(rows, originals):
+                before = floats(original["x"], original["y"], original["z"])
+                after = floats(row["x"], row["y"], row["z"])
+                self.assertLess(math.dist(after, cloud_files.moved(final, before)), 1e-6)
+
+
+class Printed(ToolTest):
+    def test_table_has_units_status_and_matrices(self):
+        pair = self.small_pair()
+        text = run(*pair, *FAST).stdout
+        document = strict_json(run(*pair, *FAST, "--json").stdout)
+        for coordinate in document["posterior"]["coordinates"]:
+            label = f"{coordinate['name']} [{coordinate['unit']}]"
+            row = next(line for line in text.splitlines() if line.startswith(label))
+            numbers = row[len(label) :].split()
+            keys = ["mean", "standard_deviation", "quantile_2.5_percent", "quantile_97.5_percent"]
+            for number, key in zip(numbers, keys):
+                self.assertAlmostEqual(float(number), coordinate[key], delta=0.6e-6)
+            self.assertAlmostEqual(float(numbers[4]), coordinate["rhat"], delta=0.6e-3)
+        self.assertIn("yaw [deg]", text)
+        self.assertIn("R-hat  bulk ESS  tail ESS", text)
+        self.assertIn("Status: not mixed", text)
+        self.assertIn("ICP:    converged", text)
+
+    def test_good_posterior_has_exit_code_0(self):
+        options = ["--step-size=5e-6", "--effective-points=60000", "--prior-variance=0.01"]
+        options += ["--batch-size=20", "--burn-in=1000", "--thinning=50", "--samples=4000"]
+        result = run(*self.small_pair(), *options, "--block-decay-factor=1")
+        self.assertIn("Status: ok", result.stdout)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_quiet_and_json(self):
+        pair = self.small_pair()
+        result = run(*pair, *FAST, "--quiet")
+        self.assertEqual(result.stdout, "")
+        self.assertRegex(result.stderr, r"^pcl_bayesian_icp: not mixed: .*\n$")
+        self.assertEqual(result.returncode, 1)
+        result = run(*pair, *FAST, "--json")
+        self.assertEqual(strict_json(result.stdout)["status"]["name"], "not_mixed")
+
+    @unittest.skipUnless(shutil.which("pcl_transform_point_cloud"), "pcl-tools not installed")
+    def test_matrix_can_be_pasted_into_pcl_transform_point_cloud(self):
+        source, target = self.small_pair()
+        output = self.folder / "output"
+        text = run(source, target, *FAST, "-o", output).stdout
+        pasted = text.splitlines()[-1].split()
+        self.assertEqual(pasted[0], "-matrix")
+        moved = self.folder / "moved.pcd"
+        command = ["pcl_transform_point_cloud", source, moved, *pasted]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        _, expected = cloud_files.read_pcd(output / "aligned.pcd")
+        _, found = cloud_files.read_pcd(moved)
+        self.assertEqual(len(found), len(expected))
+        for a, b in zip(found, expected):
+            a, b = (floats(row["x"], row["y"], row["z"]) for row in (a, b))
+            self.assertLess(math.dist(a, b), 1e-6)
+
+
+if __name__ == "__main__":
+    unittest.main()

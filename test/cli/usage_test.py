@@ -1,0 +1,230 @@
+"""The command line: what is understood, and how the rest is refused."""
+
+import re
+import unittest
+
+import cloud_files
+from cli_tool import FAST, SMALL_PAIR_POSE, ToolTest, run, strict_json
+
+
+class Usage(ToolTest):
+    def test_help_and_version_go_to_standard_output(self):
+        for option in ("-h", "--help", "-help"):
+            result = run(option)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn("Usage: pcl_bayesian_icp SOURCE TARGET", result.stdout)
+        self.assertRegex(run("--version").stdout, r"^pcl_bayesian_icp \d+\.\d+\.\d+\n$")
+
+    def test_help_names_every_option_of_the_library_with_its_default(self):
+        text = " ".join(run("--help").stdout.split())
+        defaults = {
+            "chains": "4",
+            "samples": "2000",
+            "burn-in": "0",
+            "thinning": "1",
+            "batch-size": "160",
+            "batch-sampling": "with-replacement",
+            "step-size": "1e-04",
+            "decay-rate": "0.9",
+            "lambda-rms": "1e-08",
+            "noise-factor": "1",
+            "block-decay-factor": "0.8",
+            "block-decay-interval": "10",
+            "block-decay-start": "0.95",
+            "effective-points": "6000",
+            "sigma": "1",
+            "prior-variance": "0.125",
+            "prior-frame": "origin",
+            "preset": "paper",
+            "initial-spread": "0",
+            "seed": "1",
+            "threads": "0",
+            "max-distance": "none",
+            "iterations": "50",
+        }
+        for name, default in defaults.items():
+            self.assertRegex(
+                text, rf"--{name}[ \]][^(]*(\([^)d]*\)[^(]*)*\(default {re.escape(default)}\)"
+            )
+        for name in ("guess", "prior-mean", "reciprocal", "mean", "config", "json", "quiet"):
+            self.assertIn(f"--{name} ", text)
+
+    def test_two_clouds_are_needed(self):
+        for clouds in ([], ["a.pcd"]):
+            self.assert_refused(2, run(*clouds), "two clouds are needed")
+        self.assert_refused(2, run("a.pcd", "b.pcd", "c.pcd"), "'c.pcd'")
+
+    def test_unknown_and_incomplete_options(self):
+        self.assert_refused(2, run("a.pcd", "b.pcd", "--sample", "9"), "'--sample'")
+        self.assert_refused(2, run("a.pcd", "b.pcd", "-x"), "'-x'")
+        self.assert_refused(2, run("a.pcd", "b.pcd", "--seed"), "--seed")
+        self.assert_refused(2, run("a.pcd", "b.pcd", "--seed=1", "--seed=2"), "--seed")
+        self.assert_refused(2, run("a.pcd", "b.pcd", "-o", ""), "output")
+
+    def test_malformed_values_name_option_and_value(self):
+        bad = [
+            ("samples", "many"),
+            ("samples", "1.5"),
+            ("samples", "99999999999"),
+            ("seed", "-1"),
+            ("seed", "18446744073709551616"),
+            ("max-distance", "0,1"),
+            ("max-distance", "1m"),
+            ("step-size", ""),
+            ("guess", "1,2,3,4,5"),
+            ("guess", "1,2,3,4,5,"),
+            ("guess", "1,2,3,4,5,6,7"),
+            ("prior-mean", "1"),
+            ("prior-variance", "1,2"),
+            ("initial-spread", "0,0,0,0,0,a"),
+            ("preset", "best"),
+            ("prior-frame", "centroid"),
+            ("batch-sampling", "all"),
+        ]
+        for name, value in bad:
+            with self.subTest(option=name, value=value):
+                result = run("a.pcd", "b.pcd", f"--{name}={value}" if value else f"--{name}=")
+                self.assert_refused(2, result, name, value)
+
+    def test_values_out_of_range(self):
+        bad = [
+            ("samples", "0", "num_draws is 0"),
+            ("chains", "0", "num_chains is 0"),
+            ("burn-in", "-1", "num_burn_in is -1"),
+            ("thinning", "0", "thinning is 0"),
+            ("batch-size", "0", "batch_size is 0"),
+            ("step-size", "nan", "step_size is nan"),
+            ("decay-rate", "1", "decay_rate is 1"),
+            ("lambda-rms", "0", "lambda_rms is 0"),
+            ("noise-factor", "-1", "noise_factor is -1"),
+            ("block-decay-factor", "0", "block_decay_factor is 0"),
+            ("block-decay-interval", "0", "block_decay_interval is 0"),
+            ("block-decay-start", "2", "block_decay_start is 2"),
+            ("effective-points", "0", "effective_points is 0"),
+            ("sigma", "0", "measurement_sigma is 0"),
+            ("prior-mean", "inf,0,0,0,0,0", "prior.mean is inf"),
+            ("prior-variance", "1,1,1,1,0,1", "prior.variance[pitch] is 0"),
+            ("initial-spread", "-1", "initial_spread is -1"),
+            ("threads", "-1", "num_threads is -1"),
+            ("max-distance", "0", "is 0"),
+            ("max-distance", "nan", "is nan"),
+            ("iterations", "0", "is 0"),
+            ("guess", "nan,0,0,0,0,0", "finite"),
+        ]
+        for name, value, complaint in bad:
+            with self.subTest(option=name, value=value):
+                result = run("a.pcd", "b.pcd", f"--{name}", value)
+                self.assert_refused(2, result, f"--{name}: ", complaint)
+
+    def test_presets_to_come_are_refused(self):
+        for preset in ("exact", "calibrated"):
+            result = run("a.pcd", "b.pcd", "--preset", preset)
+            self.assert_refused(2, result, "--preset", preset, "not available in this version")
+
+    def test_quiet_and_json_exclude_each_other(self):
+        self.assert_refused(2, run("a.pcd", "b.pcd", "--quiet", "--json"), "--json", "--quiet")
+
+
+class Values(ToolTest):
+    """Options arrive where they should: seen in the options that are reported."""
+
+    def options(self, *arguments):
+        result = run(*self.small_pair(), "--json", *FAST, *arguments)
+        self.assert_ran(result)
+        return strict_json(result.stdout)["options"]
+
+    def test_dashes_and_separators(self):
+        for words in (
+            ["--max-distance", "0.5"],
+            ["--max-distance=0.5"],
+            ["-max-distance", "0.5"],
+            ["-max-distance=0.5"],
+            ["-d", "0.5"],
+            ["-d0.5"],
+            ["-d", "+.5"],
+        ):
+            with self.subTest(words=words):
+                self.assertEqual(self.options(*words)["registration"]["max_distance_m"], 0.5)
+
+    def test_negative_numbers_and_lists(self):
+        mean = [-0.1, 0, 0.2, 0, 0, -0.3]
+        for words in (
+            ["--prior-mean", "-0.1,0,0.2,0,0,-0.3"],
+            ["--prior-mean=-0.1,0,0.2,0,0,-0.3"],
+            ["-prior-mean", "-.1,0,+.2,0,0,-3e-1"],
+        ):
+            self.assertEqual(self.options(*words)["prior"]["mean_m_rad"], mean)
+
+    def test_guess_as_pose_and_as_file(self):
+        matrix = cloud_files.matrix_of(*SMALL_PAIR_POSE)
+        text = "\n".join(" ".join(map(repr, map(float, row))) for row in matrix)
+        as_file = self.options("--guess", self.file("guess.txt", text))
+        as_pose = self.options("--guess", ",".join(map(str, SMALL_PAIR_POSE)))
+        for options in (as_file, as_pose):
+            for row, expected in zip(options["registration"]["guess_matrix"], matrix):
+                for number, expected_number in zip(row, expected):
+                    self.assertAlmostEqual(number, expected_number, delta=1e-15)
+
+    def test_one_number_for_all_and_no_prior(self):
+        prior = self.options("--prior-variance", "2")["prior"]
+        self.assertEqual(prior["variance_m2_rad2"], [2] * 6)
+        prior = self.options("--prior-variance", "1,2,3,4,5,inf")["prior"]
+        self.assertEqual(prior["variance_m2_rad2"], [1, 2, 3, 4, 5, None])
+
+    def test_every_option_arrives(self):
+        given = {
+            "chains": ("chains", "num_chains", 3),
+            "samples": ("chains", "num_draws", 61),
+            "burn-in": ("chains", "num_burn_in", 7),
+            "thinning": ("chains", "thinning", 2),
+            "seed": ("chains", "seed", 18446744073709551615),
+            "threads": ("chains", "num_threads", 2),
+            "batch-size": ("mini_batch", "batch_size", 31),
+            "batch-sampling": ("mini_batch", "sampling", "shuffled-epochs"),
+            "step-size": ("sgld", "step_size", 2e-6),
+            "decay-rate": ("sgld", "decay_rate", 0.8),
+            "lambda-rms": ("sgld", "lambda_rms", 1e-5),
+            "noise-factor": ("sgld", "noise_factor", 0.5),
+            "block-decay-factor": ("sgld", "block_decay_factor", 0.7),
+            "block-decay-interval": ("sgld", "block_decay_interval", 5),
+            "block-decay-start": ("sgld", "block_decay_start", 0.25),
+            "effective-points": ("posterior", "effective_points", 500),
+            "sigma": ("posterior", "measurement_sigma_m", 0.5),
+            "preset": ("posterior", "preset", "paper"),
+            "prior-frame": ("prior", "frame", "source-centroid"),
+            "iterations": ("registration", "icp_iterations", 3),
+        }
+        words = [f"--{name}={value}" for name, (_, _, value) in given.items()]
+        words += ["--reciprocal", "--one-to-one", "--mean"]
+        # FAST has some of them already.
+        result = run(*self.small_pair(), "--json", *words)
+        self.assert_ran(result)
+        options = strict_json(result.stdout)["options"]
+        for group, key, value in given.values():
+            self.assertEqual(options[group][key], value)
+        for key in ("reciprocal", "one_to_one", "use_mean"):
+            self.assertIs(options["registration"][key], True)
+
+
+class GuessFiles(ToolTest):
+    def refuse(self, content, *reason):
+        path = self.file("guess.txt", content)
+        result = run(*self.small_pair(), "--guess", path)
+        self.assert_refused(3, result, path, *reason)
+
+    def test_bad_files(self):
+        identity = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+        self.refuse("", "is empty")
+        self.refuse(identity[:-2], "15 numbers")
+        self.refuse(identity.replace("1", "one"), "'one' is not a number")
+        self.refuse("2" + identity[1:], "not a rotation")
+        self.refuse("-1" + identity[1:], "not a rotation")
+        self.refuse("nan" + identity[1:], "not finite")
+        self.refuse(identity[:-2] + "2", "last row")
+
+    def test_missing_file(self):
+        self.assert_refused(3, run("a", "b", "--guess", "no_such.txt"), "no_such.txt: no such file")
+
+
+if __name__ == "__main__":
+    unittest.main()

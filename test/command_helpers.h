@@ -1,0 +1,46 @@
+/** \file
+ * \brief Running a command line tool from a test and reading what it wrote.
+ */
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+struct CommandResult {
+  /** -1 if the shell did not end by itself. */
+  int exit_code;
+  /** Standard output and standard error. */
+  std::string output;
+};
+
+/** \brief Run a command by the shell and wait for its end. */
+inline CommandResult
+runShell(const std::string& command)
+{
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::string output;
+  std::array<char, 4096> buffer;
+  while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe))
+    output.append(buffer.data(), size);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+}
+
+/** \brief The bytes of a file; the test fails if it cannot be read. */
+inline std::string
+contentOf(const std::filesystem::path& path)
+{
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file) << path;
+  std::ostringstream content;
+  content << file.rdbuf();
+  return content.str();
+}

@@ -1,0 +1,13 @@
+# Runs the installed tools where nothing but their own path leads to the libraries.
+# Arguments: prefix.
+set -euo pipefail
+prefix=$1
+for tool in pcl_bayesian_icp pcl_bayesian_icp_simulate; do
+  env -i "$prefix/bin/$tool" --help >/dev/null
+  libraries=$(env -i "$(command -v ldd)" "$prefix/bin/$tool" | grep libpcl_bayesian_icp)
+  echo "$tool: $libraries"
+  # The tool's own rpath, not the build folder's.
+  if grep -v -F "$prefix/" <<<"$libraries"; then
+    exit 1
+  fi
+done

@@ -1,0 +1,30 @@
+# Builds the tree by colcon, as a ROS user would, uses the result, and fails if the tree is
+# not as it was. Arguments: the tree, cmake, compiler, compiler launcher (may be absent).
+set -euo pipefail
+tree=$1 cmake=$2 compiler=$3 launcher=${4-}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Names of everything in the tree but the top-level build folders and the history.
+names_in_tree() {
+  find "$tree" \( -path "$tree/.git" -o -path "$tree/build*" \) -prune -o -print | sort
+}
+names_in_tree >"$work/before"
+
+export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2} MAKEFLAGS=-j2
+cd "$work"
+colcon --log-base "$work/log" build --base-paths "$tree" \
+  --build-base "$work/build" --install-base "$work/install" \
+  --cmake-args -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
+  -DBAYESIAN_ICP_BUILD_TESTS=OFF
+names_in_tree | diff "$work/before" -
+
+# The workspace's environment is all that the consumer is told.
+set +u
+export COLCON_CURRENT_PREFIX=$work/install
+source "$work/install/local_setup.sh"
+set -u
+bash "$tree/test/packaging/build_and_run.sh" "$tree/test/packaging/core_consumer" \
+  "$work/core_consumer" core_consumer "$cmake" -D CMAKE_CXX_COMPILER="$compiler"
+"$cmake" -S "$tree/test/packaging/consumer" -B "$work/consumer" \
+  -D CMAKE_CXX_COMPILER="$compiler"
