@@ -103,9 +103,7 @@ logEvidence(StochasticEnergy& energy, const Gaussian& gaussian, Random& random)
 }
 
 std::vector<ChainMode>
-groupByMode(const std::vector<GaussianFit>& fits,
-            const std::vector<double>& log_evidences,
-            StochasticEnergy& energy)
+groupByMode(const std::vector<GaussianFit>& fits, StochasticEnergy& energy)
 {
   std::vector<ChainMode> modes;
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -115,20 +113,27 @@ groupByMode(const std::vector<GaussianFit>& fits,
       return overlap(other, fits[i].gaussian) ||
              !hasBarrier(other.mean(), fits[i].gaussian.mean(), energy);
     };
-    const auto found = std::find_if(modes.begin(), modes.end(), isSame);
-    ChainMode mode;
-    mode.members = {static_cast<int>(i)};
-    mode.log_evidence = log_evidences[i];
+    auto found = std::find_if(modes.begin(), modes.end(), isSame);
     if (found == modes.end())
-      modes.push_back(mode);
-    else
-      mergeInto(*found, mode);
+      found = modes.insert(found, ChainMode());
+    found->members.push_back(static_cast<int>(i));
+  }
+  return modes;
+}
+
+void
+sortByEvidence(const std::vector<double>& log_evidences, std::vector<ChainMode>& modes)
+{
+  for (auto& mode : modes) {
+    std::vector<double> of_members;
+    for (const int member : mode.members)
+      of_members.push_back(log_evidences[static_cast<std::size_t>(member)]);
+    mode.log_evidence = logMeanExp(of_members);
   }
   std::stable_sort(
       modes.begin(), modes.end(), [](const ChainMode& a, const ChainMode& b) {
         return a.log_evidence > b.log_evidence;
       });
-  return modes;
 }
 
 void

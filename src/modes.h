@@ -24,13 +24,15 @@ logMeanExp(const std::vector<double>& values);
 
 /** \brief Put chains together whose Gaussians overlap, or between which there is no
  * energy barrier.
- * \param[in] energy of any chain: all have the same values
- * \param[in] log_evidences one a chain
- * \return the best mode first */
+ * \param[in] energy of any chain: all have the same values */
 std::vector<ChainMode>
-groupByMode(const std::vector<GaussianFit>& fits,
-            const std::vector<double>& log_evidences,
-            StochasticEnergy& energy);
+groupByMode(const std::vector<GaussianFit>& fits, StochasticEnergy& energy);
+
+/** \brief Set the evidence of the modes to the mean of their chains', and put the best
+ * mode first.
+ * \param[in] log_evidences one a chain */
+void
+sortByEvidence(const std::vector<double>& log_evidences, std::vector<ChainMode>& modes);
 
 /** \brief Move the chains of clearly worse modes to the first one.
  * \param[in,out] set its modes are in order, the best one first */

@@ -1,9 +1,7 @@
 #include "modes.h"
-#include "run_state.h"
+#include "preconditioned_run.h"
 
-#include <bayesian_icp/langevin.h>
 #include <bayesian_icp/metropolis.h>
-#include <bayesian_icp/preconditioned_sampler.h>
 #include <bayesian_icp/summary.h>
 
 #include <algorithm>
@@ -13,10 +11,6 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Pairs of gradients of all chains of a mode in one joint iteration. */
-constexpr int num_joint_pairs = 40;
-constexpr int min_joint_iterations = 2;
-constexpr int max_joint_iterations = 8;
 /** Metropolis steps from which the thinning is found, and their burn-in; the thinning
  * for acceptance 1, and the largest one. */
 constexpr int num_pilot_steps = 90;
@@ -26,88 +20,7 @@ constexpr double pilot_thinning = 2.0, max_thinning = 60.0;
 constexpr double wanted_ess = 900.0, wanted_ess_share = 0.45;
 constexpr int max_extensions = 3;
 
-/** One run, from the starts to the draws. */
-class PreconditionedRun {
-public:
-  PreconditionedRun(const PreconditionedTarget& target,
-                    const PreconditionedOptions& sampler,
-                    const ChainOptions& options,
-                    const ProgressCallback& progress)
-  : target_(target)
-  , sampler_(sampler)
-  , options_(options)
-  , num_threads_(numThreadsFor(options, target.is_thread_safe))
-  , run_(progress)
-  {}
-
-  ChainSet
-  run();
-
-private:
-  struct ChainState {
-    std::unique_ptr<StochasticEnergy> energy;
-    std::unique_ptr<Random> random;
-    std::unique_ptr<SamplingChain> sampling;
-    long num_steps = 0;
-  };
-
-  template <typename Work>
-  void
-  forEach(const Work& work)
-  {
-    forEachChain(options_.num_chains, num_threads_, run_, [&](int i) {
-      work(static_cast<std::size_t>(i));
-    });
-  }
-
-  void
-  warmUpAlone();
-
-  void
-  poolFits(const std::vector<GaussianFit>& fits);
-
-  void
-  refineJointly();
-
-  bool
-  refineOnce(int iteration);
-
-  void
-  measureEvidence();
-
-  StepPlan
-  startLangevin();
-
-  StepPlan
-  startMetropolis();
-
-  void
-  startSampling();
-
-  void
-  sample(std::size_t chain, int num_burn_in);
-
-  bool
-  needsExtension() const;
-
-  void
-  extend();
-
-  std::size_t
-  modeOf(std::size_t chain) const;
-
-  const PreconditionedTarget& target_;
-  const PreconditionedOptions& sampler_;
-  const ChainOptions& options_;
-  int num_threads_;
-  RunState run_;
-  std::vector<ChainState> states_;
-  /** One a mode. */
-  std::vector<GaussianFit> fits_;
-  int num_burn_in_ = 0;
-  int thinning_ = 1;
-  ChainSet result_;
-};
+} // namespace
 
 ChainSet
 PreconditionedRun::run()
@@ -121,8 +34,9 @@ PreconditionedRun::run()
   if (!run_.stopped())
     refineJointly();
   if (!run_.stopped()) {
-    measureEvidence();
     startSampling();
+    measureEvidence(
+        [this](std::size_t i) -> const Gaussian& { return fits_[modeOf(i)].gaussian; });
     forEach([this](std::size_t i) { sample(i, num_burn_in_); });
     mergeOverlappingModes(result_);
     for (int i = 0; i < max_extensions && needsExtension(); ++i)
@@ -130,102 +44,6 @@ PreconditionedRun::run()
   }
   result_.cancelled = run_.cancelled();
   return std::move(result_);
-}
-
-void
-PreconditionedRun::warmUpAlone()
-{
-  std::vector<GaussianFit> fits(states_.size());
-  std::vector<double> log_evidences(states_.size());
-  forEach([&](std::size_t i) {
-    const int chain = static_cast<int>(i);
-    auto& state = states_[i];
-    state.energy = target_.make_energy(chain);
-    state.random = std::make_unique<Random>(options_.seed, i);
-    const Vector6d start =
-        state.energy->burnIn(state.energy->drawStart(*state.random), *state.random);
-    fits[i] = fitTempered(*state.energy, start, *state.random, [&] {
-      run_.reportWarmUp(chain);
-      return !run_.stopped();
-    });
-    log_evidences[i] = logEvidence(*state.energy, fits[i].gaussian, *state.random);
-  });
-  if (run_.stopped())
-    return;
-  result_.modes = groupByMode(fits, log_evidences, *states_.front().energy);
-  poolFits(fits);
-  moveFromWorseModes(result_);
-  fits_.resize(result_.modes.size());
-}
-
-void
-PreconditionedRun::poolFits(const std::vector<GaussianFit>& fits)
-{
-  for (const auto& mode : result_.modes) {
-    Vector6d mean = Vector6d::Zero();
-    Matrix6d precision = Matrix6d::Zero();
-    const double share = 1.0 / static_cast<double>(mode.members.size());
-    for (const int member : mode.members) {
-      const auto& gaussian = fits[static_cast<std::size_t>(member)].gaussian;
-      mean += share * gaussian.mean();
-      precision += share * gaussian.precision();
-    }
-    GaussianFit pooled;
-    pooled.gaussian = Gaussian(mean, precision);
-    fits_.push_back(pooled);
-  }
-}
-
-void
-PreconditionedRun::refineJointly()
-{
-  for (int i = 1; i <= max_joint_iterations; ++i)
-    if (!refineOnce(i) || run_.stopped())
-      return;
-}
-
-/** Returns whether another iteration is needed. */
-bool
-PreconditionedRun::refineOnce(int iteration)
-{
-  std::vector<RegressionSums> sums(states_.size());
-  forEach([&](std::size_t i) {
-    const std::size_t mode = modeOf(i);
-    const int members = static_cast<int>(result_.modes[mode].members.size());
-    sums[i] = collectGradients(*states_[i].energy,
-                               fits_[mode],
-                               (num_joint_pairs + members - 1) / members,
-                               *states_[i].random);
-    run_.reportWarmUp(static_cast<int>(i));
-  });
-  bool is_done = iteration >= min_joint_iterations;
-  for (std::size_t mode = 0; mode < fits_.size(); ++mode) {
-    RegressionSums total;
-    for (const int member : result_.modes[mode].members)
-      total += sums[static_cast<std::size_t>(member)];
-    updateFit(total,
-              iteration <= min_joint_iterations ? 1.0 : 0.6,
-              states_.front().energy->priorPrecision(),
-              fits_[mode]);
-    is_done = is_done && fits_[mode].has_converged;
-  }
-  return !is_done;
-}
-
-void
-PreconditionedRun::measureEvidence()
-{
-  std::vector<double> log_evidences(states_.size());
-  forEach([&](std::size_t i) {
-    log_evidences[i] =
-        logEvidence(*states_[i].energy, fits_[modeOf(i)].gaussian, *states_[i].random);
-  });
-  for (auto& mode : result_.modes) {
-    std::vector<double> of_members;
-    for (const int member : mode.members)
-      of_members.push_back(log_evidences[static_cast<std::size_t>(member)]);
-    mode.log_evidence = logMeanExp(of_members);
-  }
 }
 
 /** Both return burn-in and thinning that serve all modes. */
@@ -348,18 +166,6 @@ PreconditionedRun::extend()
   run_.addSteps(more_steps);
   forEach([this](std::size_t i) { sample(i, 0); });
 }
-
-std::size_t
-PreconditionedRun::modeOf(std::size_t chain) const
-{
-  for (std::size_t mode = 0; mode < result_.modes.size(); ++mode)
-    for (const int member : result_.modes[mode].members)
-      if (member == static_cast<int>(chain))
-        return mode;
-  return 0;
-}
-
-} // namespace
 
 ChainSet
 runPreconditionedChains(const PreconditionedTarget& target,
