@@ -46,6 +46,36 @@ wrench(const Eigen::Vector3f& arm, const Eigen::Vector3f& force)
   return w;
 }
 
+/** Energy and gradient of one match, in rotation vectors. */
+void
+addResidual(const ResidualOptions& residual,
+            const Eigen::Vector3f& arm,
+            const Eigen::Vector3f& r,
+            BatchTerms::Extras extras,
+            BatchTerms& terms)
+{
+  const double squared = static_cast<double>(r.squaredNorm());
+  terms.energy += robustEnergy(residual, squared);
+  const Vector6d gradient = robustWeight(residual, squared) * wrench(arm, r);
+  terms.gradient += gradient;
+  if (extras == BatchTerms::SecondMoment)
+    terms.second_moment.noalias() += gradient * gradient.transpose();
+}
+
+/** Gauss-Newton matrices of one match without its robust weight. */
+void
+addCurvature(const Eigen::Vector3f& arm,
+             const Eigen::Vector3f& normal,
+             BatchTerms& terms)
+{
+  for (int k = 0; k < 3; ++k) {
+    const Vector6d row = wrench(arm, Eigen::Vector3f::Unit(k));
+    terms.point_curvature.noalias() += row * row.transpose();
+  }
+  const Vector6d row = wrench(arm, normal);
+  terms.plane_curvature.noalias() += row * row.transpose();
+}
+
 std::vector<std::size_t>
 allPoints(std::size_t num_points)
 {
@@ -152,27 +182,17 @@ PoseEnergy::batchTerms(const Vector6d& phi,
   for (const auto& match : workspace.matches) {
     const auto column = static_cast<Eigen::Index>(match.column);
     const Eigen::Vector3f arm = workspace.arms.col(column);
-    Eigen::Vector3f r = workspace.moved.col(column) - match.point;
+    const Eigen::Vector3f r = workspace.moved.col(column) - match.point;
     terms.squared_distance += static_cast<double>(r.squaredNorm());
-    if (is_plane)
-      r = match.normal.dot(r) * match.normal;
-    const double squared = static_cast<double>(r.squaredNorm());
-    const double rho_weight = robustWeight(residual, squared);
-    terms.energy += robustEnergy(residual, squared);
-    const Vector6d gradient = rho_weight * wrench(arm, r);
-    terms.gradient += gradient;
-    if (extras == BatchTerms::SecondMoment)
-      terms.second_moment.noalias() += gradient * gradient.transpose();
+    addResidual(residual,
+                arm,
+                is_plane ? match.normal.dot(r) * match.normal : r,
+                extras,
+                terms);
     if (extras != BatchTerms::Curvature)
       continue;
-    for (int k = 0; k < 3; ++k) {
-      const Vector6d row = wrench(arm, Eigen::Vector3f::Unit(k));
-      terms.point_curvature.noalias() += rho_weight * row * row.transpose();
-    }
     const auto source = static_cast<Eigen::Index>(indices[match.column]);
-    const Vector6d row =
-        wrench(arm, is_plane ? match.normal : R * normals_.col(source));
-    terms.plane_curvature.noalias() += rho_weight * row * row.transpose();
+    addCurvature(arm, is_plane ? match.normal : R * normals_.col(source), terms);
   }
 
   const Matrix6d map = toAngles(rotationAxes(phi));
@@ -180,9 +200,12 @@ PoseEnergy::batchTerms(const Vector6d& phi,
   terms.squared_distance /=
       std::max(1.0, static_cast<double>(workspace.matches.size()));
   terms.gradient = map * terms.gradient / size;
-  terms.second_moment = congruence(map, terms.second_moment / size);
-  terms.point_curvature = congruence(map, terms.point_curvature / size);
-  terms.plane_curvature = congruence(map, terms.plane_curvature / size);
+  if (extras == BatchTerms::SecondMoment)
+    terms.second_moment = congruence(map, terms.second_moment / size);
+  if (extras == BatchTerms::Curvature) {
+    terms.point_curvature = congruence(map, terms.point_curvature / size);
+    terms.plane_curvature = congruence(map, terms.plane_curvature / size);
+  }
   return terms;
 }
 
