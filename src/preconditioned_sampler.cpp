@@ -116,17 +116,20 @@ PreconditionedRun::sample(std::size_t chain_index, int num_burn_in)
   const long num_steps = num_burn_in + static_cast<long>(thinning_) *
                                            (num_draws - static_cast<long>(num_kept));
   chain.draws.conservativeResize(num_draws, 6);
+  const long steps_before = state.num_steps;
+  state.num_steps += num_steps;
   for (long step = 1; step <= num_steps && !run_.stopped(); ++step) {
     state.sampling->step();
     const Vector6d& position = state.sampling->position();
-    chain.diverged = state.energy->hasDiverged(position);
-    if (chain.diverged)
+    if (state.energy->hasDiverged(position)) {
+      chain.diverged = true;
       break;
+    }
     const long sampled = step - num_burn_in;
     if (sampled > 0 && sampled % thinning_ == 0)
       chain.draws.row(num_kept++) =
           canonicalPose(target_.to_pose(position)).transpose();
-    run_.reportStep(static_cast<int>(chain_index), ++state.num_steps);
+    run_.reportStep(static_cast<int>(chain_index), steps_before + step);
   }
   chain.draws.conservativeResize(num_kept, 6);
 }
