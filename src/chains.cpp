@@ -1,86 +1,26 @@
+#include "run_state.h"
+
 #include <bayesian_icp/chains.h>
-
-#include <omp.h>
-
-#include <algorithm>
-#include <atomic>
-#include <exception>
-#include <mutex>
 
 namespace bayesian_icp {
 
 namespace {
-
-/** What the chains of one run share: progress, cancellation and the first exception. */
-class RunState {
-public:
-  RunState(const ProgressCallback& progress, long total_steps)
-  : progress_(progress)
-  , total_steps_(total_steps)
-  {}
-
-  bool
-  stopped() const
-  {
-    return stopped_;
-  }
-
-  bool
-  cancelled() const
-  {
-    return cancelled_;
-  }
-
-  /** Runs \p work, keeping its exception for the thread that started the run: none may
-   * leave a parallel region. */
-  template <typename Work>
-  void
-  guard(const Work& work)
-  {
-    try {
-      work();
-    }
-    catch (...) {
-      stopped_ = true;
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (!exception_)
-        exception_ = std::current_exception();
-    }
-  }
-
-  void
-  rethrow() const
-  {
-    if (exception_)
-      std::rethrow_exception(exception_);
-  }
-
-  /** Counts a step of \p chain and tells the callback. */
-  void
-  reportStep(int chain, long chain_steps)
-  {
-    if (!progress_)
-      return;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_}))
-      cancelled_ = stopped_ = true;
-  }
-
-private:
-  const ProgressCallback& progress_;
-  const long total_steps_;
-  long steps_ = 0;
-  std::atomic<bool> stopped_{false};
-  std::atomic<bool> cancelled_{false};
-  std::exception_ptr exception_;
-  std::mutex mutex_;
-};
 
 long
 numStepsOf(const ChainOptions& options, int chain)
 {
   return options.num_burn_in +
          static_cast<long>(options.thinning) * options.numDrawsOf(chain);
+}
+
+/** Whether an angle moves by more than half a turn in one step. A chain that does so
+ * most of the time is white noise on the circle, whose R-hat and effective sample size
+ * are perfect, and no walk through the posterior. */
+bool
+jumpsByHalfATurn(const Vector6d& pose, const Vector6d& next)
+{
+  constexpr double half_a_turn = 3.14159265358979323846;
+  return (next - pose).tail<3>().cwiseAbs().maxCoeff() > half_a_turn;
 }
 
 /** Algorithm 1 for one chain. */
@@ -99,7 +39,7 @@ runChain(const Vector6d& start,
 
   Chain chain;
   chain.draws.resize(options.numDrawsOf(chain_index), 6);
-  long num_kept = 0;
+  long num_kept = 0, num_jumps = 0;
   Vector6d pose = start;
   if (!options.initial_spread.isZero(0.0))
     pose += options.initial_spread.cwiseProduct(random.normal6());
@@ -108,8 +48,10 @@ runChain(const Vector6d& start,
     const EnergyGradient gradient = gradientAt(pose, random);           // (2, 3, 6, 7)
     const Vector6d A = preconditioner.update(gradient.mini_batch_mean); // (10, 11)
     const double alpha = stepSizeAt(sgld, step, num_steps);
-    pose = sgldStep(
+    const Vector6d next = sgldStep(
         pose, gradient.energy, A, alpha, sgld.noise_factor, random); // (5, 8, 9)
+    num_jumps += jumpsByHalfATurn(pose, next);
+    pose = next;
     chain.diverged = !pose.allFinite() || target.has_diverged(pose);
     if (chain.diverged)
       break;
@@ -118,18 +60,9 @@ runChain(const Vector6d& start,
       chain.draws.row(num_kept++) = canonicalPose(pose).transpose();
     run.reportStep(chain_index, step + 1);
   }
+  chain.diverged = chain.diverged || 2 * num_jumps > num_steps;
   chain.draws.conservativeResize(num_kept, 6);
   return chain;
-}
-
-int
-numThreads(const ChainOptions& options, const SamplerTarget& target)
-{
-  if (!target.is_thread_safe || omp_in_parallel() != 0)
-    return 1;
-  const int offered =
-      options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
-  return std::min(offered, options.num_chains);
 }
 
 } // namespace
@@ -148,13 +81,13 @@ runChains(const Vector6d& start,
   ChainSet result;
   result.chains.resize(static_cast<std::size_t>(options.num_chains));
   RunState run(progress, total_steps);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(numThreads(options, target))
-  for (int i = 0; i < options.num_chains; ++i)
-    run.guard([&] {
-      result.chains[static_cast<std::size_t>(i)] =
-          runChain(start, target, sgld, options, i, run);
-    });
-  run.rethrow();
+  forEachChain(options.num_chains,
+               numThreadsFor(options, target.is_thread_safe),
+               run,
+               [&](int i) {
+                 result.chains[static_cast<std::size_t>(i)] =
+                     runChain(start, target, sgld, options, i, run);
+               });
   result.cancelled = run.cancelled();
   return result;
 }

@@ -107,6 +107,17 @@ check(const ChainOptions& chains, Checker& checker)
   checker.atLeast("num_threads", chains.num_threads, 0);
 }
 
+void
+check(const ExactOptions& exact, Checker& checker)
+{
+  checker.positive("kernel_width", exact.residual.kernel_width, " (m)");
+  checker.require(exact.residual.max_distance > 0.0,
+                  "max_distance",
+                  exact.residual.max_distance,
+                  "positive (m), infinity is none");
+  checker.atLeast("fixed_batch_size", exact.fixed_batch_size, 1);
+}
+
 } // namespace
 
 const char*
@@ -127,16 +138,21 @@ std::string
 Options::validate() const
 {
   Checker checker;
-  checker.require(preset == Preset::Paper,
+  checker.require(preset == Preset::Paper || preset == Preset::Exact,
                   "preset",
                   toString(preset),
-                  "paper: the others are not available in this version");
+                  "paper or exact: the other is not available in this version");
   checker.positive("effective_points", likelihood.effective_points);
   checker.positive("measurement_sigma", likelihood.measurement_sigma, " (m)");
   check(prior, checker);
   checker.atLeast("batch_size", mini_batch.batch_size, 1);
   check(sgld, checker);
   check(chains, checker);
+  check(exact, checker);
+  checker.require(preset != Preset::Exact || sgld.step_size <= 1.0,
+                  "step_size",
+                  sgld.step_size,
+                  "at most 1 (a Newton step) for preset exact");
   return checker.complaint();
 }
 

@@ -1,3 +1,5 @@
+#include "exact_pipeline.h"
+
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/posterior.h>
 
@@ -12,7 +14,7 @@ namespace {
 
 /** A chain whose translation is further than this from the prior mean has run away: so
  * many prior standard deviations, on top of the deviation of its start and the size of
- * the source. Angles cannot run away, their prior is periodic. */
+ * the source. For angles, whose prior is periodic, see the sampler. */
 constexpr double max_prior_deviations = 20.0;
 
 PosteriorEstimate
@@ -23,6 +25,37 @@ failure(Status status, const std::string& message)
   estimate.summary.message = message;
   return estimate;
 }
+
+/** Nearest neighbours in a KdTree, for Algorithm 1. */
+class TreeSearch : public CorrespondenceSearch {
+public:
+  TreeSearch(const KdTree& tree, double max_distance) : target_(tree, max_distance) {}
+
+  void
+  find(const Vector6d& pose,
+       const std::vector<std::size_t>& source_indices,
+       const Eigen::Matrix3Xd& moved_points,
+       Correspondences& correspondences) const override
+  {
+    std::vector<std::size_t> columns(source_indices.size());
+    std::iota(columns.begin(), columns.end(), std::size_t(0));
+    NeighborHints hints(columns.size(), KdTree::none);
+    std::vector<TargetMatch> matches;
+    target_.match(pose, columns, moved_points.cast<float>(), hints, matches);
+    correspondences.clear();
+    for (const auto& match : matches)
+      correspondences.push_back({match.column, match.point.cast<double>()});
+  }
+
+  bool
+  isThreadSafe() const override
+  {
+    return true;
+  }
+
+private:
+  TreeTarget target_;
+};
 
 std::size_t
 countCorrespondences(const Eigen::Matrix3Xd& source_points,
@@ -62,14 +95,12 @@ translationLimit(const Prior& prior,
   return limit.head<3>().array() + size.norm();
 }
 
-} // namespace
-
+/** What is wrong with the arguments; the status is NotRun if nothing is. */
 PosteriorEstimate
-estimatePosterior(const Eigen::Matrix3Xd& source_points,
-                  const CorrespondenceSearch& search,
-                  const Vector6d& initial_pose,
-                  const Options& options,
-                  const ProgressCallback& progress)
+checkInput(const Eigen::Matrix3Xd& source_points,
+           const CorrespondenceSearch& search,
+           const Vector6d& initial_pose,
+           const Options& options)
 {
   const std::string complaint = options.validate();
   if (!complaint.empty())
@@ -85,31 +116,105 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                        std::to_string(source_points.cols()) +
                        " source points have a target point within the maximum "
                        "correspondence distance at the initial guess");
+  return PosteriorEstimate();
+}
 
-  const Prior prior = makePrior(options.prior, initial_pose, source_points);
-  const Eigen::Vector3d limit = translationLimit(prior, initial_pose, source_points);
+/** Algorithm 1. */
+ChainSet
+samplePaper(const Eigen::Matrix3Xd& source_points,
+            const CorrespondenceSearch& search,
+            const Prior& prior,
+            const Vector6d& initial_pose,
+            const Options& options,
+            const std::function<bool(const Vector6d&)>& has_diverged,
+            const ProgressCallback& progress)
+{
   const MiniBatches mini_batches(
       static_cast<std::size_t>(source_points.cols()),
       static_cast<std::size_t>(options.mini_batch.batch_size),
       options.mini_batch.sampling);
   const PosteriorGradient gradient(
       source_points, search, prior, options.likelihood.weight(), mini_batches);
-
   SamplerTarget target;
   target.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
-  target.has_diverged = [&prior, &limit](const Vector6d& pose) {
+  target.has_diverged = has_diverged;
+  target.is_thread_safe = search.isThreadSafe();
+  return runChains(initial_pose, target, options.sgld, options.chains, progress);
+}
+
+PosteriorEstimate
+estimate(const Eigen::Matrix3Xd& source_points,
+         const CorrespondenceSearch& search,
+         const Target& target,
+         const Vector6d& initial_pose,
+         const Options& options,
+         const ProgressCallback& progress)
+{
+  PosteriorEstimate estimate = checkInput(source_points, search, initial_pose, options);
+  if (estimate.summary.status != Status::NotRun)
+    return estimate;
+  const Prior prior = makePrior(options.prior, initial_pose, source_points);
+  const Eigen::Vector3d limit = translationLimit(prior, initial_pose, source_points);
+  const auto has_diverged = [&prior, &limit](const Vector6d& pose) {
     const Eigen::Vector3d translation = prior.deviation(pose).head<3>();
     return (translation.cwiseAbs().array() > limit.array()).any();
   };
-  target.is_thread_safe = search.isThreadSafe();
-
-  ChainSet chain_set =
-      runChains(initial_pose, target, options.sgld, options.chains, progress);
-  PosteriorEstimate estimate;
+  ChainSet chain_set;
+  if (options.preset == Preset::Exact) {
+    const PoseEnergy energy(source_points,
+                            target,
+                            prior,
+                            options.likelihood.weight(),
+                            options.exact.residual);
+    chain_set = sampleExact(energy, initial_pose, options, has_diverged, progress);
+  }
+  else
+    chain_set = samplePaper(
+        source_points, search, prior, initial_pose, options, has_diverged, progress);
   estimate.summary = summarize(chain_set);
   estimate.samples = pooledDraws(chain_set.chains);
   estimate.chains = std::move(chain_set.chains);
   return estimate;
+}
+
+} // namespace
+
+PosteriorEstimate
+estimatePosterior(const Eigen::Matrix3Xd& source_points,
+                  const CorrespondenceSearch& search,
+                  const Vector6d& initial_pose,
+                  const Options& options,
+                  const ProgressCallback& progress)
+{
+  if (options.preset == Preset::Exact &&
+      options.exact.residual.residual == Residual::PointToPlane)
+    return failure(Status::InvalidOptions,
+                   "residual is point-to-plane, but must be point-to-point: a search "
+                   "of the user's own gives no normals");
+  return estimate(
+      source_points, search, SearchTarget(search), initial_pose, options, progress);
+}
+
+PosteriorEstimate
+estimatePosterior(const Eigen::Matrix3Xd& source_points,
+                  const KdTree& target_tree,
+                  const Vector6d& initial_pose,
+                  const Options& options,
+                  const ProgressCallback& progress)
+{
+  const ResidualOptions& residual = options.exact.residual;
+  const bool needs_normals =
+      options.preset == Preset::Exact && residual.residual == Residual::PointToPlane;
+  const TreeTarget target(target_tree,
+                          residual.max_distance,
+                          needs_normals ? patchNormals(target_tree.points())
+                                        : Eigen::Matrix3Xf());
+  return estimate(source_points,
+                  TreeSearch(target_tree, residual.max_distance),
+                  target,
+                  initial_pose,
+                  options,
+                  progress);
 }
 
 } // namespace bayesian_icp

@@ -1,3 +1,5 @@
+#include "summary_modes.h"
+
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/summary.h>
 
@@ -94,6 +96,8 @@ statusOf(const Summary& summary, bool cancelled, const WorstDiagnostics& worst)
     return Status::Diverged;
   if (cancelled)
     return Status::Cancelled;
+  if (summary.modes.size() > 1)
+    return Status::SeveralModes;
   if (worst.rhat <= max_rhat && worst.ess >= min_ess)
     return Status::Ok;
   return Status::NotMixed;
@@ -104,11 +108,13 @@ messageOf(const Summary& summary, const WorstDiagnostics& worst)
 {
   char text[320];
   switch (summary.status) {
+  case Status::SeveralModes:
+    return modesMessage(summary);
   case Status::Diverged:
     std::snprintf(
         text,
         sizeof(text),
-        "%d of %d chains diverged (ran away from the prior or became "
+        "%d of %d chains diverged (ran away from the prior, jumped about or became "
         "non-finite) and are left out; a smaller step size or a larger maximum "
         "correspondence distance may help",
         summary.num_diverged_chains,
@@ -153,6 +159,8 @@ toString(Status status)
     return "ok";
   case Status::NotMixed:
     return "not_mixed";
+  case Status::SeveralModes:
+    return "several_modes";
   case Status::Diverged:
     return "diverged";
   case Status::Cancelled:
@@ -241,9 +249,10 @@ summarize(const ChainSet& chain_set)
     summarizeCoordinate(
         errors.col(k), coordinateErrors(summary.mean, chains, k), coordinate);
   }
+  summary.modes = summarizeModes(chain_set);
   const WorstDiagnostics worst(summary);
   summary.status = statusOf(summary, chain_set.cancelled, worst);
-  summary.message = messageOf(summary, worst);
+  summary.message = messageOf(summary, worst) + movedMessage(chain_set);
   return summary;
 }
 

@@ -91,7 +91,6 @@ TEST(OptionsValidation, NamesFieldValueAndRange)
       {"thinning", "0", [](Options& o) { o.chains.thinning = 0; }},
       {"initial_spread", "-1", [](Options& o) { o.chains.initial_spread[1] = -1; }},
       {"num_threads", "-4", [](Options& o) { o.chains.num_threads = -4; }},
-      {"preset", "exact", [](Options& o) { o.preset = Preset::Exact; }},
       {"preset", "calibrated", [](Options& o) { o.preset = Preset::Calibrated; }},
   };
   for (const auto& bad : bad_options) {

@@ -203,6 +203,44 @@ TEST_F(PluginTest, ARejectorThatRejectsNothingChangesNothing)
   EXPECT_LT((icp.getSamples().row(0) - plain.getSamples().row(0)).norm(), 1e-5);
 }
 
+TEST_F(PluginTest, ReciprocityIsThatOfTheWholeSourceAlsoWithRejectors)
+{
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(1e3f);
+  BayesianIcp plain;
+  useFewSamples(plain);
+  plain.setUseReciprocalCorrespondences(true);
+  plain.setInputSource(scans.source);
+  plain.setInputTarget(scans.target);
+  plain.align(output);
+  icp.setUseReciprocalCorrespondences(true);
+  icp.addCorrespondenceRejector(rejector);
+  icp.align(output);
+  EXPECT_EQ(icp.getSamples(), plain.getSamples());
+}
+
+TEST_F(PluginTest, RejectorsWithDataOfTheirOwnKnowPointsByTheirIndexInTheSource)
+{
+  struct Recording : registration::CorrespondenceRejectorOneToOne {
+    void
+    getRemainingCorrespondences(const Correspondences& in,
+                                Correspondences& out) override
+    {
+      CorrespondenceRejectorOneToOne::getRemainingCorrespondences(in, out);
+      if (in.size() <= 20) // a mini-batch
+        for (const auto& pair : in)
+          largest_index = std::max(largest_index, pair.index_query);
+    }
+    index_t largest_index = 0;
+  };
+  const pcl::shared_ptr<Recording> rejector(new Recording);
+  icp.addCorrespondenceRejector(rejector);
+  icp.align(output);
+  EXPECT_GT(rejector->largest_index, 800); // of 900
+  EXPECT_EQ(icp.getSamples().rows(), 40);
+}
+
 TEST_F(PluginTest, ADistanceRejectorActsAsTheGate)
 {
   registration::CorrespondenceRejectorDistance::Ptr rejector(
@@ -247,9 +285,14 @@ TEST_F(PluginTest, RejectorsAreAppliedInOrderEachToTheOthersOutput)
 TEST(Plugins, RejectorsThatNeedNormalsGetThoseOfTheMovedMiniBatch)
 {
   Scans<PointNormal> scans;
+  // The guess turns the source by half a turn, and its normals have to turn with it: as
+  // they are in the file, all pairs would be rejected.
+  const Eigen::Matrix4f half_turn =
+      Eigen::Vector4f(-1.0f, 1.0f, -1.0f, 1.0f).asDiagonal().toDenseMatrix();
   for (auto* cloud : {&*scans.source, &*scans.target})
     for (auto& point : *cloud)
       point.getNormalVector3fMap() = Eigen::Vector3f::UnitZ();
+  transformPointCloudWithNormals(*scans.source, *scans.source, half_turn);
   using Rejector = registration::CorrespondenceRejectorSurfaceNormal;
   Rejector::Ptr rejector(new Rejector);
   rejector->setThreshold(0.5);
@@ -260,7 +303,7 @@ TEST(Plugins, RejectorsThatNeedNormalsGetThoseOfTheMovedMiniBatch)
   icp.setInputTarget(scans.target);
   const QuietConsole quiet;
   PointCloud<PointNormal> output;
-  icp.align(output);
+  icp.align(output, half_turn);
   EXPECT_TRUE(icp.hasConverged());
   EXPECT_GT(icp.getSamples().rows(), 0);
 }

@@ -345,17 +345,76 @@ TEST(Posterior, UnavailablePresetsAreRefused)
 {
   const Scans<PointXYZ> scans;
   const QuietConsole quiet;
-  for (const auto preset :
-       {bayesian_icp::Preset::Exact, bayesian_icp::Preset::Calibrated}) {
+  BayesianIcp icp;
+  icp.setPreset(bayesian_icp::Preset::Calibrated);
+  icp.setInputSource(scans.source);
+  icp.setInputTarget(scans.target);
+  Cloud output;
+  icp.align(output);
+  EXPECT_TRUE(icp.hasConverged()); // ICP's meaning
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
+  EXPECT_EQ(icp.getSamples().rows(), 0);
+}
+
+/** A registration by preset `exact` at the scale of the scans' noise. */
+void
+useExact(BayesianIcp& icp, const Scans<PointXYZ>& scans)
+{
+  icp.setPreset(bayesian_icp::Preset::Exact);
+  icp.setMeasurementSigma(0.02);
+  icp.setEffectivePoints(100.0);
+  bayesian_icp::Vector6d spread;
+  spread << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
+  icp.setInitialSpread(spread);
+  icp.setInputSource(scans.source);
+  icp.setInputTarget(scans.target);
+}
+
+TEST(Exact, GivesTheSameDrawsForEveryNumberOfThreadsAndAMeanNearTheTruth)
+{
+  const Scans<PointXYZ> scans;
+  bayesian_icp::PoseMatrix samples[2];
+  for (unsigned int num_threads = 1; num_threads <= 2; ++num_threads) {
     BayesianIcp icp;
-    icp.setPreset(preset);
-    icp.setInputSource(scans.source);
-    icp.setInputTarget(scans.target);
+    useExact(icp, scans);
+    icp.setNumberOfThreads(num_threads);
     Cloud output;
     icp.align(output);
-    EXPECT_TRUE(icp.hasConverged()); // ICP's meaning
-    EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
-    EXPECT_EQ(icp.getSamples().rows(), 0);
+    EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::Ok)
+        << icp.getSummary().message;
+    ASSERT_EQ(icp.getSummary().modes.size(), 1u);
+    samples[num_threads - 1] = icp.getSamples();
+    const bayesian_icp::Vector6d error = icp.getMean() - smallPose();
+    for (int k = 0; k < 6; ++k)
+      EXPECT_LT(std::abs(error[k]), 4.0 * std::sqrt(icp.getCovariance()(k, k)));
+  }
+  EXPECT_EQ(samples[0].rows(), 2000);
+  EXPECT_EQ(samples[0], samples[1]);
+}
+
+/** PCL's tree, but not its class: a search of the user's own. */
+class UsersTree : public search::KdTree<PointXYZ> {};
+
+TEST(Exact, AUsersTreeGivesTheSamePosterior)
+{
+  const Scans<PointXYZ> scans;
+  bayesian_icp::Summary summaries[2];
+  for (int i = 0; i < 2; ++i) {
+    BayesianIcp icp;
+    useExact(icp, scans);
+    icp.setNumberOfSamples(800);
+    if (i == 1)
+      icp.setSearchMethodTarget(pcl::make_shared<UsersTree>());
+    const QuietConsole quiet;
+    Cloud output;
+    icp.align(output);
+    summaries[i] = icp.getSummary();
+    ASSERT_EQ(icp.getSamples().rows(), 800);
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto &a = summaries[0].coordinates[k], &b = summaries[1].coordinates[k];
+    EXPECT_NEAR(a.mean, b.mean, 5.0 * std::hypot(a.mcse, b.mcse)) << k;
+    EXPECT_NEAR(std::log(a.standard_deviation / b.standard_deviation), 0.0, 0.2) << k;
   }
 }
 
@@ -461,6 +520,26 @@ TEST(BadInput, NaNTargetPointsAreIgnored)
   icp.align(output);
   EXPECT_TRUE(icp.hasConverged());
   EXPECT_TRUE(icp.getSamples().allFinite());
+}
+
+TEST(BadInput, AGuessThatIsNotRigidHasNoPosterior)
+{
+  const Scans<PointXYZ> scans;
+  const QuietConsole quiet;
+  Eigen::Matrix4f scaled = Eigen::Matrix4f::Identity();
+  scaled.topLeftCorner<3, 3>() *= 0.9f;
+  Eigen::Matrix4f mirrored = Eigen::Matrix4f::Identity();
+  mirrored(2, 2) = -1.0f;
+  for (const auto& guess : {scaled, mirrored}) {
+    BayesianIcp icp;
+    useFewSamples(icp);
+    icp.setInputSource(scans.source);
+    icp.setInputTarget(scans.target);
+    Cloud output;
+    icp.align(output, guess);
+    EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidInput);
+    EXPECT_EQ(icp.getSamples().rows(), 0);
+  }
 }
 
 /** A registration that has to fail without harm, and be usable afterwards. */

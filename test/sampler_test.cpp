@@ -251,6 +251,18 @@ TEST(Chains, ThatRunAwayAreStoppedAndMarked)
   EXPECT_EQ(set.chains[2].draws.rows(), 100);
 }
 
+TEST(Chains, ThatAreWhiteNoiseOnTheCircleAreMarked)
+{
+  // Without a gradient V is 0 and A is 1e8: every step turns the angles many times.
+  // R-hat and effective sample size of such draws are perfect.
+  auto target = gaussianTarget(Vector6d::Zero(), Vector6d::Zero());
+  target.has_diverged = [](const Vector6d&) { return false; };
+  const ChainSet set =
+      runChains(Vector6d::Zero(), target, plainSgld(1e-4), chainOptions(2, 200));
+  EXPECT_TRUE(set.chains[0].diverged);
+  EXPECT_TRUE(set.chains[1].diverged);
+}
+
 TEST(Chains, ThatBecomeNonFiniteAreStoppedAndMarked)
 {
   auto target = unitGaussian();

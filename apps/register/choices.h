@@ -29,6 +29,18 @@ choicesOf(MiniBatchSampling)
   return {MiniBatchSampling::WithReplacement, MiniBatchSampling::ShuffledEpochs};
 }
 
+inline std::array<Residual, 2>
+choicesOf(Residual)
+{
+  return {Residual::PointToPoint, Residual::PointToPlane};
+}
+
+inline std::array<RobustKernel, 3>
+choicesOf(RobustKernel)
+{
+  return {RobustKernel::None, RobustKernel::Huber, RobustKernel::Tukey};
+}
+
 /** \brief "one, two or three". */
 template <typename Choice>
 std::string

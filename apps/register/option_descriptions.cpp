@@ -108,10 +108,30 @@ describeOptions()
   Describer describe_sampler{sampler};
   visitSampler(defaults.options, describe_sampler);
 
+  po::options_description exact("Preset exact only");
+  Describer describe_exact{exact};
+  visitExact(defaults.options.exact, describe_exact);
+
   po::options_description all;
-  all.add(describeGeneral()).add(registration).add(posterior).add(sampler);
+  all.add(describeGeneral()).add(registration).add(posterior).add(sampler).add(exact);
   return all;
 }
+
+namespace {
+
+const char* const about_exact =
+    "\nPreset exact needs the truth about the sensor: --sigma, and --effective-points, "
+    "the\n"
+    "number of independent measurements in the source. It finds --batch-size, "
+    "--thinning,\n"
+    "--burn-in and --step-size itself where they have their defaults; other values "
+    "are\n"
+    "obeyed, --step-size in (0, 1] as the largest step, 1 being a Newton step. It "
+    "draws "
+    "its\n"
+    "mini-batches without replacement and uses no other constant of Algorithm 1.\n";
+
+} // namespace
 
 std::string
 helpText()
@@ -125,16 +145,20 @@ helpText()
          "draws.\n"
          "Clouds are .pcd or .ply files in metres. Options may begin with one dash or\n"
          "two, their values follow a blank or '='.\n"
-      << describeOptions()
+      << describeOptions() << about_exact
       << "\nExit codes:\n"
          "  0    the posterior is there and can be trusted\n"
-         "  1    the registration failed, or the chains have not mixed\n"
+         "  1    the registration failed, the chains have not mixed, or they are in "
+         "several\n"
+         "       modes\n"
          "  2    wrong usage\n"
          "  3    a file cannot be read, used or written\n"
          "  130  interrupted (Ctrl-C); what was drawn until then is written\n"
          "\nExample:\n"
          "  pcl_bayesian_icp source.pcd target.pcd -d 0.1 --guess 0,0,0.2,0,0,1.57 -o "
-         "out\n";
+         "out\n"
+         "  pcl_bayesian_icp source.pcd target.pcd --preset exact --sigma 0.005 \\\n"
+         "      --effective-points 300 --prior-frame source-centroid\n";
   return help.str();
 }
 

@@ -88,15 +88,34 @@ coordinatesJson(const Summary& summary)
 }
 
 ordered_json
+covarianceJson(const Convention& convention, const Matrix6d& matrix)
+{
+  return {{"convention", toString(convention.convention)},
+          {"order", convention.order},
+          {"units", {"m", "m", "m", "rad", "rad", "rad"}},
+          {"meaning", convention.meaning},
+          {"matrix", jsonOf(matrix)}};
+}
+
+ordered_json
 covariancesJson(const Summary& summary)
 {
   auto list = ordered_json::array();
   for (const Convention& convention : conventions)
-    list.push_back({{"convention", toString(convention.convention)},
-                    {"order", convention.order},
-                    {"units", {"m", "m", "m", "rad", "rad", "rad"}},
-                    {"meaning", convention.meaning},
-                    {"matrix", jsonOf(summary.covariance(convention.convention))}});
+    list.push_back(
+        covarianceJson(convention, summary.covariance(convention.convention)));
+  return list;
+}
+
+ordered_json
+modesJson(const std::vector<Mode>& modes)
+{
+  auto list = ordered_json::array();
+  for (const Mode& mode : modes)
+    list.push_back({{"weight", jsonOf(mode.weight)},
+                    {"chains", mode.chains},
+                    {"mean", meanJson(mode.mean)},
+                    {"covariance", covarianceJson(conventions[0], mode.covariance)}});
   return list;
 }
 
@@ -120,6 +139,11 @@ posteriorOf(const RegistrationResult& result)
           {"mean", meanJson(result.summary.mean)},
           {"coordinates", coordinatesJson(result.summary)},
           {"covariances", covariancesJson(result.summary)},
+          {"modes", modesJson(result.summary.modes)},
+          {"modes_note",
+           "weights are estimates, good to a factor of a few; mean and covariances of "
+           "the whole posterior mix modes in proportion to their chains; preset paper "
+           "looks for no modes"},
           {"chains", chainsJson(result.chains)}};
 }
 

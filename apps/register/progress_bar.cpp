@@ -36,6 +36,7 @@ ProgressBar::~ProgressBar()
 void
 ProgressBar::update(const Progress& progress)
 {
+  has_icp_finished_ = true;
   total_steps_ = progress.total_steps;
   steps_ = progress.steps;
 }
@@ -58,7 +59,7 @@ ProgressBar::draw() const
 {
   const long steps = steps_;
   if (steps == 0) {
-    std::fputs("\rICP ...", stderr);
+    std::fputs(has_icp_finished_ ? "\rwarming up ..." : "\rICP ...", stderr);
   }
   else {
     const auto done = static_cast<std::size_t>(bar_width * steps / total_steps_);

@@ -34,6 +34,7 @@ private:
   void
   draw() const;
 
+  std::atomic<bool> has_icp_finished_{false};
   std::atomic<long> steps_{0};
   std::atomic<long> total_steps_{0};
   bool is_stopped_ = false;

@@ -15,6 +15,8 @@ constexpr double degrees_per_radian = 57.295779513082320877;
 constexpr std::size_t label_width = 12;
 constexpr std::size_t column_width = 12;
 constexpr std::size_t diagnostic_width = 10;
+const char* const coordinate_names[] = {
+    "x [m]", "y [m]", "z [m]", "roll [rad]", "pitch [rad]", "yaw [rad]"};
 
 std::string
 leftAligned(std::string text, std::size_t width)
@@ -55,8 +57,6 @@ estimateCells(const CoordinateSummary& coordinate, double factor, int num_decima
 std::string
 coordinateTable(const Summary& summary)
 {
-  const char* names[] = {
-      "x [m]", "y [m]", "z [m]", "roll [rad]", "pitch [rad]", "yaw [rad]"};
   std::string table = std::string(label_width, ' ');
   for (const char* title : {"mean", "std. dev.", "2.5 %", "97.5 %"})
     table += rightAligned(title, column_width);
@@ -65,7 +65,8 @@ coordinateTable(const Summary& summary)
   table += '\n';
   for (std::size_t k = 0; k < 6; ++k) {
     const CoordinateSummary& coordinate = summary.coordinates[k];
-    table += leftAligned(names[k], label_width) + estimateCells(coordinate, 1.0, 6) +
+    table += leftAligned(coordinate_names[k], label_width) +
+             estimateCells(coordinate, 1.0, 6) +
              cell(coordinate.rhat, 3, diagnostic_width) +
              cell(coordinate.bulk_ess, 0, diagnostic_width) +
              cell(coordinate.tail_ess, 0, diagnostic_width) + '\n';
@@ -75,6 +76,39 @@ coordinateTable(const Summary& summary)
     table += leftAligned(names_in_degrees[k], label_width) +
              estimateCells(summary.coordinates[k + 3], degrees_per_radian, 4) + '\n';
   return table;
+}
+
+/** Three lines a mode, each with a translation and an angle. */
+std::string
+modeText(const Mode& mode, std::size_t number)
+{
+  std::string text = "Mode " + io::textOf(number) + ": weight " +
+                     io::fixedTextOf(mode.weight, 3) + ", chains";
+  for (const int chain : mode.chains)
+    text += ' ' + io::textOf(chain);
+  text += '\n';
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (const Eigen::Index k : {row, row + 3})
+      text += leftAligned(std::string(k < 3 ? "  " : "   ") + coordinate_names[k],
+                          label_width + 2) +
+              cell(mode.mean[k], 6, column_width) + " +-" +
+              cell(std::sqrt(mode.covariance(k, k)), 6, column_width);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string
+modesText(const std::vector<Mode>& modes)
+{
+  if (modes.size() < 2)
+    return "";
+  std::string text =
+      "\nModes between which no chain travels, mean +- standard deviation "
+      "in each; weights are\nestimates, good to a factor of a few:\n";
+  for (std::size_t i = 0; i < modes.size(); ++i)
+    text += modeText(modes[i], i + 1);
+  return text;
 }
 
 /** The argument of `pcl_transform_point_cloud -matrix`: 16 numbers row by row. */
@@ -150,7 +184,7 @@ reportText(const Run& run)
     text += "\nPosterior of the pose that maps source points into the target frame, " +
             std::to_string(summary.num_draws) + " draws of " +
             std::to_string(summary.num_chains - summary.num_diverged_chains) +
-            " chains:\n" + coordinateTable(summary);
+            " chains:\n" + coordinateTable(summary) + modesText(summary.modes);
   text += "\n" + wrapped("Status: " + statusText(summary)) + icpLine(result);
   text += "\nMatrices row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
           "...\n";

@@ -21,17 +21,20 @@ visitChains(OptionsT& options, Visitor& visit)
          "num_burn_in",
          "burn-in",
          "N",
-         "steps at the start of each chain that are not kept"},
+         "steps at the start of each chain that are not kept; exact finds them"},
         chains.num_burn_in);
-  visit({"chains", "thinning", "thinning", "N", "steps per kept draw"},
-        chains.thinning);
+  visit(
+      {"chains", "thinning", "thinning", "N", "steps per kept draw; exact finds them"},
+      chains.thinning);
   visit(
       {"chains",
        "initial_spread_m_rad",
        "initial-spread",
        "LIST",
        "standard deviation of the chains' starts about the guess, x,y,z,roll,pitch,yaw "
-       "[m, rad]: six numbers, or one for all"},
+       "[m, rad]: six numbers, or one for all; with exact 0 is as wide as the prior, "
+       "at "
+       "most 0.5"},
       chains.initial_spread);
   visit({"chains", "seed", "seed", "N", "seed of all random numbers, 0 .. 2^64-1"},
         chains.seed);
@@ -41,13 +44,17 @@ visitChains(OptionsT& options, Visitor& visit)
          "N",
          "threads, 0 for as many as there are; the draws do not depend on it"},
         chains.num_threads);
-  visit({"mini_batch", "batch_size", "batch-size", "N", "source points a step"},
+  visit({"mini_batch",
+         "batch_size",
+         "batch-size",
+         "N",
+         "source points a step; exact finds them"},
         options.mini_batch.batch_size);
   visit({"mini_batch",
          "sampling",
          "batch-sampling",
          "NAME",
-         "how the source points of a step are chosen"},
+         "how the source points of a step are chosen; not used by exact"},
         options.mini_batch.sampling);
 }
 
@@ -56,7 +63,11 @@ template <typename SgldT, typename Visitor>
 void
 visitSgld(SgldT& sgld, Visitor& visit)
 {
-  visit({"sgld", "step_size", "step-size", "A", "alpha of eqs. (5), (8), (9)"},
+  visit({"sgld",
+         "step_size",
+         "step-size",
+         "A",
+         "alpha of eqs. (5), (8), (9); exact finds its own"},
         sgld.step_size);
   visit({"sgld",
          "decay_rate",

@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "register/exact_fields.h"
 #include "register/field.h"
 #include "register/sampler_fields.h"
 #include "register/settings.h"
@@ -71,7 +72,12 @@ void
 visitPosterior(OptionsT& options, Visitor& visit)
 {
   visit(
-      {"posterior", "preset", "preset", "NAME", "which posterior is sampled, and how"},
+      {"posterior",
+       "preset",
+       "preset",
+       "NAME",
+       "Algorithm 1 literally, a sampler that is right for the stated posterior, or a "
+       "scale found from the data (not available in this version)"},
       options.preset);
   visit(
       {"posterior",
@@ -120,6 +126,7 @@ visitSettings(SettingsT& settings, Visitor& visit)
   visitRegistration(settings, visit);
   visitPosterior(settings.options, visit);
   visitSampler(settings.options, visit);
+  visitExact(settings.options.exact, visit);
 }
 
 } // namespace bayesian_icp::app

@@ -48,6 +48,15 @@ withOptionName(const Settings& settings, const std::string& complaint)
   return finder.option.empty() ? complaint : finder.option + ": " + complaint;
 }
 
+/** Normals are found by the search of preset `exact`, which has no pairs to filter. */
+bool
+lacksNormals(const Settings& settings)
+{
+  return settings.options.preset == Preset::Exact &&
+         settings.options.exact.residual.residual == Residual::PointToPlane &&
+         (settings.is_reciprocal || settings.is_one_to_one);
+}
+
 } // namespace
 
 void
@@ -72,6 +81,10 @@ Settings::validate() const
            ", but must be at least 1";
   if (!guess.allFinite())
     return "--guess: must be finite";
+  if (lacksNormals(*this))
+    return "--residual: is point-to-plane, but must be point-to-point with "
+           "--reciprocal "
+           "or --one-to-one";
   return withOptionName(*this, options.validate());
 }
 

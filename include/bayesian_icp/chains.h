@@ -44,7 +44,9 @@ struct Progress {
   /** Chain that has just made a step, and its steps so far. */
   int chain;
   long chain_steps;
-  /** Steps of all chains so far, and of the complete run. */
+  /** Steps of all chains so far, and of the complete run. Both are 0 while the chains
+   * of preset `exact` warm up: how many steps they need is not known before, and more
+   * are added if the draws have not mixed. */
   long steps;
   long total_steps;
 };
@@ -70,14 +72,30 @@ struct Chain {
   /** Kept draws, one canonical pose a row. Shorter than asked for if the chain diverged
    * or the run was cancelled. */
   PoseMatrix draws;
-  /** Whether the chain was stopped because it ran away or became non-finite. */
+  /** Whether the chain was stopped because it ran away or became non-finite, or jumped
+   * by more than half a turn in most of its steps. */
   bool diverged = false;
+};
+
+/** \brief Chains that ended up in one mode of the density. */
+struct ChainMode {
+  /** Indices of the chains. */
+  std::vector<int> members;
+  /** log of the mode's share of the density, up to a constant common to all modes; an
+   * estimate from a Gaussian. */
+  double log_evidence = 0.0;
 };
 
 /** \brief Chains of one run. */
 struct ChainSet {
   std::vector<Chain> chains;
   bool cancelled = false;
+  /** Modes that were told apart; empty if nobody looked (preset `paper`). */
+  std::vector<ChainMode> modes;
+  /** Chains whose own mode was clearly worse and that were moved to another one, and
+   * how much worse the nearest of those modes was [nats]. */
+  int num_moved_chains = 0;
+  double moved_by_nats = 0.0;
 };
 
 /** \brief Run Algorithm 1 in options.num_chains chains.

@@ -8,6 +8,7 @@
 #include <bayesian_icp/likelihood.h>
 #include <bayesian_icp/mini_batch.h>
 #include <bayesian_icp/prior.h>
+#include <bayesian_icp/residual.h>
 #include <bayesian_icp/sgld.h>
 
 #include <string>
@@ -19,7 +20,7 @@ enum class Preset {
   /** Algorithm 1 of the paper, literally: a reproduction. Its covariance has an
    * implicit measurement_sigma of 1 m. */
   Paper,
-  /** A sampler whose draws are right for the stated options. Not available yet. */
+  /** A sampler whose draws are right for the stated likelihood and prior. */
   Exact,
   /** A likelihood whose scale is found from the data. Not available yet. */
   Calibrated
@@ -37,7 +38,26 @@ struct MiniBatchOptions {
   MiniBatchSampling sampling = MiniBatchSampling::WithReplacement;
 };
 
-/** \brief Options of the estimate; the defaults are the preset `paper`. */
+/** \brief What preset `exact` has and the paper has not. */
+struct ExactOptions {
+  ResidualOptions residual;
+  /** Metropolis steps in place of Langevin steps: slower, and asymptotically exact for
+   * the energy of the fixed batch below. */
+  bool metropolis = false;
+  /** Source points on which energies are compared, between modes and by metropolis
+   * steps; evenly spread over the source. Positive; more than the source has is taken
+   * as all of it. */
+  int fixed_batch_size = 4000;
+};
+
+/** \brief Options of the estimate; the defaults are the preset `paper`.
+ *
+ * Preset `exact` finds mini_batch.batch_size, sgld.step_size, chains.num_burn_in and
+ * chains.thinning itself where they have their defaults; any other value is obeyed
+ * (step_size in (0, 1] is then the largest step, 1 a Newton step). Its chains start
+ * chains.initial_spread about the initial guess; where that is zero, as widely as the
+ * prior allows, but at most 0.5 m and 0.5 rad. It draws its mini-batches without
+ * replacement and uses no other field of sgld. */
 struct Options {
   Preset preset = Preset::Paper;
   LikelihoodOptions likelihood;
@@ -45,6 +65,7 @@ struct Options {
   MiniBatchOptions mini_batch;
   SgldOptions sgld;
   ChainOptions chains;
+  ExactOptions exact;
 
   /** \brief Check every field.
    * \return what is wrong with the first bad one: its name, its value and the allowed

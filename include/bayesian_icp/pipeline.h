@@ -4,6 +4,7 @@
 #pragma once
 
 #include <bayesian_icp/correspondence.h>
+#include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/summary.h>
 
@@ -21,7 +22,7 @@ struct PosteriorEstimate {
 /** \brief Fewest source points with a correspondence at the initial guess. */
 constexpr std::size_t min_correspondences = 3;
 
-/** \brief Sample the posterior of the source-to-target pose (Algorithm 1).
+/** \brief Sample the posterior of the source-to-target pose by options.preset.
  * \param[in] source_points 3 x n, finite, source frame [m]
  * \param[in] search finds correspondences in the target, within its gate
  * \param[in] initial_pose start of the chains, and mean of the prior unless the options
@@ -32,6 +33,16 @@ constexpr std::size_t min_correspondences = 3;
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const CorrespondenceSearch& search,
+                  const Vector6d& initial_pose,
+                  const Options& options,
+                  const ProgressCallback& progress = ProgressCallback());
+
+/** \brief The same with nearest neighbours in \p target_tree, within
+ * options.exact.residual.max_distance: the fast way for preset `exact`, and the only
+ * one with Residual::PointToPlane (normals are those of patches of the target). */
+BAYESIAN_ICP_EXPORT PosteriorEstimate
+estimatePosterior(const Eigen::Matrix3Xd& source_points,
+                  const KdTree& target_tree,
                   const Vector6d& initial_pose,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());

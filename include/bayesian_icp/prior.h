@@ -25,8 +25,8 @@ toString(PriorFrame frame);
 
 /** \brief What is believed of the pose before the clouds are seen. */
 struct PriorOptions {
-  /** Mean pose (x, y, z, roll, pitch, yaw) [m, rad], as a source-to-target pose. Not
-   * finite (the default) means: the initial guess. */
+  /** Mean pose (x, y, z, roll, pitch, yaw) [m, rad], as a source-to-target pose. Six
+   * NaN (the default) mean: the initial guess. */
   Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /** Variance of x, y, z [m^2] and 1/kappa of roll, pitch, yaw [rad^2] (eqs. 6 and 7).
    * Positive; infinity means no prior on that coordinate. */
@@ -62,6 +62,20 @@ public:
   /** \brief d of the class description and theta_k - mean_k, not wrapped [m, rad]. */
   Vector6d
   deviation(const Vector6d& pose) const;
+
+  /** \brief The mean pose [m, rad]. */
+  const Vector6d&
+  mean() const
+  {
+    return mean_;
+  }
+
+  /** \brief c of the class description, source frame [m]. */
+  const Eigen::Vector3d&
+  referencePoint() const
+  {
+    return reference_point_;
+  }
 
   /** \brief The six variances [m^2, rad^2]. */
   const Vector6d&

@@ -21,7 +21,12 @@ enum class Status {
   /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them undefined: mean
    * and covariance describe the draws, but not reliably the posterior. */
   NotMixed,
-  /** At least one chain ran away or became non-finite. Its draws are left out of the
+  /** Chains are in modes between which they do not travel: see Summary::modes. Mean and
+   * covariance of all draws mix them in proportion to their chains, not their weight.
+   */
+  SeveralModes,
+  /** At least one chain ran away, became non-finite, or jumped by more than half a turn
+   * in most of its steps (white noise on the circle). Its draws are left out of the
    * samples, the mean and the covariance. */
   Diverged,
   /** The callback asked to stop; what was drawn until then is there. */
@@ -61,6 +66,19 @@ struct CoordinateSummary {
   double mcse = std::numeric_limits<double>::quiet_NaN();
 };
 
+/** \brief One mode of the posterior. */
+struct Mode {
+  /** Share of the posterior among the modes found, in [0, 1]: an estimate from a
+   * Gaussian at each mode, good to a factor of a few. */
+  double weight = 1.0;
+  /** Mean pose of its draws [m, rad]. */
+  Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** Covariance of its draws, CovarianceConvention::Parameters [m, rad]. */
+  Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** Indices of its chains. */
+  std::vector<int> chains;
+};
+
 /** \brief Posterior of the pose in numbers. */
 struct BAYESIAN_ICP_EXPORT Summary {
   Status status = Status::NotRun;
@@ -75,6 +93,9 @@ struct BAYESIAN_ICP_EXPORT Summary {
   int num_diverged_chains = 0;
   /** Draws behind mean and covariance: those of the chains that did not diverge. */
   long num_draws = 0;
+  /** Modes in which the chains are, heaviest first; empty if nobody looked for them
+   * (preset `paper`). */
+  std::vector<Mode> modes;
 
   /** 6x6 covariances [m, rad], one a CovarianceConvention in its order: second moment
    * of the draws' poseError about the mean, over num_draws - 1. NaN with fewer than two

@@ -36,6 +36,10 @@ class Usage(ToolTest):
             "prior-variance": "0.125",
             "prior-frame": "origin",
             "preset": "paper",
+            "residual": "point-to-point",
+            "kernel": "none",
+            "kernel-width": "0.01",
+            "fixed-batch-size": "4000",
             "initial-spread": "0",
             "seed": "1",
             "threads": "0",
@@ -117,9 +121,8 @@ class Usage(ToolTest):
                 self.assert_refused(2, result, f"--{name}: ", complaint)
 
     def test_presets_to_come_are_refused(self):
-        for preset in ("exact", "calibrated"):
-            result = run("a.pcd", "b.pcd", "--preset", preset)
-            self.assert_refused(2, result, "--preset", preset, "not available in this version")
+        result = run("a.pcd", "b.pcd", "--preset", "calibrated")
+        self.assert_refused(2, result, "--preset", "calibrated", "not available in this version")
 
     def test_quiet_and_json_exclude_each_other(self):
         self.assert_refused(2, run("a.pcd", "b.pcd", "--quiet", "--json"), "--json", "--quiet")
@@ -192,10 +195,14 @@ class Values(ToolTest):
             "sigma": ("posterior", "measurement_sigma_m", 0.5),
             "preset": ("posterior", "preset", "paper"),
             "prior-frame": ("prior", "frame", "source-centroid"),
+            "residual": ("exact", "residual", "point-to-plane"),
+            "kernel": ("exact", "kernel", "tukey"),
+            "kernel-width": ("exact", "kernel_width_m", 0.125),
+            "fixed-batch-size": ("exact", "fixed_batch_size", 77),
             "iterations": ("registration", "icp_iterations", 3),
         }
         words = [f"--{name}={value}" for name, (_, _, value) in given.items()]
-        words += ["--reciprocal", "--one-to-one", "--mean"]
+        words += ["--reciprocal", "--one-to-one", "--mean", "--metropolis"]
         # FAST has some of them already.
         result = run(*self.small_pair(), "--json", *words)
         self.assert_ran(result)
@@ -204,6 +211,7 @@ class Values(ToolTest):
             self.assertEqual(options[group][key], value)
         for key in ("reciprocal", "one_to_one", "use_mean"):
             self.assertIs(options["registration"][key], True)
+        self.assertIs(options["exact"]["metropolis"], True)
 
 
 class GuessFiles(ToolTest):

@@ -19,7 +19,10 @@ namespace pcl {
  * the source-to-target pose from the same guess, by preconditioned SGLD over
  * mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty with
  * Bayesian ICP, ICRA 2020), with the correspondence estimation, rejectors, search tree
- * and maximum correspondence distance that the object was given.
+ * and maximum correspondence distance that the object was given. With
+ * setPreset(Preset::Exact) the sampler is one whose draws are right for the stated
+ * measurement sigma, effective points, gate and prior; it takes its own search tree
+ * unless a search of the user's own is installed.
  *
  * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
  * transformation, guess included; translation in the target frame, R = Rz(yaw)
@@ -284,6 +287,7 @@ protected:
   using Base::transformation_estimation_;
   using Base::transformCloud;
   using Base::tree_;
+  using Base::tree_reciprocal_;
   using Base::use_reciprocal_correspondence_;
 
   /** \brief ICP, then the posterior. */
@@ -299,6 +303,9 @@ private:
 
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
+
+  bool
+  hasDefaultEstimation() const;
 
   std::unique_ptr<bayesian_icp::CorrespondenceSearch>
   makeCorrespondenceSearch(const PointCloudSourceConstPtr& source);

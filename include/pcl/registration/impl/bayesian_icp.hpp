@@ -7,6 +7,8 @@
 #include <pcl/registration/impl/bayesian_icp_selection.hpp>
 #include <pcl/registration/transformation_estimation_svd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <typeinfo>
 #include <utility>
 
@@ -31,6 +33,36 @@ private:
   T& variable_;
   T original_;
 };
+
+/** The gate of an option and PCL's, whose default (the root of the largest double) is
+ * none [m]. */
+inline double
+smallerGate(double gate, double pcl_gate)
+{
+  constexpr double no_gate = 1e18;
+  return (std::abs(pcl_gate) < no_gate ? std::min(gate, std::abs(pcl_gate)) : gate);
+}
+
+/** Whether a search tree is PCL's own, with PCL's own idea of a point. */
+template <typename PointT>
+bool
+isDefaultTree(const search::KdTree<PointT>& tree)
+{
+  const auto& representation = *tree.getPointRepresentation();
+  return (typeid(tree) == typeid(search::KdTree<PointT>) &&
+          typeid(representation) == typeid(DefaultPointRepresentation<PointT>));
+}
+
+/** Whether a transformation is a rotation and a translation, to the accuracy of float.
+ */
+inline bool
+isRigid(const Eigen::Matrix4d& transformation)
+{
+  constexpr double tolerance = 1e-3;
+  const Eigen::Matrix3d R = transformation.topLeftCorner<3, 3>();
+  return ((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < tolerance &&
+          R.determinant() > 0.0);
+}
 
 } // namespace bayesian_icp_detail
 
@@ -64,7 +96,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setPreset(
     bayesian_icp::Preset preset)
 {
   options_.preset = preset;
-  if (preset != bayesian_icp::Preset::Paper)
+  if (preset == bayesian_icp::Preset::Calibrated)
     PCL_ERROR("[pcl::%s::setPreset] The preset '%s' is not available in this version; "
               "no posterior will be estimated.\n",
               getClassName().c_str(),
@@ -159,7 +191,8 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
 {
   const bool is_guess_finite = guess.template cast<float>().allFinite();
   auto& summary = estimate_.summary;
-  summary.status = bayesian_icp::Status::InvalidInput;
+  summary.status = is_guess_finite ? bayesian_icp::Status::TooFewCorrespondences
+                                   : bayesian_icp::Status::InvalidInput;
   summary.message = is_guess_finite ? "fewer finite points than the registration needs"
                                     : "the initial guess is not finite";
   PCL_ERROR("[pcl::%s::computeTransformation] No registration: %s.\n",
@@ -193,12 +226,34 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
     return; // ICP has reported it
   }
   const Eigen::Matrix4d initial = guess.template cast<double>();
-  estimate_ = bayesian_icp::estimatePosterior(bayesian_icp_detail::pointMatrix(*source),
-                                              *makeCorrespondenceSearch(source),
-                                              bayesian_icp::poseOf(initial),
-                                              options_,
-                                              progress_callback_);
+  if (!bayesian_icp_detail::isRigid(initial)) {
+    summary.status = bayesian_icp::Status::InvalidInput;
+    summary.message = "the initial guess is not a rotation and a translation";
+    PCL_ERROR("[pcl::%s::computeTransformation] No posterior: %s.\n",
+              getClassName().c_str(),
+              summary.message.c_str());
+    return;
+  }
+  const auto points = bayesian_icp_detail::pointMatrix(*source);
+  const auto start = bayesian_icp::poseOf(initial);
+  bayesian_icp::Options options = options_;
+  options.exact.residual.max_distance = bayesian_icp_detail::smallerGate(
+      options.exact.residual.max_distance, corr_dist_threshold_);
+  if (options.preset == bayesian_icp::Preset::Exact && hasDefaultEstimation() &&
+      correspondence_rejectors_.empty() && !use_reciprocal_correspondence_)
+    estimate_ = bayesian_icp::estimatePosterior(
+        points,
+        bayesian_icp::KdTree(
+            bayesian_icp_detail::pointMatrix(*target_).template cast<float>(),
+            options.chains.num_threads),
+        start,
+        options,
+        progress_callback_);
+  else
+    estimate_ = bayesian_icp::estimatePosterior(
+        points, *makeCorrespondenceSearch(source), start, options, progress_callback_);
   if (summary.status == bayesian_icp::Status::NotMixed ||
+      summary.status == bayesian_icp::Status::SeveralModes ||
       summary.status == bayesian_icp::Status::Diverged)
     PCL_WARN("[pcl::%s::computeTransformation] Posterior: %s.\n",
              getClassName().c_str(),
@@ -210,30 +265,37 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::hasDefaultEstimation()
+    const
+{
+  const auto& estimation = *correspondence_estimation_;
+  if (typeid(estimation) !=
+      typeid(registration::CorrespondenceEstimation<PointSource, PointTarget, Scalar>))
+    return (false);
+  return (bayesian_icp_detail::isDefaultTree(*tree_) &&
+          (!use_reciprocal_correspondence_ ||
+           bayesian_icp_detail::isDefaultTree(*tree_reciprocal_)));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
 std::unique_ptr<bayesian_icp::CorrespondenceSearch>
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
     makeCorrespondenceSearch(const PointCloudSourceConstPtr& source)
 {
   using namespace bayesian_icp_detail;
-  const auto& estimation = *correspondence_estimation_;
-  const auto& tree = *tree_;
-  const auto& representation = *tree.getPointRepresentation();
-  const bool has_defaults =
-      correspondence_rejectors_.empty() &&
-      typeid(estimation) == typeid(registration::CorrespondenceEstimation<PointSource,
-                                                                          PointTarget,
-                                                                          Scalar>) &&
-      typeid(tree) == typeid(search::KdTree<PointTarget>) &&
-      typeid(representation) == typeid(DefaultPointRepresentation<PointTarget>);
-  if (has_defaults)
-    return (std::unique_ptr<bayesian_icp::CorrespondenceSearch>(
-        new KdTreeSearch<PointSource, PointTarget>(
-            tree_,
-            target_,
-            corr_dist_threshold_,
-            use_reciprocal_correspondence_ ? source : PointCloudSourceConstPtr())));
+  std::unique_ptr<KdTreeSearch<PointSource, PointTarget>> default_search;
+  if (hasDefaultEstimation())
+    default_search.reset(new KdTreeSearch<PointSource, PointTarget>(
+        tree_,
+        target_,
+        corr_dist_threshold_,
+        use_reciprocal_correspondence_ ? source : PointCloudSourceConstPtr()));
+  if (default_search && correspondence_rejectors_.empty())
+    return default_search;
 
   typename PluginSearch<PointSource, PointTarget, Scalar>::Plugins plugins;
+  plugins.default_search = std::move(default_search);
   plugins.estimation = correspondence_estimation_;
   plugins.rejectors = correspondence_rejectors_;
   plugins.max_distance = corr_dist_threshold_;

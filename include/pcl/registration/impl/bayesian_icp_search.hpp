@@ -14,6 +14,8 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
+#include <unordered_map>
 #include <vector>
 
 namespace pcl {
@@ -64,6 +66,13 @@ public:
     return (index_[0]);
   }
 
+  /** Squared distance of what find() has found [m^2]. */
+  float
+  squaredDistance() const
+  {
+    return (squared_distance_[0]);
+  }
+
 private:
   const search::KdTree<PointT>& tree_;
   PointT query_;
@@ -103,18 +112,31 @@ public:
        bayesian_icp::Correspondences& correspondences) const override
   {
     correspondences.clear();
+    for (const auto& pair : findPairs(pose, source_indices, moved_points))
+      correspondences.push_back(
+          {static_cast<std::size_t>(pair.index_query), targetPoint(pair.index_match)});
+  }
+
+  /** As find(), as PCL's pairs: index_query counts columns, distance is squared [m^2].
+   */
+  Correspondences
+  findPairs(const bayesian_icp::Vector6d& pose,
+            const std::vector<std::size_t>& source_indices,
+            const Eigen::Matrix3Xd& moved_points) const
+  {
+    Correspondences pairs;
     NearestNeighbor<PointTarget> nearest_target(*target_tree_);
     for (Eigen::Index i = 0; i < moved_points.cols(); ++i) {
       const index_t match =
           nearest_target.find(moved_points.col(i), max_squared_distance_);
-      if (match < 0)
-        continue;
-      const auto column = static_cast<std::size_t>(i);
-      const Eigen::Vector3d point =
-          (*target_)[match].getVector3fMap().template cast<double>();
-      if (!source_tree_ || isReciprocal(pose, point, source_indices[column]))
-        correspondences.push_back({column, point});
+      if (match >= 0 &&
+          (!source_tree_ || isReciprocal(pose,
+                                         targetPoint(match),
+                                         source_indices[static_cast<std::size_t>(i)])))
+        pairs.emplace_back(
+            static_cast<index_t>(i), match, nearest_target.squaredDistance());
     }
+    return (pairs);
   }
 
   bool
@@ -124,6 +146,12 @@ public:
   }
 
 private:
+  Eigen::Vector3d
+  targetPoint(index_t index) const
+  {
+    return ((*target_)[index].getVector3fMap().template cast<double>());
+  }
+
   /** Whether the source point nearest to \p target_point is \p source_index. Sought in
    * the source frame, where the tree need not be built again for every pose. */
   bool
@@ -155,6 +183,10 @@ public:
   using Matrix4 = Eigen::Matrix<Scalar, 4, 4>;
 
   struct Plugins {
+    /** Set if only rejectors are the user's own: PCL's estimation, of which a
+     * mini-batch would see no more than itself where correspondences have to be
+     * reciprocal. */
+    std::shared_ptr<const KdTreeSearch<PointSource, PointTarget>> default_search;
     typename registration::
         CorrespondenceEstimationBase<PointSource, PointTarget, Scalar>::Ptr estimation;
     std::vector<registration::CorrespondenceRejector::Ptr> rejectors;
@@ -189,7 +221,11 @@ public:
       batch_blob.reset(new PCLPointCloud2);
       toPCLPointCloud2(*batch, *batch_blob);
     }
-    for (const auto& pair : reject(estimate(batch, batch_blob), batch_blob))
+    const Correspondences pairs =
+        plugins_.default_search
+            ? plugins_.default_search->findPairs(pose, source_indices, moved_points)
+            : estimate(batch, batch_blob);
+    for (const auto& pair : reject(pairs, source_indices, batch_blob))
       if (pair.index_match >= 0)
         correspondences.push_back(
             {static_cast<std::size_t>(pair.index_query),
@@ -243,20 +279,43 @@ private:
 
   Correspondences
   reject(const Correspondences& estimated,
+         const std::vector<std::size_t>& source_indices,
          const PCLPointCloud2::ConstPtr& batch_blob) const
   {
     CorrespondencesPtr pairs(new Correspondences(estimated));
     for (const auto& rejector : plugins_.rejectors) {
+      const bool is_given_batch =
+          rejector->requiresSourcePoints() || rejector->requiresSourceNormals();
       if (rejector->requiresSourcePoints())
         rejector->setSourcePoints(batch_blob);
       if (rejector->requiresSourceNormals() && plugins_.source_has_normals)
         rejector->setSourceNormals(batch_blob);
+      // A rejector that is not given the mini-batch may have data of its own for the
+      // points of the source, and knows them by their index there.
+      if (!is_given_batch)
+        for (auto& pair : *pairs)
+          pair.index_query = static_cast<index_t>(
+              source_indices[static_cast<std::size_t>(pair.index_query)]);
       rejector->setInputCorrespondences(pairs);
-      CorrespondencesPtr remaining(new Correspondences);
+      const CorrespondencesPtr remaining(new Correspondences);
       rejector->getCorrespondences(*remaining);
+      if (!is_given_batch)
+        countColumns(source_indices, *remaining);
       pairs = remaining;
     }
     return (*pairs);
+  }
+
+  /** From indices in the source to columns of the mini-batch. Where a point was drawn
+   * twice, any of its columns will do: they are equal. */
+  static void
+  countColumns(const std::vector<std::size_t>& source_indices, Correspondences& pairs)
+  {
+    std::unordered_map<index_t, index_t> columns;
+    for (std::size_t i = 0; i < source_indices.size(); ++i)
+      columns[static_cast<index_t>(source_indices[i])] = static_cast<index_t>(i);
+    for (auto& pair : pairs)
+      pair.index_query = columns.at(pair.index_query);
   }
 
   Plugins plugins_;

@@ -1,0 +1,41 @@
+/** \file
+ * \brief How far draws are from draws of a reference: divergences and distances.
+ */
+#pragma once
+
+#include <bayesian_icp/pose.h>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Mean and covariance of draws as plain vectors (angles not circular). */
+struct Moments {
+  Vector6d mean = Vector6d::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/** \param[in] draws at least two rows */
+Moments
+momentsOf(const PoseMatrix& draws);
+
+/** \brief The draws with each angle shifted by full turns to within pi of \p centre. */
+PoseMatrix
+unwrapAbout(const Vector6d& centre, const PoseMatrix& draws);
+
+/** \brief KL(p || q) of two Gaussians [nats]; infinite if q is degenerate. */
+double
+gaussianKl(const Moments& p, const Moments& q);
+
+/** \brief The same of the marginals of coordinate \p k. */
+double
+gaussianKl(const Moments& p, const Moments& q, int k);
+
+/** \brief Area between two empirical distribution functions: Wasserstein-1 distance, in
+ * the unit of the values. */
+double
+wasserstein1(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+/** \brief Largest difference of two empirical distribution functions, in [0, 1]. */
+double
+kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,206 @@
+#include "samplers_options.h"
+
+#include <boost/program_options.hpp>
+
+#include <io/errors.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace bayesian_icp::evaluate {
+
+namespace po = boost::program_options;
+
+namespace {
+
+constexpr int max_threads = 64;
+
+const std::vector<std::string>&
+knownSamplers()
+{
+  static const std::vector<std::string> names = {
+      "exact", "exact-metropolis", "paper", "walk", "mala"};
+  return names;
+}
+
+po::options_description
+description()
+{
+  const auto text = [](const char* value) {
+    return po::value<std::string>()->default_value(value);
+  };
+  const auto number = [](int value) { return po::value<int>()->default_value(value); };
+  po::options_description options("Options", 88);
+  // clang-format off
+  options.add_options()
+    ("data", text("data"), "folder with a folder a scene: source.pcd, target.pcd [m]")
+    ("scenes", text("can,bowl,mug,table,corridor"), "names of scenes, with commas between")
+    ("cells", text("1:6000,0.0015:100,0.0015:1000,0.005:300"),
+     "scales of the likelihood, sigma [m] and effective points N, as sigma:N")
+    ("samplers", text("exact,exact-metropolis,paper,walk,mala"),
+     "which ones to compare: exact (preset exact), exact-metropolis (the same with "
+     "Metropolis steps), paper (Algorithm 1 at several step sizes; all seeds at the best), "
+     "walk and mala (full batch, covariance and starts from the gold standard)")
+    ("step-sizes", text("1e-3,1e-4,1e-5,1e-6"),
+     "step sizes alpha of Algorithm 1; each is also tried times 6000 sigma^2 / N, what it "
+     "would be at the paper's scale")
+    ("seeds", number(5), "runs of each sampler, seeds 1, 2, ...")
+    ("points", number(2000), "source points, the same for all samplers and the gold standard")
+    ("threads", number(1), "threads of the gold standard and the presets")
+    ("gold-seconds", po::value<double>()->default_value(60.0),
+     "CPU time after which a gold standard ends, converged or not [s]")
+    ("cache", text("evaluation"), "folder of the gold standards")
+    ("output", text("evaluation/samplers.csv"),
+     "results, a row a run; runs that are there are not made again")
+    ("quick", "one scene (can), two seeds, 500 points, unless they are given")
+    ("help", "show this text");
+  // clang-format on
+  return options;
+}
+
+double
+positiveNumber(const std::string& text, const std::string& option)
+{
+  std::size_t used = 0;
+  double number = 0.0;
+  try {
+    number = std::stod(text, &used);
+  }
+  catch (const std::exception&) {
+  }
+  if (used == 0 || used != text.size() || !(number > 0.0) || !std::isfinite(number))
+    throw io::UsageError("--" + option + ": " + io::quoted(text) +
+                         " is not a positive number");
+  return number;
+}
+
+std::vector<std::string>
+split(const std::string& text, char separator)
+{
+  std::vector<std::string> items;
+  std::istringstream stream(text);
+  for (std::string item; std::getline(stream, item, separator);)
+    items.push_back(item);
+  return items;
+}
+
+Cell
+cellOf(const std::string& text)
+{
+  const auto numbers = split(text, ':');
+  if (numbers.size() != 2)
+    throw io::UsageError("--cells: " + io::quoted(text) +
+                         " is not of the form sigma:N");
+  return {positiveNumber(numbers[0], "cells"), positiveNumber(numbers[1], "cells")};
+}
+
+int
+integerWithin(const po::variables_map& given,
+              const std::string& name,
+              int least,
+              int most)
+{
+  const int value = given[name].as<int>();
+  if (value < least || value > most)
+    throw io::UsageError("--" + name + " is " + std::to_string(value) +
+                         ", but must be in [" + std::to_string(least) + ", " +
+                         std::to_string(most) + "]");
+  return value;
+}
+
+void
+makeQuick(const po::variables_map& given, SamplersOptions& options)
+{
+  if (given["scenes"].defaulted())
+    options.scenes = {"can"};
+  if (given["seeds"].defaulted())
+    options.num_seeds = 2;
+  if (given["points"].defaulted())
+    options.num_points = 500;
+}
+
+void
+takeLists(const po::variables_map& given, SamplersOptions& options)
+{
+  options.scenes = split(given["scenes"].as<std::string>(), ',');
+  for (const auto& cell : split(given["cells"].as<std::string>(), ','))
+    options.cells.push_back(cellOf(cell));
+  for (const auto& step : split(given["step-sizes"].as<std::string>(), ','))
+    options.step_sizes.push_back(positiveNumber(step, "step-sizes"));
+  options.samplers = split(given["samplers"].as<std::string>(), ',');
+  for (const auto& sampler : options.samplers)
+    if (std::count(knownSamplers().begin(), knownSamplers().end(), sampler) == 0)
+      throw io::UsageError("--samplers: there is no " + io::quoted(sampler));
+}
+
+po::variables_map
+splitCommandLine(int argc, const char* const* argv)
+{
+  namespace style = po::command_line_style;
+  // No guessing: an abbreviated or misspelt option is an error.
+  po::variables_map given;
+  po::store(po::command_line_parser(argc, argv)
+                .options(description())
+                .positional(po::positional_options_description())
+                .style(style::unix_style & ~style::allow_guessing)
+                .run(),
+            given);
+  return given;
+}
+
+} // namespace
+
+bool
+SamplersOptions::wants(const std::string& sampler) const
+{
+  return std::count(samplers.begin(), samplers.end(), sampler) > 0;
+}
+
+SamplersOptions
+parseSamplersOptions(int argc, const char* const* argv)
+{
+  const po::variables_map given = splitCommandLine(argc, argv);
+  SamplersOptions options;
+  options.show_help = given.count("help") > 0;
+  if (options.show_help)
+    return options;
+  options.data_folder = given["data"].as<std::string>();
+  options.cache_folder = given["cache"].as<std::string>();
+  options.result_file = given["output"].as<std::string>();
+  takeLists(given, options);
+  options.num_seeds = integerWithin(given, "seeds", 1, 1000);
+  options.num_points = integerWithin(given, "points", 10, 100000000);
+  options.num_threads = integerWithin(given, "threads", 1, max_threads);
+  if (given.count("quick") > 0)
+    makeQuick(given, options);
+  options.gold.num_threads = options.num_threads;
+  options.gold.max_seconds = given["gold-seconds"].as<double>();
+  if (!(options.gold.max_seconds > 0.0))
+    throw io::UsageError("--gold-seconds must be positive");
+  return options;
+}
+
+std::string
+samplersHelp()
+{
+  std::ostringstream help;
+  help
+      << "Usage: pcl_bayesian_icp_evaluate samplers [options]\n\n"
+         "Compares the draws of every sampler with a gold standard: long Metropolis\n"
+         "runs on the same posterior, kept in the cache folder. Every run is a row of\n"
+         "a CSV file: KL divergence of Gaussian moments (gold standard to sampler,\n"
+         "6-D and per coordinate) [nats], Wasserstein-1 distance [standard deviations\n"
+         "of the gold standard] and Kolmogorov-Smirnov distance of the marginals,\n"
+         "largest R-hat, smallest bulk and tail effective sample size (ESS), CPU time\n"
+         "of all threads [s], smallest bulk ESS a second, status. A table of medians\n"
+         "and worst cases goes to the standard output, progress to the standard "
+         "error.\n"
+         "Results of another build of the samplers have to be deleted by hand.\n"
+         "Exit codes: 0 good, 1 a gold standard did not converge, 2 usage, 3 cannot\n"
+         "read or write a file.\n\n"
+      << description();
+  return help.str();
+}
+
+} // namespace bayesian_icp::evaluate

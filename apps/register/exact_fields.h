@@ -1,0 +1,53 @@
+/** \file
+ * \brief The settings that only preset `exact` has: names and descriptions.
+ */
+#pragma once
+
+#include "register/field.h"
+
+namespace bayesian_icp::app {
+
+/** \brief Call visit(field, value) for what preset `exact` has and the paper has not.
+ * The gate of its residual is that of the registration. */
+template <typename ExactT, typename Visitor>
+void
+visitExact(ExactT& exact, Visitor& visit)
+{
+  visit(
+      {"exact",
+       "residual",
+       "residual",
+       "NAME",
+       "distance of a source point to its nearest target point, or along the target's "
+       "normal there"},
+      exact.residual.residual);
+  visit({"exact",
+         "kernel",
+         "kernel",
+         "NAME",
+         "robust kernel on that distance, against outliers"},
+        exact.residual.kernel);
+  visit({"exact",
+         "kernel_width_m",
+         "kernel-width",
+         "M",
+         "distance from which a robust kernel differs from the square (huber) or is "
+         "constant (tukey) [m]"},
+        exact.residual.kernel_width);
+  visit(
+      {"exact",
+       "metropolis",
+       "metropolis",
+       "",
+       "Metropolis in place of Langevin steps: slower, and exact for the energy of the "
+       "fixed batch"},
+      exact.metropolis);
+  visit({"exact",
+         "fixed_batch_size",
+         "fixed-batch-size",
+         "N",
+         "source points on which modes and Metropolis steps compare energies"},
+        exact.fixed_batch_size);
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,141 @@
+// Nearest neighbours of one scan in another: bayesian_icp::KdTree against
+// pcl::KdTreeFLANN and nanoflann, queries and building. All names end in the number of
+// target points; `time_per_query` is CPU time.
+//
+//   kd_tree_benchmark [target.pcd] [Google Benchmark options]
+//
+// Without a file the target is a simulated scan of a table in four sizes.
+#include "kd_tree_benchmark_data.h"
+#include "kd_tree_benchmark_trees.h"
+
+#include <bayesian_icp/kd_tree.h>
+
+#include <pcl/common/point_tests.h>
+#include <pcl/io/pcd_io.h>
+#include <pcl/point_types.h>
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using bayesian_icp::InstructionSet;
+using bayesian_icp::KdTree;
+
+template <typename Tree>
+void
+runQueries(benchmark::State& state, Tree tree, const Queries& queries)
+{
+  const auto num_queries = queries.points.cols();
+  for (auto _ : state)
+    for (Eigen::Index i = 0; i < num_queries; ++i)
+      benchmark::DoNotOptimize(tree.nearest(
+          queries.points.col(i), queries.last_neighbors[static_cast<std::size_t>(i)]));
+  state.counters["time_per_query"] = benchmark::Counter(
+      static_cast<double>(num_queries),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+const char*
+nameOf(InstructionSet instruction_set)
+{
+  constexpr const char* names[] = {"plain", "sse2", "avx2", "avx512"};
+  return names[static_cast<int>(instruction_set)];
+}
+
+template <typename Function>
+void
+add(const std::string& name, std::size_t num_points, Function function)
+{
+  benchmark::RegisterBenchmark((name + "/" + std::to_string(num_points)).c_str(),
+                               function)
+      ->MeasureProcessCPUTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+void
+addQueries(const std::string& order, const Queries& queries, const Scene& scene)
+{
+  const auto size = static_cast<std::size_t>(scene.target.cols());
+  add(order + "/flann", size, [&](benchmark::State& state) {
+    runQueries(state, FlannTree(scene.target), queries);
+  });
+  add(order + "/nanoflann", size, [&](benchmark::State& state) {
+    runQueries<const NanoflannTree&>(state, NanoflannTree(scene.target), queries);
+  });
+  for (const bool is_seeded : {false, true})
+    for (const auto set : bayesian_icp::supportedInstructionSets())
+      add(order + (is_seeded ? "/seeded/" : "/own/") + nameOf(set),
+          size,
+          [&queries, &scene, is_seeded, set](benchmark::State& state) {
+            runQueries<const OwnTree&>(
+                state, OwnTree(scene.target, is_seeded, set), queries);
+          });
+}
+
+void
+addBuilding(const Scene& scene)
+{
+  const auto size = static_cast<std::size_t>(scene.target.cols());
+  add("build/flann", size, [&scene](benchmark::State& state) {
+    FlannTree tree(scene.target);
+    for (auto _ : state)
+      tree.build();
+  });
+  add("build/nanoflann", size, [&scene](benchmark::State& state) {
+    NanoflannTree tree(scene.target);
+    for (auto _ : state)
+      tree.build();
+  });
+  for (const int num_threads : {1, 2})
+    add("build/own/threads:" + std::to_string(num_threads),
+        size,
+        [&scene, num_threads](benchmark::State& state) {
+          for (auto _ : state)
+            benchmark::DoNotOptimize(KdTree(scene.target, num_threads).size());
+        });
+}
+
+Eigen::Matrix3Xf
+finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud)
+{
+  Eigen::Matrix3Xf points(3, cloud.size());
+  Eigen::Index num_points = 0;
+  for (const auto& point : cloud)
+    if (pcl::isFinite(point))
+      points.col(num_points++) = point.getVector3fMap();
+  return points.leftCols(num_points);
+}
+
+std::vector<Scene>
+scenes(int argc, char** argv)
+{
+  std::vector<Scene> scenes;
+  if (argc > 1) {
+    pcl::PointCloud<pcl::PointXYZ> cloud;
+    if (pcl::io::loadPCDFile(argv[1], cloud) == 0)
+      scenes.push_back(makeScene(finitePoints(cloud)));
+    return scenes;
+  }
+  for (const int width : {86, 276, 599, 1366})
+    scenes.push_back(makeScene(scanOfTable(width, width * 3 / 4)));
+  return scenes;
+}
+
+} // namespace
+
+int
+main(int argc, char** argv)
+{
+  benchmark::Initialize(&argc, argv);
+  const std::vector<Scene> all_scenes = scenes(argc, argv);
+  for (const Scene& scene : all_scenes) {
+    addQueries("scan_order", scene.scan_order, scene);
+    addQueries("random_order", scene.random_order, scene);
+    addBuilding(scene);
+  }
+  benchmark::RunSpecifiedBenchmarks();
+  return all_scenes.empty() ? 1 : 0;
+}

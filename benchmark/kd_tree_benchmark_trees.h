@@ -1,0 +1,124 @@
+/** \file
+ * \brief The trees that kd_tree_benchmark compares, behind one interface: made of
+ * points, build() again, nearest(query, last neighbour).
+ */
+#pragma once
+
+#include <bayesian_icp/kd_tree.h>
+
+#include <pcl/kdtree/kdtree_flann.h>
+#include <pcl/point_types.h>
+
+#include <nanoflann.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+class FlannTree {
+public:
+  explicit FlannTree(const Eigen::Matrix3Xf& points)
+  : cloud_(new pcl::PointCloud<pcl::PointXYZ>)
+  {
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      cloud_->emplace_back(points(0, i), points(1, i), points(2, i));
+    build();
+  }
+
+  void
+  build()
+  {
+    tree_.setInputCloud(cloud_);
+  }
+
+  int
+  nearest(const Eigen::Vector3f& query, std::uint32_t)
+  {
+    tree_.nearestKSearch({query.x(), query.y(), query.z()}, 1, index_, distance_);
+    return index_[0];
+  }
+
+private:
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud_;
+  pcl::KdTreeFLANN<pcl::PointXYZ> tree_;
+  pcl::Indices index_ = pcl::Indices(1);
+  std::vector<float> distance_ = std::vector<float>(1);
+};
+
+/** What nanoflann wants to know about a cloud. */
+struct NanoflannCloud {
+  const Eigen::Matrix3Xf& points;
+
+  std::size_t
+  kdtree_get_point_count() const
+  {
+    return static_cast<std::size_t>(points.cols());
+  }
+  float
+  kdtree_get_pt(std::size_t index, std::size_t axis) const
+  {
+    return points(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(index));
+  }
+  template <typename Box>
+  bool
+  kdtree_get_bbox(Box&) const
+  {
+    return false;
+  }
+};
+
+using NanoflannIndex = nanoflann::KDTreeSingleIndexAdaptor<
+    nanoflann::L2_Simple_Adaptor<float, NanoflannCloud>,
+    NanoflannCloud,
+    3,
+    std::uint32_t>;
+
+class NanoflannTree {
+public:
+  explicit NanoflannTree(const Eigen::Matrix3Xf& points)
+  : cloud_{points}
+  , tree_(3, cloud_, {10})
+  {
+    build();
+  }
+
+  void
+  build()
+  {
+    tree_.buildIndex();
+  }
+
+  std::uint32_t
+  nearest(const Eigen::Vector3f& query, std::uint32_t) const
+  {
+    std::uint32_t index = 0;
+    float squared_distance = 0.f;
+    tree_.knnSearch(query.data(), 1, &index, &squared_distance);
+    return index;
+  }
+
+private:
+  NanoflannCloud cloud_;
+  NanoflannIndex tree_;
+};
+
+class OwnTree {
+public:
+  OwnTree(const Eigen::Matrix3Xf& points,
+          bool is_seeded,
+          bayesian_icp::InstructionSet instruction_set)
+  : tree_(points, 0, instruction_set)
+  , is_seeded_(is_seeded)
+  {}
+
+  std::uint32_t
+  nearest(const Eigen::Vector3f& query, std::uint32_t last_neighbor) const
+  {
+    const std::uint32_t hint = is_seeded_ ? last_neighbor : bayesian_icp::KdTree::none;
+    return tree_.nearest(query, std::numeric_limits<float>::infinity(), hint).index;
+  }
+
+private:
+  bayesian_icp::KdTree tree_;
+  bool is_seeded_;
+};

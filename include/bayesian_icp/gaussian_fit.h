@@ -1,0 +1,119 @@
+/** \file
+ * \brief The Gaussian nearest to a density, learned from noisy gradients: mean and
+ * preconditioner of the sampler.
+ */
+#pragma once
+
+#include <bayesian_icp/stochastic_energy.h>
+
+#include <functional>
+
+namespace bayesian_icp {
+
+/** \brief A Gaussian in the form the sampler needs. */
+class BAYESIAN_ICP_EXPORT Gaussian {
+public:
+  Gaussian() = default;
+
+  /** \param[in] precision symmetric, positive definite */
+  Gaussian(const Vector6d& mean, const Matrix6d& precision);
+
+  /** \brief mean + L z with z standard normal. */
+  Vector6d
+  draw(Random& random) const;
+
+  /** \brief -log density, without the constant 3 log(2 pi). */
+  double
+  energy(const Vector6d& x) const;
+
+  const Vector6d&
+  mean() const
+  {
+    return mean_;
+  }
+
+  const Matrix6d&
+  precision() const
+  {
+    return precision_;
+  }
+
+  /** \brief L, covariance = L L^T; upper triangular. */
+  const Matrix6d&
+  factor() const
+  {
+    return factor_;
+  }
+
+  /** \brief L^-1. */
+  const Matrix6d&
+  inverseFactor() const
+  {
+    return inverse_factor_;
+  }
+
+private:
+  Vector6d mean_ = Vector6d::Zero();
+  Matrix6d precision_ = Matrix6d::Identity();
+  Matrix6d factor_ = Matrix6d::Identity();
+  Matrix6d inverse_factor_ = Matrix6d::Identity();
+};
+
+/** \brief What a regression of gradients on positions is made of: sums over antithetic
+ * pairs mean +- L z, in units of the Gaussian they were drawn from. Sums of several
+ * chains can be added. */
+struct RegressionSums {
+  int num_pairs = 0;
+  Vector6d mean_gradient = Vector6d::Zero();
+  Matrix6d gradient_position = Matrix6d::Zero();
+  Matrix6d position_position = Matrix6d::Zero();
+  Matrix6d gradient_gradient = Matrix6d::Zero();
+  /** Of L^T C L, C a term's covariance, and of its part in the pairs' gradients. */
+  int num_noise_samples = 0;
+  Matrix6d term_noise = Matrix6d::Zero();
+  Matrix6d pair_noise = Matrix6d::Zero();
+
+  BAYESIAN_ICP_EXPORT RegressionSums&
+  operator+=(const RegressionSums& other);
+};
+
+/** \brief A Gaussian on its way to the density. */
+struct GaussianFit {
+  Gaussian gaussian;
+  /** Covariance C of a term's gradient, averaged over the Gaussian. */
+  Matrix6d term_covariance = Matrix6d::Zero();
+  /** Covariance of what the regression leaves over beyond that noise: the density is
+   * not Gaussian. */
+  Matrix6d nonlinearity = Matrix6d::Zero();
+  double temperature = 1.0;
+  /** Whether the last update was small. */
+  bool has_converged = false;
+};
+
+/** \brief Evaluate gradients of \p num_pairs pairs at the fit's temperature, in batches
+ * large enough to learn from. */
+BAYESIAN_ICP_EXPORT RegressionSums
+collectGradients(StochasticEnergy& energy,
+                 const GaussianFit& fit,
+                 int num_pairs,
+                 Random& random);
+
+/** \brief One step of the regression: new mean, precision and noise.
+ * \param[in] gain in (0, 1], share of the new slope in the precision
+ * \param[in] prior_precision its half bounds the precision from below */
+BAYESIAN_ICP_EXPORT void
+updateFit(const RegressionSums& sums,
+          double gain,
+          const Matrix6d& prior_precision,
+          GaussianFit& fit);
+
+/** \brief Fit a Gaussian at \p start: from a tempered one that looks over the roughness
+ * of the likelihood down to temperature 1. Serves one chain.
+ * \param[in] keep_going asked after each iteration; returning false ends the fit */
+BAYESIAN_ICP_EXPORT GaussianFit
+fitTempered(StochasticEnergy& energy,
+            const Vector6d& start,
+            Random& random,
+            const std::function<bool()>& keep_going);
+
+} // namespace bayesian_icp

@@ -1,0 +1,101 @@
+/** \file
+ * \brief Exact nearest neighbours in a cloud that does not change, for searches that
+ * are repeated with almost the same queries.
+ */
+#pragma once
+
+#include <bayesian_icp/export.h>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief The instructions a search is made of. All of them give the same bits. */
+enum class InstructionSet { Plain, Sse2, Avx2 };
+
+/** \brief What this build of the library and this processor can run, Plain first, the
+ * fastest last. */
+BAYESIAN_ICP_EXPORT std::vector<InstructionSet>
+supportedInstructionSets();
+
+/** \brief Exact search for the nearest of n points.
+ *
+ * A tree of nodes with up to eight bounding boxes over leaves of 16 points. It is the
+ * same tree, and gives the same answers to the last bit, for any number of threads and
+ * any instruction set. Distances are taken in single precision,
+ * (dx * dx + dy * dy) + dz * dz with d = point - query; clouds far from the origin
+ * should be centred by the caller.
+ *
+ * Memory: the points (12 bytes each) and at most 24 bytes a point + 1 kB for the tree,
+ * another 16 bytes a point while it is built. */
+class BAYESIAN_ICP_EXPORT KdTree {
+public:
+  /** \brief The index of no point. */
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  struct Neighbor {
+    /** Column of points(), or none. */
+    std::uint32_t index;
+    /** Squared distance to it [m^2]; infinite if there is none. */
+    float squared_distance;
+  };
+
+  /** \brief Build the tree.
+   * \param[in] points 3 x n [m], fewer than 2^32 - 1 columns; columns with a non-finite
+   *            coordinate are never found
+   * \param[in] num_threads threads to build with at most, 0: as OpenMP would; a small
+   *            cloud is built by one
+   * \throws std::invalid_argument if there are too many points */
+  explicit KdTree(Eigen::Matrix3Xf points, int num_threads = 0);
+
+  /** \brief Build the tree for an instruction set of supportedInstructionSets() instead
+   * of the fastest one; otherwise as above.
+   * \throws std::invalid_argument also if the instruction set is not supported */
+  KdTree(Eigen::Matrix3Xf points, int num_threads, InstructionSet instruction_set);
+
+  ~KdTree();
+  KdTree(KdTree&&) noexcept;
+  KdTree&
+  operator=(KdTree&&) noexcept;
+
+  /** \brief The point nearest to \p query; among equally near ones that of the smallest
+   * index. Several threads may call it at once; it allocates nothing.
+   * \param[in] query same frame as the points [m]; none is found for a non-finite one
+   * \param[in] max_squared_distance the gate [m^2], inclusive; may be infinite, but a
+   *            squared distance that overflows a float is beyond every gate
+   * \param[in] hint a point that may be near, such as the last answer to a similar
+   *            query: makes the search faster and never changes its answer
+   * \return the neighbour; index none if no point is within the gate */
+  Neighbor
+  nearest(const Eigen::Vector3f& query,
+          float max_squared_distance,
+          std::uint32_t hint = none) const;
+
+  /** \brief The points given to the constructor, [m]. */
+  const Eigen::Matrix3Xf&
+  points() const
+  {
+    return points_;
+  }
+
+  /** \brief The number of points in the tree: the columns that are finite. */
+  std::size_t
+  size() const;
+
+  /** \brief The memory of the tree without that of points() [bytes]. */
+  std::size_t
+  numBytes() const;
+
+private:
+  struct Tree;
+
+  Eigen::Matrix3Xf points_;
+  std::unique_ptr<const Tree> tree_;
+};
+
+} // namespace bayesian_icp

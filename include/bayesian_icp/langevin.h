@@ -1,0 +1,61 @@
+/** \file
+ * \brief Langevin steps with a preconditioner that is learned before and then frozen:
+ * no correction for its change is needed (preconditioned SGLD's Gamma is zero).
+ */
+#pragma once
+
+#include <bayesian_icp/gaussian_fit.h>
+#include <bayesian_icp/sampling_chain.h>
+
+namespace bayesian_icp {
+
+/** \brief Step sizes and lengths of a run, found from the noise of the gradients. */
+struct StepPlan {
+  /** L V: columns are the directions of the steps, posterior sd = 1. */
+  Matrix6d directions;
+  /** b_k, dimensionless; 1 would be a Newton step. */
+  Vector6d step_sizes;
+  /** s_k: share of the injected noise that the mini-batch already brings. */
+  Vector6d noise_shares;
+  std::size_t batch_size = 1;
+  int num_burn_in = 0;
+  int thinning = 1;
+};
+
+/** \brief Plan the steps of a fit.
+ * \param[in] num_terms n of the energy
+ * \param[in] batch_size m, or 0 to find the one with most effective draws a term
+ * \param[in] max_step_size largest b_k, in (0, 1] */
+BAYESIAN_ICP_EXPORT StepPlan
+planSteps(const GaussianFit& fit,
+          std::size_t num_terms,
+          std::size_t batch_size,
+          double max_step_size);
+
+/** \brief State of one chain of Leimkuhler and Matthews' scheme (2013), which on
+ * Gaussians has the right variance for every step size. */
+class BAYESIAN_ICP_EXPORT LangevinChain : public SamplingChain {
+public:
+  /** \p energy and \p random must outlive this object. */
+  LangevinChain(const StepPlan& plan,
+                const Vector6d& start,
+                StochasticEnergy& energy,
+                Random& random);
+
+  /** \brief One step with the gradient of the next batch. */
+  void
+  step() override;
+
+  const Vector6d&
+  position() const override;
+
+private:
+  StepPlan plan_;
+  Vector6d noise_amplitudes_;
+  StochasticEnergy& energy_;
+  Random& random_;
+  Vector6d position_;
+  Vector6d last_noise_;
+};
+
+} // namespace bayesian_icp

@@ -1,0 +1,53 @@
+/** \file
+ * \brief The sampler of preset `exact`: chains that warm up on their own, learn a
+ * common preconditioner where they agree, and then sample with it.
+ */
+#pragma once
+
+#include <bayesian_icp/chains.h>
+#include <bayesian_icp/stochastic_energy.h>
+
+#include <functional>
+#include <memory>
+
+namespace bayesian_icp {
+
+/** \brief What the chains sample. */
+struct PreconditionedTarget {
+  /** Makes the energy of one chain. */
+  std::function<std::unique_ptr<StochasticEnergy>(int chain)> make_energy;
+  /** The pose of a point of the sampler's space. */
+  std::function<Vector6d(const Vector6d&)> to_pose;
+  /** Whether energies of different chains may be evaluated at once. */
+  bool is_thread_safe = true;
+};
+
+/** \brief How the steps are made. */
+struct PreconditionedOptions {
+  /** Terms a step; 0 is automatic. Not used by metropolis steps. */
+  std::size_t batch_size = 0;
+  /** Largest step size, in (0, 1]; 1 would be a Newton step. */
+  double max_step_size = 0.75;
+  /** Metropolis steps on StochasticEnergy::energy() in place of Langevin steps:
+   * asymptotically exact for that energy. */
+  bool metropolis = false;
+};
+
+/** \brief Run the chains.
+ *
+ * Each chain draws a start, burns in and fits a Gaussian on its own. Chains whose
+ * Gaussians agree form a mode; those of modes more than 10 nats worse than the best are
+ * moved to it. The chains of a mode refine its Gaussian together, then sample.
+ *
+ * \param[in] options num_burn_in 0 and thinning 1 are automatic, so that draws are
+ *            nearly independent; initial_spread is not used (the energies draw their
+ *            starts)
+ * Draws are bit-identical for every number of threads: what the chains share is put
+ * together from their results in the order of the chains. */
+BAYESIAN_ICP_EXPORT ChainSet
+runPreconditionedChains(const PreconditionedTarget& target,
+                        const PreconditionedOptions& sampler,
+                        const ChainOptions& options,
+                        const ProgressCallback& progress = ProgressCallback());
+
+} // namespace bayesian_icp

@@ -1,0 +1,115 @@
+/** \file
+ * \brief The target as the energy of preset `exact` sees it: matches of moved points.
+ */
+#pragma once
+
+#include <bayesian_icp/correspondence.h>
+#include <bayesian_icp/kd_tree.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief The target point that a moved source point is compared with. */
+struct TargetMatch {
+  /** Column of the moved points. */
+  std::size_t column;
+  /** Target frame [m]. */
+  Eigen::Vector3f point;
+  /** Unit normal there; zero if the target has none. */
+  Eigen::Vector3f normal;
+};
+
+/** \brief Last neighbour of each source point, KdTree::none if unknown. The matches do
+ * not depend on them, only the time they take. One vector a thread. */
+using NeighborHints = std::vector<std::uint32_t>;
+
+/** \brief Finds matches within the gate. */
+class BAYESIAN_ICP_EXPORT Target {
+public:
+  virtual ~Target();
+
+  /** \brief Match moved source points.
+   * \param[in] pose the source-to-target pose that moved them [m, rad]
+   * \param[in] indices the points' indices in the source, one a column of \p moved
+   * \param[in] moved 3 x m, target frame [m]
+   * \param[in,out] hints one for every source point
+   * \param[out] matches at most one a column, in the order of the columns */
+  virtual void
+  match(const Vector6d& pose,
+        const std::vector<std::size_t>& indices,
+        const Eigen::Matrix3Xf& moved,
+        NeighborHints& hints,
+        std::vector<TargetMatch>& matches) const = 0;
+
+  /** \brief Whether match() gives normals. */
+  virtual bool
+  hasNormals() const = 0;
+
+  /** \brief Whether several threads may call match() at once. */
+  virtual bool
+  isThreadSafe() const = 0;
+};
+
+/** \brief Exact nearest neighbours in a KdTree, for any number of threads. */
+class BAYESIAN_ICP_EXPORT TreeTarget : public Target {
+public:
+  /** \param[in] tree must outlive this object
+   * \param[in] max_distance gate [m], infinity is none
+   * \param[in] normals 3 x (columns of the tree's points), unit or zero; may be empty
+   */
+  TreeTarget(const KdTree& tree,
+             double max_distance,
+             Eigen::Matrix3Xf normals = Eigen::Matrix3Xf());
+
+  void
+  match(const Vector6d& pose,
+        const std::vector<std::size_t>& indices,
+        const Eigen::Matrix3Xf& moved,
+        NeighborHints& hints,
+        std::vector<TargetMatch>& matches) const override;
+
+  bool
+  hasNormals() const override;
+
+  bool
+  isThreadSafe() const override;
+
+private:
+  const KdTree& tree_;
+  float max_squared_distance_;
+  Eigen::Matrix3Xf normals_;
+};
+
+/** \brief What a user's CorrespondenceSearch finds; without hints and normals. */
+class BAYESIAN_ICP_EXPORT SearchTarget : public Target {
+public:
+  /** \param[in] search must outlive this object */
+  explicit SearchTarget(const CorrespondenceSearch& search);
+
+  void
+  match(const Vector6d& pose,
+        const std::vector<std::size_t>& indices,
+        const Eigen::Matrix3Xf& moved,
+        NeighborHints& hints,
+        std::vector<TargetMatch>& matches) const override;
+
+  bool
+  hasNormals() const override;
+
+  bool
+  isThreadSafe() const override;
+
+private:
+  const CorrespondenceSearch& search_;
+};
+
+/** \brief Unit normals of patches of about 16 neighbouring points (leaves of a balanced
+ * kd-split; the direction of least variance, its sign arbitrary).
+ * \param[in] points 3 x n; zero normals where not finite or fewer than 3 points in all
+ */
+BAYESIAN_ICP_EXPORT Eigen::Matrix3Xf
+patchNormals(const Eigen::Matrix3Xf& points);
+
+} // namespace bayesian_icp

@@ -1,0 +1,74 @@
+#include "exact_pipeline.h"
+
+#include "chain_pose_energy.h"
+
+#include <bayesian_icp/preconditioned_sampler.h>
+
+#include <algorithm>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** Widest spread of the starts that is chosen without being asked for [m, rad]. */
+constexpr double max_automatic_spread = 0.5;
+
+Vector6d
+startSpread(const Options& options, const Prior& prior)
+{
+  if (!options.chains.initial_spread.isZero(0.0))
+    return options.chains.initial_spread;
+  return prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread);
+}
+
+/** Every k-th source point, so that about \p size of them are chosen. */
+std::vector<std::size_t>
+evenlySpread(std::size_t num_points, std::size_t size)
+{
+  size = std::min(size, num_points);
+  std::vector<std::size_t> indices(size);
+  for (std::size_t i = 0; i < size; ++i)
+    indices[i] = i * num_points / size;
+  return indices;
+}
+
+PreconditionedOptions
+samplerOptions(const Options& options)
+{
+  const Options defaults;
+  PreconditionedOptions sampler;
+  sampler.metropolis = options.exact.metropolis;
+  if (options.mini_batch.batch_size != defaults.mini_batch.batch_size)
+    sampler.batch_size = static_cast<std::size_t>(options.mini_batch.batch_size);
+  if (options.sgld.step_size != defaults.sgld.step_size)
+    sampler.max_step_size = options.sgld.step_size;
+  return sampler;
+}
+
+} // namespace
+
+ChainSet
+sampleExact(const PoseEnergy& energy,
+            const Vector6d& initial_pose,
+            const Options& options,
+            const std::function<bool(const Vector6d&)>& has_diverged,
+            const ProgressCallback& progress)
+{
+  PoseChainSettings settings;
+  settings.start_centre = energy.toPhi(initial_pose);
+  settings.start_spread = startSpread(options, energy.prior());
+  settings.fixed_batch = evenlySpread(
+      energy.numPoints(), static_cast<std::size_t>(options.exact.fixed_batch_size));
+  settings.has_diverged = has_diverged;
+
+  PreconditionedTarget target;
+  target.make_energy = [&](int) {
+    return std::make_unique<ChainPoseEnergy>(energy, settings);
+  };
+  target.to_pose = [&](const Vector6d& phi) { return energy.toTheta(phi); };
+  target.is_thread_safe = energy.target().isThreadSafe();
+  return runPreconditionedChains(
+      target, samplerOptions(options), options.chains, progress);
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,32 @@
+/** \file
+ * \brief Internal: building the tree of KdTree.
+ */
+#pragma once
+
+#include "kd_tree_kernels.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace bayesian_icp {
+namespace kd_tree {
+
+/** What View points to. */
+struct Storage {
+  std::vector<Node> nodes;
+  std::vector<Cell> cells;
+  std::vector<Leaf> leaves;
+  std::vector<std::uint32_t> leaf_of;
+  std::uint32_t first_leaf = 0;
+  /** Points in the tree. */
+  std::size_t num_points = 0;
+};
+
+/** Build the tree over the finite points among \p num_points points x, y, z, x, y, z,
+ * ... The result does not depend on \p num_threads, at least 1. */
+Storage
+build(const float* points, std::size_t num_points, int num_threads);
+
+} // namespace kd_tree
+} // namespace bayesian_icp

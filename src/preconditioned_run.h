@@ -1,0 +1,101 @@
+/** \file
+ * \brief One run of the preconditioned sampler: its state and its phases. The warm-up
+ * is in preconditioned_warm_up.cpp, the sampling in preconditioned_sampler.cpp.
+ */
+#pragma once
+
+#include "run_state.h"
+
+#include <bayesian_icp/langevin.h>
+#include <bayesian_icp/preconditioned_sampler.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief One run, from the starts to the draws. */
+class PreconditionedRun {
+public:
+  PreconditionedRun(const PreconditionedTarget& target,
+                    const PreconditionedOptions& sampler,
+                    const ChainOptions& options,
+                    const ProgressCallback& progress)
+  : target_(target)
+  , sampler_(sampler)
+  , options_(options)
+  , num_threads_(numThreadsFor(options, target.is_thread_safe))
+  , run_(progress)
+  {}
+
+  ChainSet
+  run();
+
+private:
+  struct ChainState {
+    std::unique_ptr<StochasticEnergy> energy;
+    std::unique_ptr<Random> random;
+    std::unique_ptr<SamplingChain> sampling;
+    long num_steps = 0;
+  };
+
+  template <typename Work>
+  void
+  forEach(const Work& work)
+  {
+    forEachChain(options_.num_chains, num_threads_, run_, [&](int i) {
+      work(static_cast<std::size_t>(i));
+    });
+  }
+
+  void
+  warmUpAlone();
+
+  void
+  poolFits(const std::vector<GaussianFit>& fits);
+
+  void
+  refineJointly();
+
+  bool
+  refineOnce(int iteration);
+
+  void
+  measureEvidence(const std::function<const Gaussian&(std::size_t chain)>& gaussianOf);
+
+  StepPlan
+  startLangevin();
+
+  StepPlan
+  startMetropolis();
+
+  void
+  startSampling();
+
+  void
+  sample(std::size_t chain, int num_burn_in);
+
+  bool
+  needsExtension() const;
+
+  void
+  extend();
+
+  std::size_t
+  modeOf(std::size_t chain) const;
+
+  const PreconditionedTarget& target_;
+  const PreconditionedOptions& sampler_;
+  const ChainOptions& options_;
+  int num_threads_;
+  RunState run_;
+  std::vector<ChainState> states_;
+  /** One a mode. */
+  std::vector<GaussianFit> fits_;
+  int num_burn_in_ = 0;
+  int thinning_ = 1;
+  ChainSet result_;
+};
+
+} // namespace bayesian_icp

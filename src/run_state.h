@@ -1,0 +1,125 @@
+/** \file
+ * \brief What the chains of one run share: threads, progress, cancellation and the
+ * first exception.
+ */
+#pragma once
+
+#include <bayesian_icp/chains.h>
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+
+namespace bayesian_icp {
+
+/** \brief Progress and end of a run, for all its threads. */
+class RunState {
+public:
+  explicit RunState(const ProgressCallback& progress, long total_steps = 0)
+  : progress_(progress)
+  , total_steps_(total_steps)
+  {}
+
+  /** \brief Makes the run longer; while no chain is sampling. */
+  void
+  addSteps(long more_steps)
+  {
+    total_steps_ += more_steps;
+  }
+
+  bool
+  stopped() const
+  {
+    return stopped_;
+  }
+
+  bool
+  cancelled() const
+  {
+    return cancelled_;
+  }
+
+  /** \brief Runs \p work, keeping its exception for the thread that started the run:
+   * none may leave a parallel region. */
+  template <typename Work>
+  void
+  guard(const Work& work)
+  {
+    try {
+      work();
+    }
+    catch (...) {
+      stopped_ = true;
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (!exception_)
+        exception_ = std::current_exception();
+    }
+  }
+
+  void
+  rethrow() const
+  {
+    if (exception_)
+      std::rethrow_exception(exception_);
+  }
+
+  /** \brief Counts a step of \p chain and tells the callback. */
+  void
+  reportStep(int chain, long chain_steps)
+  {
+    if (!progress_)
+      return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_}))
+      cancelled_ = stopped_ = true;
+  }
+
+  /** \brief Tells the callback that \p chain still warms up, which counts as no step.
+   */
+  void
+  reportWarmUp(int chain)
+  {
+    if (!progress_)
+      return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!stopped_ && !progress_({chain, 0, 0, 0}))
+      cancelled_ = stopped_ = true;
+  }
+
+private:
+  const ProgressCallback& progress_;
+  long total_steps_;
+  long steps_ = 0;
+  std::atomic<bool> stopped_{false};
+  std::atomic<bool> cancelled_{false};
+  std::exception_ptr exception_;
+  std::mutex mutex_;
+};
+
+/** \brief Threads for a run: one inside a parallel region of the caller. */
+inline int
+numThreadsFor(const ChainOptions& options, bool is_thread_safe)
+{
+  if (!is_thread_safe || omp_in_parallel() != 0)
+    return 1;
+  const int offered =
+      options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
+  return std::min(offered, options.num_chains);
+}
+
+/** \brief work(chain) for every chain; a thread owns whole chains. Rethrows the first
+ * exception. */
+template <typename Work>
+void
+forEachChain(int num_chains, int num_threads, RunState& run, const Work& work)
+{
+#pragma omp parallel for schedule(dynamic, 1) num_threads(num_threads)
+  for (int i = 0; i < num_chains; ++i)
+    run.guard([&] { work(i); });
+  run.rethrow();
+}
+
+} // namespace bayesian_icp

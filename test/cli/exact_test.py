@@ -1,0 +1,186 @@
+"""Preset exact: its options, what it reports, and that its runs can be repeated."""
+
+import json
+import math
+import random
+import re
+import unittest
+
+import cloud_files
+from cli_tool import DATA, ToolTest, run, strict_json
+
+MUG = [DATA / "mug" / "source.pcd", DATA / "mug" / "target.pcd"]
+SENSOR = ["--sigma=0.005", "--effective-points=300", "--prior-frame=source-centroid"]
+NAMES = ["x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"]
+PERIOD = 0.1
+
+
+def mean_of(posterior):
+    return [posterior["mean"][name] for name in NAMES]
+
+
+class ExactTest(ToolTest):
+    SMALL = ["--preset=exact", "--sigma=0.01", "--effective-points=100", "--samples=200"]
+
+    def ridges(self):
+        """Ridges along x that repeat exactly, and a scan of ten of them: nothing tells by how
+        many periods they are to be shifted."""
+        generator = random.Random(95)
+
+        def point_at(x):
+            height = 0.02 * math.cos(2 * math.pi * x / PERIOD)
+            return (x, generator.uniform(0, 1), height)
+
+        one_ridge = [point_at(generator.uniform(0, PERIOD)) for _ in range(800)]
+        target = [(x + k * PERIOD, y, z) for x, y, z in one_ridge for k in range(-5, 15)]
+        source = [point_at(generator.uniform(0, 1)) for _ in range(400)]
+        return (
+            self.file("source.pcd", cloud_files.pcd_bytes(source)),
+            self.file("target.pcd", cloud_files.pcd_bytes(target)),
+        )
+
+
+class Mug(ExactTest):
+    def test_posterior_can_be_trusted_and_holds_the_truth(self):
+        result = run(*MUG, "--preset", "exact", *SENSOR, "--json")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        document = strict_json(result.stdout)
+        self.assertEqual(document["status"]["name"], "ok")
+        text = (DATA / "mug" / "T_target_source.txt").read_text()
+        truth = [list(map(float, line.split())) for line in text.splitlines() if line[0] != "#"]
+        for k in range(3):
+            coordinate = document["posterior"]["coordinates"][k]
+            error = abs(coordinate["mean"] - truth[k][3])
+            self.assertLess(error, 4 * coordinate["standard_deviation"])
+
+    def test_same_draws_on_any_number_of_threads(self):
+        runs = [
+            self.run_to_files(*MUG, "--preset=exact", *SENSOR, "--threads", n)[0] for n in (1, 2)
+        ]
+        self.assertEqual(runs[0], runs[1])
+
+
+class Options(ExactTest):
+    # Each changes the draws of SMALL.
+    GIVEN = {
+        "residual=point-to-plane": ("residual", "point-to-plane"),
+        "kernel=huber": ("kernel", "huber"),
+        "metropolis": ("metropolis", True),
+    }
+
+    def test_options_arrive_and_are_obeyed(self):
+        pair = self.small_pair()
+        plain, document = self.run_to_files(*pair, *self.SMALL)
+        defaults = {
+            "residual": "point-to-point",
+            "kernel": "none",
+            "kernel_width_m": 0.01,
+            "metropolis": False,
+            "fixed_batch_size": 4000,
+        }
+        self.assertEqual(document["options"]["exact"], defaults)
+        for word, (key, value) in self.GIVEN.items():
+            samples, document = self.run_to_files(*pair, *self.SMALL, f"--{word}")
+            self.assertEqual(document["options"]["exact"], {**defaults, key: value})
+            self.assertNotEqual(samples, plain, word)
+        for words in (
+            (["--kernel=tukey"], ["--kernel=tukey", "--kernel-width=0.02"]),
+            (["--metropolis"], ["--metropolis", "--fixed-batch-size=100"]),
+            ([], ["--max-distance=0.02"]),
+            ([], ["--batch-size=100"]),
+            ([], ["--thinning=3"]),
+            ([], ["--burn-in=50"]),
+            ([], ["--step-size=0.3"]),
+        ):
+            runs = [self.run_to_files(*pair, *self.SMALL, *more)[0] for more in words]
+            self.assertNotEqual(runs[0], runs[1], words)
+
+    def test_a_run_is_repeated_from_its_posterior_json(self):
+        pair = self.small_pair()
+        given = ["--residual=point-to-plane", "--kernel=tukey", "--kernel-width=0.0301"]
+        given += ["--metropolis", "--fixed-batch-size=250", "--seed=18446744073709551615"]
+        for options in (given, ["--kernel=huber", "--guess=0.01,0,0,0,0,0.02", "-d0.2"]):
+            expected, document = self.run_to_files(*pair, *self.SMALL, *options)
+            config = self.file("config.json", json.dumps(document))
+            samples, repeated = self.run_to_files(*pair, "--config", config)
+            self.assertEqual(samples, expected)
+            self.assertEqual(repeated["options"], document["options"])
+
+    def test_bad_values(self):
+        for words, *reason in (
+            (["--residual=plane"], "--residual", "'plane'", "point-to-point or point-to-plane"),
+            (["--kernel=cauchy"], "--kernel", "'cauchy'", "none, huber or tukey"),
+            (["--kernel-width=0"], "--kernel-width: kernel_width is 0"),
+            (["--fixed-batch-size=0"], "--fixed-batch-size: fixed_batch_size is 0"),
+            (["--step-size=2"], "--step-size: step_size is 2", "exact"),
+            (["--residual=point-to-plane", "--one-to-one"], "--residual: ", "--one-to-one"),
+            (["--residual=point-to-plane", "--reciprocal"], "--residual: ", "--reciprocal"),
+        ):
+            self.assert_refused(2, run("a.pcd", "b.pcd", "--preset=exact", *words), *reason)
+        for key, value in (("kernel", "Huber"), ("kernel_width_m", None), ("metropolis", 1)):
+            config = self.file("config.json", json.dumps({"exact": {key: value}}))
+            result = run("a.pcd", "b.pcd", "--config", config)
+            self.assert_refused(2, result, f"{config}: exact.{key} is ")
+
+    def test_help_tells_what_exact_finds_itself(self):
+        text = " ".join(run("--help").stdout.split())
+        self.assertIn("It finds --batch-size, --thinning, --burn-in and --step-size itself", text)
+        for name, default in (("kernel-width", "0.01"), ("fixed-batch-size", "4000")):
+            self.assertRegex(text, rf"--{name} \w [^-]*\(default {default}\)")
+
+
+class Modes(ExactTest):
+    OPTIONS = ["--preset=exact", "--sigma=0.003", "--effective-points=300", "--chains=8"]
+    OPTIONS += ["--samples=400", "--initial-spread=0.08,0.01,0.01,0.01,0.01,0.01"]
+
+    def test_one_mode_is_the_posterior(self):
+        _, document = self.run_to_files(*self.small_pair(), *self.SMALL)
+        posterior = document["posterior"]
+        (mode,) = posterior["modes"]
+        self.assertEqual((mode["weight"], mode["chains"]), (1, [0, 1, 2, 3]))
+        self.assertEqual(mode["mean"], posterior["mean"])
+        self.assertEqual(mode["covariance"], posterior["covariances"][0])
+
+    def test_paper_looks_for_none(self):
+        _, document = self.run_to_files(*self.small_pair(), "--samples=60")
+        self.assertEqual(document["posterior"]["modes"], [])
+
+    def test_several_modes_are_told_apart(self):
+        pair = self.ridges()
+        result = run(*pair, *self.OPTIONS, "--json")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"^pcl_bayesian_icp: several modes: .*\n$")
+        document = strict_json(result.stdout)
+        self.assertEqual(document["status"]["name"], "several_modes")
+        modes = document["posterior"]["modes"]
+        self.assertGreater(len(modes), 1)
+        self.assertAlmostEqual(sum(mode["weight"] for mode in modes), 1, delta=1e-9)
+        self.assertEqual(sorted(sum((mode["chains"] for mode in modes), [])), list(range(8)))
+        for mode in modes:
+            shift = math.remainder(mode["mean"]["x_m"], PERIOD)
+            deviation = math.sqrt(mode["covariance"]["matrix"][0][0])
+            self.assertLess(abs(shift), 0.02)
+            self.assertLess(deviation, 0.02)
+        self.check_table(run(*pair, *self.OPTIONS), modes)
+
+    def check_table(self, result, modes):
+        """The table has a block for every mode: weight, chains, mean and deviation."""
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("Status: several modes: ", result.stdout)
+        blocks = re.split(r"^Mode \d+: ", result.stdout, flags=re.MULTILINE)[1:]
+        self.assertEqual(len(blocks), len(modes))
+        for block, mode in zip(blocks, modes):
+            head, *rows = block.splitlines()[:4]
+            chains = " ".join(map(str, mode["chains"]))
+            self.assertEqual(head, f"weight {mode['weight']:.3f}, chains {chains}")
+            cells = re.findall(r"(\w+) \[(m|rad)\] +(\S+) \+- +(\S+)", "\n".join(rows))
+            self.assertEqual(len(cells), 6)
+            for name, unit, mean, deviation in cells:
+                k = NAMES.index(f"{name}_{unit}")
+                self.assertAlmostEqual(float(mean), mean_of(mode)[k], delta=0.6e-6)
+                variance = mode["covariance"]["matrix"][k][k]
+                self.assertAlmostEqual(float(deviation), math.sqrt(variance), delta=0.6e-6)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,392 @@
+// The sampler of preset `exact` on densities whose moments are known: no point clouds.
+#include <bayesian_icp/preconditioned_sampler.h>
+#include <bayesian_icp/summary.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace bayesian_icp {
+namespace {
+
+/** A density given by its likelihood's energy and gradient, a Gaussian prior about 0,
+ * and artificial noise of the gradient. */
+class TestEnergy : public StochasticEnergy {
+public:
+  std::function<double(const Vector6d&)> likelihood;
+  std::function<Vector6d(const Vector6d&)> likelihood_gradient;
+  Matrix6d curvature = Matrix6d::Identity();
+  Vector6d prior_precision = Vector6d::Constant(1e-2);
+  /** Root of the covariance of a term's gradient; zero for exact gradients. */
+  Matrix6d term_noise = Matrix6d::Zero();
+  std::size_t num_terms = 1;
+  double start_spread = 3.0;
+
+  std::size_t
+  numTerms() const override
+  {
+    return num_terms;
+  }
+
+  SplitGradient
+  gradient(const Vector6d& x, std::size_t batch_size, Random& random) override
+  {
+    const double share =
+        1.0 / static_cast<double>(batch_size) - 1.0 / static_cast<double>(num_terms);
+    return {likelihood_gradient(x) + std::sqrt(share) * (term_noise * random.normal6()),
+            prior_precision.cwiseProduct(x)};
+  }
+
+  Matrix6d
+  termCovariance(const Vector6d& /* x */, Random& /* random */) override
+  {
+    return term_noise * term_noise.transpose();
+  }
+
+  Matrix6d
+  roughCurvature(const Vector6d& /* x */, Random& /* random */) override
+  {
+    return curvature;
+  }
+
+  Matrix6d
+  priorPrecision() const override
+  {
+    return prior_precision.asDiagonal();
+  }
+
+  double
+  energy(const Vector6d& x) override
+  {
+    return likelihood(x) + 0.5 * x.dot(prior_precision.cwiseProduct(x));
+  }
+
+  Vector6d
+  drawStart(Random& random) override
+  {
+    return start_spread * random.normal6();
+  }
+};
+
+/** Angles of poses are wrapped: densities are kept well within +-pi there. */
+PreconditionedTarget
+targetOf(const TestEnergy& energy)
+{
+  PreconditionedTarget target;
+  target.make_energy = [energy](int) { return std::make_unique<TestEnergy>(energy); };
+  target.to_pose = [](const Vector6d& x) { return x; };
+  return target;
+}
+
+/** N(mean, precision^-1) and a flat prior; the warm-up is told a wrong curvature. */
+TestEnergy
+gaussianEnergy(const Vector6d& mean, const Matrix6d& precision)
+{
+  TestEnergy energy;
+  energy.likelihood = [=](const Vector6d& x) {
+    return 0.5 * (x - mean).dot(precision * (x - mean));
+  };
+  energy.likelihood_gradient = [=](const Vector6d& x) -> Vector6d {
+    return precision * (x - mean);
+  };
+  energy.curvature = 3.0 * precision;
+  energy.prior_precision.setConstant(1e-6);
+  energy.start_spread = 0.5;
+  return energy;
+}
+
+/** A precision with eigenvalues from \p smallest to \p largest in random directions. */
+Matrix6d
+randomPrecision(double smallest, double largest)
+{
+  Random random(81, 0);
+  Matrix6d m;
+  for (int k = 0; k < 6; ++k)
+    m.col(k) = random.normal6();
+  const Matrix6d basis =
+      Eigen::SelfAdjointEigenSolver<Matrix6d>(m + m.transpose()).eigenvectors();
+  Vector6d values;
+  for (int k = 0; k < 6; ++k)
+    values[k] = smallest * std::pow(largest / smallest, k / 5.0);
+  return basis * values.asDiagonal() * basis.transpose();
+}
+
+ChainOptions
+chainOptions(int num_draws)
+{
+  ChainOptions options;
+  options.num_draws = num_draws;
+  options.seed = 7;
+  return options;
+}
+
+/** Means within 4.5 Monte Carlo errors, and in units of the true distribution the draws
+ * have unit covariance: a standardised second moment over n_eff draws has an error of
+ * sqrt(2 / n_eff). */
+void
+expectMoments(const ChainSet& set, const Vector6d& mean, const Matrix6d& covariance)
+{
+  const Summary summary = summarize(set);
+  double least_ess = 1e9;
+  for (int k = 0; k < 6; ++k) {
+    const auto& c = summary.coordinates[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(c.mean, mean[k], 4.5 * c.mcse) << k;
+    least_ess = std::min(least_ess, c.bulk_ess);
+  }
+  EXPECT_GT(least_ess, 900.0);
+  const Matrix6d white =
+      Eigen::LLT<Matrix6d>(covariance).matrixL().solve(Matrix6d(Matrix6d::Identity()));
+  const Matrix6d standardised =
+      white * summary.covariance(CovarianceConvention::Parameters) * white.transpose();
+  EXPECT_LT((standardised - Matrix6d::Identity()).cwiseAbs().maxCoeff(),
+            4.5 * std::sqrt(2.0 / least_ess));
+}
+
+TEST(PreconditionedSampler, GaussiansWellAndBadlyConditioned)
+{
+  Vector6d mean;
+  mean << 0.3, -0.5, 1.0, 0.1, -0.2, 0.3;
+  for (const double condition : {10.0, 1e6}) {
+    const Matrix6d precision = randomPrecision(30.0, 30.0 * condition);
+    const auto energy = gaussianEnergy(mean, precision);
+    for (const bool metropolis : {false, true}) {
+      PreconditionedOptions sampler;
+      sampler.metropolis = metropolis;
+      const ChainSet set =
+          runPreconditionedChains(targetOf(energy), sampler, chainOptions(4000));
+      expectMoments(set, mean, precision.inverse());
+      EXPECT_EQ(set.modes.size(), 1u);
+      EXPECT_EQ(summarize(set).status, Status::Ok) << summarize(set).message;
+    }
+  }
+}
+
+TEST(PreconditionedSampler, NoiseOfTheGradientDoesNotWidenTheDraws)
+{
+  // Noise that is not aligned with the density, at variances w of about 0.1 to 20.
+  const Matrix6d precision = randomPrecision(100.0, 1e4);
+  auto energy = gaussianEnergy(Vector6d::Zero(), precision);
+  energy.num_terms = 100000;
+  Vector6d scale;
+  scale << 1.0, 5.0, 2.0, 0.5, 3.0, 1.0;
+  const Matrix6d root = Eigen::LLT<Matrix6d>(precision).matrixL();
+  energy.term_noise = std::sqrt(160.0) * root * scale.asDiagonal();
+  for (const std::size_t batch_size : {0, 160}) {
+    PreconditionedOptions sampler;
+    sampler.batch_size = batch_size;
+    const ChainSet set =
+        runPreconditionedChains(targetOf(energy), sampler, chainOptions(4000));
+    expectMoments(set, Vector6d::Zero(), precision.inverse());
+  }
+}
+
+TEST(PreconditionedSampler, ADirectionWithoutLikelihoodKeepsItsPrior)
+{
+  Vector6d precision = Vector6d::Constant(1e4);
+  precision[2] = precision[5] = 0.0;
+  auto energy = gaussianEnergy(Vector6d::Zero(), precision.asDiagonal());
+  energy.prior_precision.setConstant(4.0); // sd 0.5
+  energy.start_spread = 0.5;
+  const ChainSet set = runPreconditionedChains(
+      targetOf(energy), PreconditionedOptions(), chainOptions(4000));
+  const Vector6d total = precision + energy.prior_precision;
+  expectMoments(set, Vector6d::Zero(), total.cwiseInverse().asDiagonal());
+}
+
+/** Coordinate 1 is bent by coordinate 0: x1 ~ N(bend (x0^2 - s^2), 0.05^2). */
+TestEnergy
+banana(double bend)
+{
+  constexpr double s = 0.3, narrow = 0.05;
+  TestEnergy energy;
+  energy.likelihood = [=](const Vector6d& x) {
+    const double y = x[1] - bend * (x[0] * x[0] - s * s);
+    return 0.5 * (x[0] * x[0] / (s * s) + y * y / (narrow * narrow) +
+                  x.tail<4>().squaredNorm() / (s * s));
+  };
+  energy.likelihood_gradient = [=](const Vector6d& x) {
+    const double y = x[1] - bend * (x[0] * x[0] - s * s);
+    Vector6d g = x / (s * s);
+    g[1] = y / (narrow * narrow);
+    g[0] -= 2.0 * bend * x[0] * g[1];
+    return g;
+  };
+  energy.prior_precision.setConstant(1e-6);
+  energy.curvature = Matrix6d::Identity() / (s * s);
+  energy.curvature(0, 0) += std::pow(2.0 * bend * s / narrow, 2);
+  energy.curvature(1, 1) = 1.0 / (narrow * narrow);
+  energy.start_spread = 0.3;
+  return energy;
+}
+
+TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
+{
+  const double bend = 0.6;
+  Vector6d variance = Vector6d::Constant(0.09);
+  variance[1] = 0.05 * 0.05 + 2.0 * bend * bend * std::pow(0.3, 4);
+  PreconditionedOptions sampler;
+  sampler.metropolis = true;
+  const Summary exact = summarize(
+      runPreconditionedChains(targetOf(banana(bend)), sampler, chainOptions(8000)));
+  // Langevin steps of one length do not resolve a narrow bend: a milder one.
+  const double mild_bend = 0.25;
+  Vector6d mild_variance = variance;
+  mild_variance[1] = 0.05 * 0.05 + 2.0 * mild_bend * mild_bend * std::pow(0.3, 4);
+  const Summary langevin = summarize(runPreconditionedChains(
+      targetOf(banana(mild_bend)), PreconditionedOptions(), chainOptions(8000)));
+  EXPECT_EQ(exact.status, Status::Ok) << exact.message;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto& c = exact.coordinates[k];
+    const double sd = std::sqrt(variance[static_cast<Eigen::Index>(k)]);
+    EXPECT_NEAR(c.mean, 0.0, 4.5 * c.mcse) << k;
+    // The fourth moment of the bent coordinate is that of a chi-squared: 4 errors.
+    EXPECT_NEAR(c.standard_deviation / sd, 1.0, k == 1 ? 0.12 : 0.07) << k;
+    const double mild_sd = std::sqrt(mild_variance[static_cast<Eigen::Index>(k)]);
+    EXPECT_NEAR(langevin.coordinates[k].standard_deviation / mild_sd, 1.0, 0.15) << k;
+  }
+}
+
+/** Gaussians of standard deviation 0.05 at x0 = -+1, of which the second one has the
+ * density lowered by \p loss nats. */
+TestEnergy
+mixture(double loss)
+{
+  constexpr double s = 0.05;
+  const auto energies = [=](const Vector6d& x) {
+    const Vector6d d = x - Vector6d::Unit(0), e = x + Vector6d::Unit(0);
+    return std::array<double, 2>{0.5 * d.squaredNorm() / (s * s),
+                                 0.5 * e.squaredNorm() / (s * s) + loss};
+  };
+  TestEnergy energy;
+  energy.likelihood = [=](const Vector6d& x) {
+    const auto u = energies(x);
+    const double least = std::min(u[0], u[1]);
+    return least - std::log(std::exp(least - u[0]) + std::exp(least - u[1]));
+  };
+  energy.likelihood_gradient = [=](const Vector6d& x) -> Vector6d {
+    const auto u = energies(x);
+    const double second = 1.0 / (1.0 + std::exp(u[1] - u[0]));
+    return (x - (1.0 - 2.0 * second) * Vector6d::Unit(0)) / (s * s);
+  };
+  energy.curvature = Matrix6d::Identity() / (s * s);
+  energy.prior_precision.setConstant(1e-6);
+  energy.start_spread = 1.0;
+  return energy;
+}
+
+TEST(Modes, ThatRemainAreReportedWithWeightMeanAndChains)
+{
+  auto options = chainOptions(2000);
+  options.num_chains = 8;
+  const ChainSet set =
+      runPreconditionedChains(targetOf(mixture(1.0)), PreconditionedOptions(), options);
+  const Summary summary = summarize(set);
+  EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
+  EXPECT_NE(summary.message.find("2 modes"), std::string::npos) << summary.message;
+  ASSERT_EQ(summary.modes.size(), 2u);
+  EXPECT_EQ(summary.modes[0].chains.size() + summary.modes[1].chains.size(), 8u);
+  // Exact for Gaussians: weights 1 : exp(-1).
+  EXPECT_NEAR(summary.modes[0].weight, 1.0 / (1.0 + std::exp(-1.0)), 0.05);
+  for (int i = 0; i < 2; ++i) {
+    const Mode& mode = summary.modes[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(mode.mean[0], i == 0 ? 1.0 : -1.0, 0.02);
+    EXPECT_NEAR(std::sqrt(mode.covariance(0, 0)), 0.05, 0.01);
+  }
+  EXPECT_GT(summary.coordinates[0].rhat, 1.5);
+}
+
+TEST(Modes, ThatAreClearlyWorseLoseTheirChains)
+{
+  auto options = chainOptions(2000);
+  options.num_chains = 8;
+  const ChainSet set = runPreconditionedChains(
+      targetOf(mixture(30.0)), PreconditionedOptions(), options);
+  EXPECT_GT(set.num_moved_chains, 0);
+  EXPECT_NEAR(set.moved_by_nats, 30.0, 2.0);
+  const Summary summary = summarize(set);
+  EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+  EXPECT_NE(summary.message.find("nats worse"), std::string::npos) << summary.message;
+  EXPECT_EQ(summary.modes.size(), 1u);
+  EXPECT_GT(summary.coordinates[0].quantile_2_5, 0.8);
+}
+
+TEST(PreconditionedSampler, DrawsDoNotDependOnTheNumberOfThreads)
+{
+  auto energy = mixture(1.0);
+  energy.num_terms = 1000;
+  energy.term_noise = 20.0 * Matrix6d::Identity();
+  for (const bool metropolis : {false, true}) {
+    PreconditionedOptions sampler;
+    sampler.metropolis = metropolis;
+    auto options = chainOptions(100);
+    options.num_threads = 1;
+    const ChainSet reference =
+        runPreconditionedChains(targetOf(energy), sampler, options);
+    for (const int num_threads : {2, 3}) {
+      options.num_threads = num_threads;
+      const ChainSet set = runPreconditionedChains(targetOf(energy), sampler, options);
+      for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_EQ(set.chains[i].draws, reference.chains[i].draws);
+    }
+  }
+}
+
+TEST(PreconditionedSampler, ObeysBurnInAndThinningAndReportsThem)
+{
+  auto options = chainOptions(40);
+  options.num_burn_in = 17;
+  options.thinning = 3;
+  long warm_up_calls = 0, steps = 0, total = 0;
+  runPreconditionedChains(
+      targetOf(gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity())),
+      PreconditionedOptions(),
+      options,
+      [&](const Progress& p) {
+        p.steps == 0 ? ++warm_up_calls : ++steps;
+        total = p.total_steps;
+        return true;
+      });
+  EXPECT_GT(warm_up_calls, 0);
+  EXPECT_EQ(steps, 4 * (17 + 3 * 10));
+  EXPECT_EQ(total, steps);
+}
+
+TEST(PreconditionedSampler, CanBeCancelledInWarmUpAndInSampling)
+{
+  const auto target =
+      targetOf(gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity()));
+  const ChainSet early = runPreconditionedChains(target,
+                                                 PreconditionedOptions(),
+                                                 chainOptions(400),
+                                                 [](const Progress&) { return false; });
+  EXPECT_TRUE(early.cancelled);
+  for (const auto& chain : early.chains)
+    EXPECT_EQ(chain.draws.rows(), 0);
+  EXPECT_EQ(summarize(early).status, Status::Cancelled);
+  const ChainSet late = runPreconditionedChains(
+      target, PreconditionedOptions(), chainOptions(400), [](const Progress& p) {
+        return p.steps < 300;
+      });
+  EXPECT_TRUE(late.cancelled);
+  EXPECT_GT(pooledDraws(late.chains).rows(), 0);
+  EXPECT_LT(pooledDraws(late.chains).rows(), 400);
+}
+
+TEST(PreconditionedSampler, ExceptionsReachTheCaller)
+{
+  auto energy = gaussianEnergy(Vector6d::Zero(), Matrix6d::Identity());
+  energy.likelihood_gradient = [](const Vector6d&) -> Vector6d {
+    throw std::runtime_error("broken");
+  };
+  EXPECT_THROW(runPreconditionedChains(
+                   targetOf(energy), PreconditionedOptions(), chainOptions(40)),
+               std::runtime_error);
+}
+
+} // namespace
+} // namespace bayesian_icp
