@@ -63,9 +63,33 @@ cpuSeconds()
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/** Queries of source points, in random order as in a mini-batch, to PCL's tree. */
+/** The points that 1000 steps would look up: a random batch at each of 1000 draws. */
+Cloud
+pointsOfSteps(const Pair& pair, const Scale& scale)
+{
+  Options options = makeOptions(Preset::Exact, scale);
+  options.chains.num_draws = num_steps;
+  const PoseMatrix poses =
+      estimatePosterior(pair.source, *pair.target, pair.guess, options).samples;
+  Random random(1, 0);
+  Cloud points;
+  for (Eigen::Index step = 0; step < poses.rows(); ++step) {
+    const Vector6d pose = poses.row(step).transpose();
+    const Eigen::Matrix3d R = rotationOf(pose);
+    for (int i = 0; i < batch_size; ++i) {
+      const auto column = random.index(static_cast<std::size_t>(pair.source.cols()));
+      const Eigen::Vector3f p =
+          (R * pair.source.col(static_cast<Eigen::Index>(column)) + pose.head<3>())
+              .cast<float>();
+      points.emplace_back(p.x(), p.y(), p.z());
+    }
+  }
+  return points;
+}
+
+/** Their neighbours by PCL's tree, nothing else. */
 void
-flannQueries(benchmark::State& state, const Pair& pair)
+flannQueries(benchmark::State& state, const Pair& pair, const Scale& scale)
 {
   const Cloud::Ptr target(new Cloud);
   for (Eigen::Index i = 0; i < pair.target->points().cols(); ++i) {
@@ -74,21 +98,14 @@ flannQueries(benchmark::State& state, const Pair& pair)
   }
   pcl::KdTreeFLANN<pcl::PointXYZ> tree;
   tree.setInputCloud(target);
-  const Eigen::Matrix3d R = rotationOf(pair.guess);
-  Cloud moved;
-  for (Eigen::Index i = 0; i < pair.source.cols(); ++i) {
-    const Eigen::Vector3d p = R * pair.source.col(i) + pair.guess.head<3>();
-    moved.emplace_back(static_cast<float>(p.x()),
-                       static_cast<float>(p.y()),
-                       static_cast<float>(p.z()));
-  }
-  Random random(1, 0);
+  const Cloud points = pointsOfSteps(pair, scale);
+  if (points.size() != num_steps * batch_size)
+    state.SkipWithError("chains diverged");
   pcl::Indices index(1);
   std::vector<float> squared_distance(1);
   for (auto _ : state)
-    for (int i = 0; i < num_steps * batch_size; ++i)
-      tree.nearestKSearch(
-          moved[random.index(moved.size())], 1, index, squared_distance);
+    for (const auto& point : points)
+      tree.nearestKSearch(point, 1, index, squared_distance);
 }
 
 /** Seconds of CPU that the steps of one chain take, its warm-up left out. */
@@ -150,7 +167,9 @@ add(const std::string& name, const std::function<void(benchmark::State&)>& funct
 void
 addComparisons(const Pair& pair)
 {
-  add("160000_flann_queries", [&](benchmark::State& s) { flannQueries(s, pair); });
+  for (const Scale& scale : scales)
+    add(std::string("flann/160000_queries/") + scale.name,
+        [&](benchmark::State& s) { flannQueries(s, pair, scale); });
   for (const Scale& scale : scales)
     add(std::string("exact/1000_steps_of_160/") + scale.name, [&](benchmark::State& s) {
       steps(s, pair, scale);
