@@ -21,12 +21,15 @@ constexpr int num_components = 12;
 /** Share of the warm-up's Gaussians in the jumps: a mode of little weight leaves few
  * draws to fit to. */
 constexpr double warm_up_share = 0.05;
+/** Share and variance, in those of the draws, of a component that covers all draws: a
+ * chain that found what none of the others covers would stay there for long. */
+constexpr double wide_share = 0.1, wide_variance = 2.0;
 /** Random walk: the best length for a Gaussian, and the acceptance of walks of mixed
  * lengths that it is adjusted to. */
 const double walk_length = 2.38 / std::sqrt(6.0);
 constexpr double walk_acceptance = 0.35;
 /** The thinning for acceptance 1, and the largest one. */
-constexpr double jump_thinning = 1.6, max_thinning = 60.0;
+constexpr double jump_thinning = 1.6, max_thinning = 10.0;
 
 double
 adjustedScale(double scale, double acceptance)
@@ -67,15 +70,19 @@ mixtureOf(const std::vector<Gaussian>& gaussians)
   return mixture;
 }
 
+Matrix6d
+covarianceOf(const PoseMatrix& draws)
+{
+  const PoseMatrix centred = draws.rowwise() - draws.colwise().mean();
+  return centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
+}
+
 /** Whether there are draws of more than a plane. */
 bool
 canBeFitted(const PoseMatrix& draws)
 {
-  if (!draws.allFinite())
-    return false;
-  const PoseMatrix centred = draws.rowwise() - draws.colwise().mean();
-  const Eigen::LLT<Matrix6d> llt(centred.transpose() * centred);
-  return llt.info() == Eigen::Success;
+  return draws.allFinite() &&
+         Eigen::LLT<Matrix6d>(covarianceOf(draws)).info() == Eigen::Success;
 }
 
 } // namespace
@@ -99,6 +106,9 @@ PreconditionedRun::learnProposal(const PoseMatrix& draws,
   proposal->jumps = TMixture(draws, num_components, random);
   const Eigen::LLT<Matrix6d> llt(proposal->jumps.covarianceWithin());
   proposal->walk_factor = walk_scale * Matrix6d(llt.matrixL());
+  proposal->jumps.add(draws.colwise().mean().transpose(),
+                      wide_variance * covarianceOf(draws),
+                      wide_share);
   const double share = warm_up_share / static_cast<double>(fits_.size());
   for (const auto& fit : fits_)
     proposal->jumps.add(fit.gaussian.mean(), covarianceOf(fit.gaussian), share);
