@@ -48,10 +48,11 @@ ChainPoseEnergy::ChainPoseEnergy(const PoseEnergy& pose_energy,
 : pose_energy_(pose_energy)
 , settings_(settings)
 , prior_precision_(pose_energy.priorPrecision())
+, all_points_(pose_energy.numPoints())
 , workspace_(pose_energy.makeWorkspace())
-, shuffled_(pose_energy.numPoints())
 {
-  std::iota(shuffled_.begin(), shuffled_.end(), std::size_t(0));
+  std::iota(all_points_.begin(), all_points_.end(), std::size_t(0));
+  shuffled_ = all_points_;
 }
 
 std::size_t
@@ -117,11 +118,22 @@ ChainPoseEnergy::priorPrecision() const
 }
 
 double
+ChainPoseEnergy::energyOf(const std::vector<std::size_t>& batch, const Vector6d& phi)
+{
+  return pose_energy_.weight() * terms(phi, batch, BatchTerms::Nothing).energy +
+         pose_energy_.priorEnergy(phi);
+}
+
+double
 ChainPoseEnergy::energy(const Vector6d& phi)
 {
-  return pose_energy_.weight() *
-             terms(phi, settings_.fixed_batch, BatchTerms::Nothing).energy +
-         pose_energy_.priorEnergy(phi);
+  return energyOf(settings_.fixed_batch, phi);
+}
+
+double
+ChainPoseEnergy::fullEnergy(const Vector6d& phi)
+{
+  return energyOf(all_points_, phi);
 }
 
 Vector6d

@@ -45,6 +45,9 @@ public:
   double
   energy(const Vector6d& phi) override;
 
+  double
+  fullEnergy(const Vector6d& phi) override;
+
   Vector6d
   drawStart(Random& random) override;
 
@@ -60,6 +63,9 @@ public:
   hasDiverged(const Vector6d& phi) const override;
 
 private:
+  double
+  energyOf(const std::vector<std::size_t>& batch, const Vector6d& phi);
+
   const std::vector<std::size_t>&
   drawBatch(std::size_t size, Random& random);
 
@@ -71,6 +77,7 @@ private:
   const PoseEnergy& pose_energy_;
   const PoseChainSettings& settings_;
   Matrix6d prior_precision_;
+  std::vector<std::size_t> all_points_;
   EnergyWorkspace workspace_;
   std::vector<std::size_t> shuffled_;
   std::vector<std::size_t> batch_;

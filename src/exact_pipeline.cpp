@@ -38,6 +38,11 @@ samplerOptions(const Options& options)
   const Options defaults;
   PreconditionedOptions sampler;
   sampler.metropolis = options.exact.metropolis;
+  const bool is_langevin_set =
+      options.mini_batch.batch_size != defaults.mini_batch.batch_size ||
+      options.sgld.step_size != defaults.sgld.step_size;
+  if (is_langevin_set && sampler.metropolis == MetropolisUse::Automatic)
+    sampler.metropolis = MetropolisUse::Never;
   if (options.mini_batch.batch_size != defaults.mini_batch.batch_size)
     sampler.batch_size = static_cast<std::size_t>(options.mini_batch.batch_size);
   if (options.sgld.step_size != defaults.sgld.step_size)

@@ -34,7 +34,21 @@ automaticBatchSize(double term_noise, std::size_t num_terms)
   return size >= full_batch_share * n ? num_terms : static_cast<std::size_t>(size);
 }
 
+Eigen::SelfAdjointEigenSolver<Matrix6d>
+noiseOf(const GaussianFit& fit)
+{
+  const Matrix6d& L = fit.gaussian.factor();
+  return Eigen::SelfAdjointEigenSolver<Matrix6d>(L.transpose() * fit.term_covariance *
+                                                 L);
+}
+
 } // namespace
+
+Vector6d
+termNoise(const GaussianFit& fit)
+{
+  return noiseOf(fit).eigenvalues().cwiseMax(0.0);
+}
 
 StepPlan
 planSteps(const GaussianFit& fit,
@@ -43,8 +57,7 @@ planSteps(const GaussianFit& fit,
           double max_step_size)
 {
   const Matrix6d& L = fit.gaussian.factor();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> noise(L.transpose() *
-                                                      fit.term_covariance * L);
+  const auto noise = noiseOf(fit);
   const Vector6d term_noise = noise.eigenvalues().cwiseMax(0.0);
   StepPlan plan;
   plan.directions = L * noise.eigenvectors();

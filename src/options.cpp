@@ -134,6 +134,20 @@ toString(Preset preset)
   return "unknown";
 }
 
+const char*
+toString(MetropolisUse use)
+{
+  switch (use) {
+  case MetropolisUse::Automatic:
+    return "automatic";
+  case MetropolisUse::Never:
+    return "never";
+  case MetropolisUse::Always:
+    return "always";
+  }
+  return "unknown";
+}
+
 std::string
 Options::validate() const
 {

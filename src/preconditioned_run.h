@@ -1,12 +1,14 @@
 /** \file
  * \brief One run of the preconditioned sampler: its state and its phases. The warm-up
- * is in preconditioned_warm_up.cpp, the sampling in preconditioned_sampler.cpp.
+ * is in preconditioned_warm_up.cpp, what Metropolis chains learn in
+ * preconditioned_metropolis.cpp, the sampling in preconditioned_sampler.cpp.
  */
 #pragma once
 
 #include "run_state.h"
 
 #include <bayesian_icp/langevin.h>
+#include <bayesian_icp/metropolis.h>
 #include <bayesian_icp/preconditioned_sampler.h>
 
 #include <functional>
@@ -33,6 +35,8 @@ public:
   run();
 
 private:
+  using MetropolisChains = std::vector<MetropolisChain*>;
+
   struct ChainState {
     std::unique_ptr<StochasticEnergy> energy;
     std::unique_ptr<Random> random;
@@ -67,8 +71,23 @@ private:
   StepPlan
   startLangevin();
 
+  bool
+  usesMetropolis() const;
+
   StepPlan
   startMetropolis();
+
+  std::shared_ptr<const MetropolisProposal>
+  firstProposal() const;
+
+  std::shared_ptr<const MetropolisProposal>
+  learnProposal(const PoseMatrix& draws, double walk_scale, Random& random) const;
+
+  PoseMatrix
+  walkAndJump(int num_steps, const MetropolisChains& chains);
+
+  double
+  learnTogether(const MetropolisChains& chains);
 
   void
   startSampling();
@@ -91,6 +110,9 @@ private:
   int num_threads_;
   RunState run_;
   std::vector<ChainState> states_;
+  /** Of each chain's own warm-up, or of the best mode if the chain was moved there:
+   * Metropolis chains start apart, so that R-hat sees where they disagree. */
+  std::vector<Gaussian> starts_;
   /** One a mode. */
   std::vector<GaussianFit> fits_;
   int num_burn_in_ = 0;

@@ -1,7 +1,6 @@
 #include "modes.h"
 #include "preconditioned_run.h"
 
-#include <bayesian_icp/metropolis.h>
 #include <bayesian_icp/summary.h>
 
 #include <algorithm>
@@ -11,10 +10,6 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Metropolis steps from which the thinning is found, and their burn-in; the thinning
- * for acceptance 1, and the largest one. */
-constexpr int num_pilot_steps = 90;
-constexpr double pilot_thinning = 2.0, max_thinning = 60.0;
 /** Effective draws, over all chains, below which an automatic thinning is doubled: as
  * an absolute number and as a share of the draws. How often that is done. */
 constexpr double wanted_ess = 900.0, wanted_ess_share = 0.45;
@@ -72,32 +67,21 @@ PreconditionedRun::startLangevin()
   return common;
 }
 
-StepPlan
-PreconditionedRun::startMetropolis()
+bool
+PreconditionedRun::usesMetropolis() const
 {
-  std::vector<double> acceptances(states_.size());
-  forEach([&](std::size_t i) {
-    auto& state = states_[i];
-    const Gaussian& gaussian = fits_[modeOf(i)].gaussian;
-    auto chain = std::make_unique<MetropolisChain>(
-        gaussian, gaussian.draw(*state.random), *state.energy, *state.random);
-    for (int step = 0; step < num_pilot_steps && !run_.stopped(); ++step)
-      chain->step();
-    acceptances[i] = chain->acceptance();
-    state.sampling = std::move(chain);
-    run_.reportWarmUp(static_cast<int>(i));
+  if (sampler_.metropolis != MetropolisUse::Automatic)
+    return sampler_.metropolis == MetropolisUse::Always;
+  const auto num_terms = static_cast<double>(states_.front().energy->numTerms());
+  return std::any_of(fits_.begin(), fits_.end(), [&](const GaussianFit& fit) {
+    return termNoise(fit).maxCoeff() > num_terms;
   });
-  const double least = *std::min_element(acceptances.begin(), acceptances.end());
-  StepPlan common;
-  common.thinning = static_cast<int>(
-      std::min(max_thinning, std::ceil(pilot_thinning / std::max(least, 1e-3))));
-  return common;
 }
 
 void
 PreconditionedRun::startSampling()
 {
-  const StepPlan common = sampler_.metropolis ? startMetropolis() : startLangevin();
+  const StepPlan common = usesMetropolis() ? startMetropolis() : startLangevin();
   num_burn_in_ = options_.num_burn_in > 0 ? options_.num_burn_in : common.num_burn_in;
   thinning_ = options_.thinning > 1 ? options_.thinning : common.thinning;
   long total_steps = 0;

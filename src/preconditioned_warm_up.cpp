@@ -33,8 +33,14 @@ PreconditionedRun::warmUpAlone()
   result_.modes = groupByMode(fits, *states_.front().energy);
   measureEvidence([&](std::size_t i) -> const Gaussian& { return fits[i].gaussian; });
   poolFits(fits);
+  std::vector<std::size_t> homes(states_.size());
+  for (std::size_t i = 0; i < homes.size(); ++i)
+    homes[i] = modeOf(i);
   moveFromWorseModes(result_);
   fits_.resize(result_.modes.size());
+  for (std::size_t i = 0; i < homes.size(); ++i)
+    starts_.push_back(homes[i] < fits_.size() ? fits[i].gaussian
+                                              : fits_.front().gaussian);
 }
 
 /** Where there are several modes: what each of them weighs. */

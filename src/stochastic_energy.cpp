@@ -15,6 +15,12 @@ constexpr std::size_t newton_batch_size = 160;
 
 StochasticEnergy::~StochasticEnergy() = default;
 
+double
+StochasticEnergy::fullEnergy(const Vector6d& x)
+{
+  return energy(x);
+}
+
 Vector6d
 StochasticEnergy::burnIn(const Vector6d& start, Random& random)
 {

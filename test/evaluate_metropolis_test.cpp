@@ -55,32 +55,6 @@ const auto no_report = [](const std::string&) {};
 
 } // namespace
 
-TEST(Mixture, DrawsFollowItsDensity)
-{
-  // The mean of f/g under g is one for a normalised f, whatever g: here f a Gaussian
-  // and g the mixture, whose constant is that of its t components.
-  const Moments gaussian = exampleGaussian();
-  Random random(3, 0);
-  const Mixture mixture(gaussianDraws(gaussian, 4000, 4), 3, random);
-  const EnergyFunction energy = energyOf(gaussian);
-  constexpr double dof = 8.0, half_dimension = 3.0;
-  const double pi = std::acos(-1.0);
-  const double log_t_constant = std::lgamma(0.5 * dof + half_dimension) -
-                                std::lgamma(0.5 * dof) -
-                                half_dimension * std::log(dof * pi);
-  const Eigen::LLT<Matrix6d> llt(gaussian.covariance);
-  const double log_f_constant = -half_dimension * std::log(2.0 * pi) -
-                                llt.matrixLLT().diagonal().array().log().sum();
-  Eigen::MatrixXd ratios(20000, 1);
-  for (Eigen::Index i = 0; i < ratios.rows(); ++i) {
-    const Vector6d x = mixture.draw(random);
-    ratios(i, 0) =
-        std::exp(log_f_constant - energy(x) - log_t_constant - mixture.logDensity(x));
-  }
-  EXPECT_LT(mcseMean(ratios), 0.02);
-  EXPECT_NEAR(ratios.mean(), 1.0, 5.0 * mcseMean(ratios));
-}
-
 TEST(MetropolisRuns, WalkAndMalaReachTheMomentsOfAGaussian)
 {
   const Moments gaussian = exampleGaussian();

@@ -3,6 +3,7 @@
 #include "draw_statistics.h"
 #include "evaluate_test_support.h"
 #include "gold_cache.h"
+#include "result_table.h"
 #include "score.h"
 
 #include <gtest/gtest.h>
@@ -176,4 +177,26 @@ TEST(ResultFile, KeepsWholeRowsOnly)
 
   std::ofstream(file) << "something else\n";
   EXPECT_THROW(ResultFile{file}, io::FileError);
+}
+
+TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)
+{
+  std::vector<ScoredRun> runs;
+  for (const double kl : {0.3, 0.1, 0.2}) {
+    ScoredRun run;
+    run.name = {"can", 0.0015, 1000.0, "paper 1e-05", runs.size() + 1, ""};
+    run.score.kl = kl;
+    run.score.status = "ok";
+    run.score.seconds = 1.0;
+    runs.push_back(run);
+  }
+  runs.push_back(runs[0]);
+  runs.back().name.sampler = "paper 0.001"; // only tried once
+  std::ostringstream table;
+  printTable(runs, table);
+  EXPECT_NE(
+      table.str().find("can        0.0015 1000  paper 1e-05       3  0.2000  0.3000"),
+      std::string::npos)
+      << table.str();
+  EXPECT_EQ(table.str().find("paper 0.001"), std::string::npos);
 }

@@ -1,5 +1,6 @@
 // The sampler of preset `exact` on densities whose moments are known: no point clouds.
-#include <bayesian_icp/preconditioned_sampler.h>
+#include "test_energies.h"
+
 #include <bayesian_icp/summary.h>
 
 #include <gtest/gtest.h>
@@ -7,98 +8,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include <array>
 #include <cmath>
 #include <stdexcept>
 
 namespace bayesian_icp {
 namespace {
 
-/** A density given by its likelihood's energy and gradient, a Gaussian prior about 0,
- * and artificial noise of the gradient. */
-class TestEnergy : public StochasticEnergy {
-public:
-  std::function<double(const Vector6d&)> likelihood;
-  std::function<Vector6d(const Vector6d&)> likelihood_gradient;
-  Matrix6d curvature = Matrix6d::Identity();
-  Vector6d prior_precision = Vector6d::Constant(1e-2);
-  /** Root of the covariance of a term's gradient; zero for exact gradients. */
-  Matrix6d term_noise = Matrix6d::Zero();
-  std::size_t num_terms = 1;
-  double start_spread = 3.0;
-
-  std::size_t
-  numTerms() const override
-  {
-    return num_terms;
-  }
-
-  SplitGradient
-  gradient(const Vector6d& x, std::size_t batch_size, Random& random) override
-  {
-    const double share =
-        1.0 / static_cast<double>(batch_size) - 1.0 / static_cast<double>(num_terms);
-    return {likelihood_gradient(x) + std::sqrt(share) * (term_noise * random.normal6()),
-            prior_precision.cwiseProduct(x)};
-  }
-
-  Matrix6d
-  termCovariance(const Vector6d& /* x */, Random& /* random */) override
-  {
-    return term_noise * term_noise.transpose();
-  }
-
-  Matrix6d
-  roughCurvature(const Vector6d& /* x */, Random& /* random */) override
-  {
-    return curvature;
-  }
-
-  Matrix6d
-  priorPrecision() const override
-  {
-    return prior_precision.asDiagonal();
-  }
-
-  double
-  energy(const Vector6d& x) override
-  {
-    return likelihood(x) + 0.5 * x.dot(prior_precision.cwiseProduct(x));
-  }
-
-  Vector6d
-  drawStart(Random& random) override
-  {
-    return start_spread * random.normal6();
-  }
-};
-
-/** Angles of poses are wrapped: densities are kept well within +-pi there. */
-PreconditionedTarget
-targetOf(const TestEnergy& energy)
-{
-  PreconditionedTarget target;
-  target.make_energy = [energy](int) { return std::make_unique<TestEnergy>(energy); };
-  target.to_pose = [](const Vector6d& x) { return x; };
-  return target;
-}
-
-/** N(mean, precision^-1) and a flat prior; the warm-up is told a wrong curvature. */
-TestEnergy
-gaussianEnergy(const Vector6d& mean, const Matrix6d& precision)
-{
-  TestEnergy energy;
-  energy.likelihood = [=](const Vector6d& x) {
-    return 0.5 * (x - mean).dot(precision * (x - mean));
-  };
-  energy.likelihood_gradient = [=](const Vector6d& x) -> Vector6d {
-    return precision * (x - mean);
-  };
-  energy.curvature = 3.0 * precision;
-  energy.prior_precision.setConstant(1e-6);
-  energy.start_spread = 0.5;
-  return energy;
-}
+using namespace test;
 
 /** A precision with eigenvalues from \p smallest to \p largest in random directions. */
 Matrix6d
@@ -114,15 +30,6 @@ randomPrecision(double smallest, double largest)
   for (int k = 0; k < 6; ++k)
     values[k] = smallest * std::pow(largest / smallest, k / 5.0);
   return basis * values.asDiagonal() * basis.transpose();
-}
-
-ChainOptions
-chainOptions(int num_draws)
-{
-  ChainOptions options;
-  options.num_draws = num_draws;
-  options.seed = 7;
-  return options;
 }
 
 /** Means within 4.5 Monte Carlo errors, and in units of the true distribution the draws
@@ -154,7 +61,7 @@ TEST(PreconditionedSampler, GaussiansWellAndBadlyConditioned)
   for (const double condition : {10.0, 1e6}) {
     const Matrix6d precision = randomPrecision(30.0, 30.0 * condition);
     const auto energy = gaussianEnergy(mean, precision);
-    for (const bool metropolis : {false, true}) {
+    for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
       PreconditionedOptions sampler;
       sampler.metropolis = metropolis;
       const ChainSet set =
@@ -198,39 +105,13 @@ TEST(PreconditionedSampler, ADirectionWithoutLikelihoodKeepsItsPrior)
   expectMoments(set, Vector6d::Zero(), total.cwiseInverse().asDiagonal());
 }
 
-/** Coordinate 1 is bent by coordinate 0: x1 ~ N(bend (x0^2 - s^2), 0.05^2). */
-TestEnergy
-banana(double bend)
-{
-  constexpr double s = 0.3, narrow = 0.05;
-  TestEnergy energy;
-  energy.likelihood = [=](const Vector6d& x) {
-    const double y = x[1] - bend * (x[0] * x[0] - s * s);
-    return 0.5 * (x[0] * x[0] / (s * s) + y * y / (narrow * narrow) +
-                  x.tail<4>().squaredNorm() / (s * s));
-  };
-  energy.likelihood_gradient = [=](const Vector6d& x) {
-    const double y = x[1] - bend * (x[0] * x[0] - s * s);
-    Vector6d g = x / (s * s);
-    g[1] = y / (narrow * narrow);
-    g[0] -= 2.0 * bend * x[0] * g[1];
-    return g;
-  };
-  energy.prior_precision.setConstant(1e-6);
-  energy.curvature = Matrix6d::Identity() / (s * s);
-  energy.curvature(0, 0) += std::pow(2.0 * bend * s / narrow, 2);
-  energy.curvature(1, 1) = 1.0 / (narrow * narrow);
-  energy.start_spread = 0.3;
-  return energy;
-}
-
 TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
 {
   const double bend = 0.6;
   Vector6d variance = Vector6d::Constant(0.09);
   variance[1] = 0.05 * 0.05 + 2.0 * bend * bend * std::pow(0.3, 4);
   PreconditionedOptions sampler;
-  sampler.metropolis = true;
+  sampler.metropolis = MetropolisUse::Always;
   const Summary exact = summarize(
       runPreconditionedChains(targetOf(banana(bend)), sampler, chainOptions(8000)));
   // Langevin steps of one length do not resolve a narrow bend: a milder one.
@@ -249,34 +130,6 @@ TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
     const double mild_sd = std::sqrt(mild_variance[static_cast<Eigen::Index>(k)]);
     EXPECT_NEAR(langevin.coordinates[k].standard_deviation / mild_sd, 1.0, 0.15) << k;
   }
-}
-
-/** Gaussians of standard deviation 0.05 at x0 = -+1, of which the second one has the
- * density lowered by \p loss nats. */
-TestEnergy
-mixture(double loss)
-{
-  constexpr double s = 0.05;
-  const auto energies = [=](const Vector6d& x) {
-    const Vector6d d = x - Vector6d::Unit(0), e = x + Vector6d::Unit(0);
-    return std::array<double, 2>{0.5 * d.squaredNorm() / (s * s),
-                                 0.5 * e.squaredNorm() / (s * s) + loss};
-  };
-  TestEnergy energy;
-  energy.likelihood = [=](const Vector6d& x) {
-    const auto u = energies(x);
-    const double least = std::min(u[0], u[1]);
-    return least - std::log(std::exp(least - u[0]) + std::exp(least - u[1]));
-  };
-  energy.likelihood_gradient = [=](const Vector6d& x) -> Vector6d {
-    const auto u = energies(x);
-    const double second = 1.0 / (1.0 + std::exp(u[1] - u[0]));
-    return (x - (1.0 - 2.0 * second) * Vector6d::Unit(0)) / (s * s);
-  };
-  energy.curvature = Matrix6d::Identity() / (s * s);
-  energy.prior_precision.setConstant(1e-6);
-  energy.start_spread = 1.0;
-  return energy;
 }
 
 TEST(Modes, ThatRemainAreReportedWithWeightMeanAndChains)
@@ -320,7 +173,7 @@ TEST(PreconditionedSampler, DrawsDoNotDependOnTheNumberOfThreads)
   auto energy = mixture(1.0);
   energy.num_terms = 1000;
   energy.term_noise = 20.0 * Matrix6d::Identity();
-  for (const bool metropolis : {false, true}) {
+  for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
     PreconditionedOptions sampler;
     sampler.metropolis = metropolis;
     auto options = chainOptions(100);

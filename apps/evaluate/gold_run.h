@@ -48,7 +48,7 @@ public:
 
   /** \brief Jump with these proposals from now on. */
   void
-  setMixture(std::shared_ptr<const Mixture> mixture)
+  setMixture(std::shared_ptr<const TMixture> mixture)
   {
     mixture_ = std::move(mixture);
   }
@@ -88,7 +88,7 @@ private:
   std::vector<MetropolisState> chains_;
   Matrix6d walk_factor_;
   double walk_scale_ = 1.0;
-  std::shared_ptr<const Mixture> mixture_;
+  std::shared_ptr<const TMixture> mixture_;
   Eigen::VectorXd mean_energies_;
   std::vector<PoseMatrix> draws_;
   Counts counts_;

@@ -54,7 +54,7 @@ adaptTogether(const GoldOptions& options, std::vector<GoldRun>& runs)
     for (GoldRun& run : runs)
       positions.push_back(run.adapt());
     const auto mixture =
-        std::make_shared<const Mixture>(pooled(positions), num_components, random);
+        std::make_shared<const TMixture>(pooled(positions), num_components, random);
     for (GoldRun& run : runs)
       run.setMixture(mixture);
   }

@@ -36,7 +36,7 @@ MetropolisState::walk(const Matrix6d& factor, double temperature)
 }
 
 bool
-MetropolisState::jump(const Mixture& mixture)
+MetropolisState::jump(const TMixture& mixture)
 {
   const Vector6d proposal = mixture.draw(random_);
   return accept(

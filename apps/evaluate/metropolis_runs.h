@@ -4,10 +4,9 @@
  */
 #pragma once
 
-#include "gaussian_mixture.h"
-
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
+#include <bayesian_icp/t_mixture.h>
 
 #include <functional>
 
@@ -32,7 +31,7 @@ public:
 
   /** \brief Proposal from \p mixture, wherever the chain is. */
   bool
-  jump(const Mixture& mixture);
+  jump(const TMixture& mixture);
 
   /** \brief Put the chain elsewhere. */
   void

@@ -1,7 +1,7 @@
 #include "result_table.h"
 
 #include <algorithm>
-#include <iomanip>
+#include <cstdio>
 #include <map>
 #include <ostream>
 #include <tuple>
@@ -69,11 +69,20 @@ shareOfGoodMarginals(const Scores& scores)
 void
 printHeader(std::ostream& stream)
 {
-  stream << "                                                  6-D KL           KL 1-D "
-            " W1 "
-            "    KS<.06 R-hat  bulk ESS  tail ESS ESS/s   CPU [s] mixed\n"
-            "scene      sigma  N     sampler           runs   median   worst   median  "
-            "median %      worst  smallest  smallest median  median  runs\n";
+  stream
+      << "                                             6-D KL          1-D KL  W1     "
+         "KS<.06  R-hat  bulk ESS  tail ESS     ESS/s  CPU [s] mixed\n"
+         "scene      sigma  N     sampler        runs  median   worst  median  median "
+         "     %  worst  smallest  smallest    median   median  runs\n";
+}
+
+/** At most \p precision digits after the point, right-justified. */
+std::string
+column(double value, int width, int precision)
+{
+  char text[64];
+  std::snprintf(text, sizeof text, " %*.*f", width - 1, precision, value);
+  return text;
 }
 
 void
@@ -92,16 +101,22 @@ printLine(const CellName& cell,
       collect(scores, [](const Score& s) { return s.wasserstein.maxCoeff(); });
   const auto num_mixed = std::count_if(
       scores.begin(), scores.end(), [](const Score& s) { return s.status == "ok"; });
-  stream << std::left << std::setw(11) << std::get<0>(cell) << std::setw(7)
-         << std::get<1>(cell) << std::setw(6) << std::get<2>(cell) << std::setw(19)
-         << sampler << std::right << std::setw(3) << scores.size()
-         << std::setprecision(3) << std::setw(9) << median(kl) << std::setw(8)
-         << largest(kl) << std::setw(9) << medianCoordinateKl(scores) << std::setw(8)
-         << median(w1) << std::setw(6) << 100.0 * shareOfGoodMarginals(scores)
-         << std::setprecision(4) << std::setw(8) << largest(rhat) << std::setw(10)
-         << smallest(bulk) << std::setw(10) << smallest(tail) << std::setw(8)
-         << median(rate) << std::setprecision(3) << std::setw(9) << median(seconds)
-         << std::setw(4) << num_mixed << '\n';
+  char name[80];
+  std::snprintf(name,
+                sizeof name,
+                "%-10s %-6g %-5g %-16s %2zu",
+                std::get<0>(cell).c_str(),
+                std::get<1>(cell),
+                std::get<2>(cell),
+                sampler.c_str(),
+                scores.size());
+  stream << name << column(median(kl), 8, 4) << column(largest(kl), 8, 4)
+         << column(medianCoordinateKl(scores), 8, 4) << column(median(w1), 8, 3)
+         << column(100.0 * shareOfGoodMarginals(scores), 7, 0)
+         << column(largest(rhat), 7, 3) << column(smallest(bulk), 10, 0)
+         << column(smallest(tail), 10, 0) << column(median(rate), 10, 1)
+         << column(median(seconds), 9, 3)
+         << column(static_cast<double>(num_mixed), 6, 0) << '\n';
 }
 
 /** "paper" of "paper 1e-05". */

@@ -84,7 +84,8 @@ SamplerRun
 runExact(const Problem& problem, std::uint64_t seed, int num_threads, bool metropolis)
 {
   Options options = problem.options(Preset::Exact);
-  options.exact.metropolis = metropolis;
+  if (metropolis)
+    options.exact.metropolis = MetropolisUse::Always;
   options.chains.seed = seed;
   options.chains.num_threads = num_threads;
   return runEstimate(problem, options);

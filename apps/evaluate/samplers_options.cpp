@@ -44,7 +44,7 @@ description()
      "walk and mala (full batch, covariance and starts from the gold standard)")
     ("step-sizes", text("1e-3,1e-4,1e-5,1e-6"),
      "step sizes alpha of Algorithm 1; each is also tried times 6000 sigma^2 / N, what it "
-     "would be at the paper's scale")
+     "would be at the paper's scale, and smaller ones as long as they are better")
     ("seeds", number(5), "runs of each sampler, seeds 1, 2, ...")
     ("points", number(2000), "source points, the same for all samplers and the gold standard")
     ("threads", number(1), "threads of the gold standard and the presets")

@@ -80,13 +80,21 @@ Study::runPaperSteps()
   };
   double best_step = *steps.begin();
   double best_kl = std::numeric_limits<double>::infinity();
-  for (const double step : steps) {
+  const auto tryStep = [&](double step) {
     const double kl = runOnce(nameWith("paper", step), 1, sampler(step)).kl;
-    if (kl < best_kl) {
+    const bool is_best = kl < best_kl;
+    if (is_best) {
       best_kl = kl;
       best_step = step;
     }
-  }
+    return is_best;
+  };
+  for (const double step : steps)
+    tryStep(step);
+  // The range given may end above the best one.
+  if (best_step == *steps.begin())
+    while (tryStep(0.1 * best_step)) {
+    }
   runAllSeeds(nameWith("paper", best_step), sampler(best_step));
 }
 

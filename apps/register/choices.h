@@ -35,6 +35,12 @@ choicesOf(Residual)
   return {Residual::PointToPoint, Residual::PointToPlane};
 }
 
+inline std::array<MetropolisUse, 3>
+choicesOf(MetropolisUse)
+{
+  return {MetropolisUse::Automatic, MetropolisUse::Never, MetropolisUse::Always};
+}
+
 inline std::array<RobustKernel, 3>
 choicesOf(RobustKernel)
 {

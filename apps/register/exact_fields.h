@@ -38,15 +38,15 @@ visitExact(ExactT& exact, Visitor& visit)
       {"exact",
        "metropolis",
        "metropolis",
-       "",
-       "Metropolis in place of Langevin steps: slower, and exact for the energy of the "
-       "fixed batch"},
+       "WHEN",
+       "Metropolis in place of Langevin steps, on the whole source: exact where small "
+       "mini-batches are too noisy"},
       exact.metropolis);
   visit({"exact",
          "fixed_batch_size",
          "fixed-batch-size",
          "N",
-         "source points on which modes and Metropolis steps compare energies"},
+         "source points on which energies of modes are compared"},
         exact.fixed_batch_size);
 }
 

@@ -22,6 +22,11 @@ struct StepPlan {
   int thinning = 1;
 };
 
+/** \brief Variances of a term's gradient, posterior sd = 1, ascending. Where one is
+ * above the number n of terms, no batch much smaller than all terms is of use. */
+BAYESIAN_ICP_EXPORT Vector6d
+termNoise(const GaussianFit& fit);
+
 /** \brief Plan the steps of a fit.
  * \param[in] num_terms n of the energy
  * \param[in] batch_size m, or 0 to find the one with most effective draws a term

@@ -1,50 +1,98 @@
 /** \file
- * \brief Metropolis steps that use what the warm-up has learned.
+ * \brief Metropolis steps with proposals that were learned before and then frozen.
  */
 #pragma once
 
-#include <bayesian_icp/gaussian_fit.h>
 #include <bayesian_icp/sampling_chain.h>
+#include <bayesian_icp/stochastic_energy.h>
+#include <bayesian_icp/t_mixture.h>
+
+#include <memory>
 
 namespace bayesian_icp {
 
-/** \brief One chain of Metropolis-Hastings on StochasticEnergy::energy(): two proposals
- * from a multivariate t about the fitted Gaussian, then one random walk, and so on. The
- * first take the chain across the density, the last frees it from where the Gaussian is
- * far too low. */
+/** \brief What chains propose. */
+struct MetropolisProposal {
+  /** Of jumps, independent of where the chain is. */
+  TMixture jumps;
+  /** F of a random walk x + F z, z standard normal. */
+  Matrix6d walk_factor;
+};
+
+/** \brief One chain of Metropolis-Hastings on StochasticEnergy::fullEnergy(): a random
+ * walk, a jump, and so on. Jumps take the chain across the density, walks free it from
+ * where the mixture is far too low. */
 class BAYESIAN_ICP_EXPORT MetropolisChain : public SamplingChain {
 public:
   /** \p energy and \p random must outlive this object. */
-  MetropolisChain(const Gaussian& gaussian,
-                  const Vector6d& start,
-                  StochasticEnergy& energy,
-                  Random& random);
+  MetropolisChain(const Vector6d& start, StochasticEnergy& energy, Random& random);
 
+  /** \brief Propose from this in step(). */
+  void
+  setProposal(std::shared_ptr<const MetropolisProposal> proposal);
+
+  /** \brief One step; a proposal must be set. */
   void
   step() override;
+
+  /** \brief One random walk with \p factor or, every other time, 0.3 of it, which is
+   * accepted where the density is rough.
+   * \param[in] temperature the density is exp(-U / temperature)
+   * \return whether it was accepted */
+  bool
+  walk(const Matrix6d& factor, double temperature);
 
   const Vector6d&
   position() const override;
 
-  /** \brief Share of the independent proposals that were accepted so far, in [0, 1]. */
+  /** \brief Share of the walks in step() that were accepted since setProposal(), in
+   * [0, 1]. */
   double
-  acceptance() const;
+  walkAcceptance() const
+  {
+    return walks_.acceptance();
+  }
+
+  /** \brief The same of the jumps. */
+  double
+  jumpAcceptance() const
+  {
+    return jumps_.acceptance();
+  }
 
 private:
-  double
-  proposalEnergy(const Vector6d& x) const;
+  struct Count {
+    long proposed = 0, accepted = 0;
+
+    void
+    add(bool is_accepted)
+    {
+      ++proposed;
+      accepted += is_accepted ? 1 : 0;
+    }
+
+    double
+    acceptance() const
+    {
+      return proposed > 0
+                 ? static_cast<double>(accepted) / static_cast<double>(proposed)
+                 : 0.0;
+    }
+  };
 
   bool
-  acceptWith(const Vector6d& proposal, double log_proposal_ratio);
+  jump();
 
-  Gaussian gaussian_;
+  bool
+  acceptWith(const Vector6d& proposal, double log_proposal_ratio, double temperature);
+
   StochasticEnergy& energy_;
   Random& random_;
+  std::shared_ptr<const MetropolisProposal> proposal_;
   Vector6d position_;
   double position_energy_;
-  long num_steps_ = 0;
-  long num_independent_ = 0;
-  long num_accepted_ = 0;
+  bool is_jump_next_ = false;
+  Count walks_, jumps_;
 };
 
 } // namespace bayesian_icp

@@ -7,6 +7,7 @@
 #include <bayesian_icp/chains.h>
 #include <bayesian_icp/likelihood.h>
 #include <bayesian_icp/mini_batch.h>
+#include <bayesian_icp/preconditioned_sampler.h>
 #include <bayesian_icp/prior.h>
 #include <bayesian_icp/residual.h>
 #include <bayesian_icp/sgld.h>
@@ -41,12 +42,13 @@ struct MiniBatchOptions {
 /** \brief What preset `exact` has and the paper has not. */
 struct ExactOptions {
   ResidualOptions residual;
-  /** Metropolis steps in place of Langevin steps: slower, and asymptotically exact for
-   * the energy of the fixed batch below. */
-  bool metropolis = false;
-  /** Source points on which energies are compared, between modes and by metropolis
-   * steps; evenly spread over the source. Positive; more than the source has is taken
-   * as all of it. */
+  /** Metropolis steps in place of Langevin steps: asymptotically exact, each looks at
+   * the whole source. Automatic uses them where Langevin steps would need mini-batches
+   * of (nearly) the whole source; never if mini_batch.batch_size or sgld.step_size are
+   * set, which are of Langevin steps. */
+  MetropolisUse metropolis = MetropolisUse::Automatic;
+  /** Source points on which energies are compared between modes; evenly spread over the
+   * source. Positive; more than the source has is taken as all of it. */
   int fixed_batch_size = 4000;
 };
 

@@ -22,22 +22,36 @@ struct PreconditionedTarget {
   bool is_thread_safe = true;
 };
 
+/** \brief Whether chains make Metropolis steps in place of Langevin steps. */
+enum class MetropolisUse {
+  /** Where the gradient of a batch is so noisy that Langevin steps would need (nearly)
+   * all terms. */
+  Automatic,
+  Never,
+  Always
+};
+
+/** \brief Short name: "automatic", "never", "always". */
+BAYESIAN_ICP_EXPORT const char*
+toString(MetropolisUse use);
+
 /** \brief How the steps are made. */
 struct PreconditionedOptions {
   /** Terms a step; 0 is automatic. Not used by metropolis steps. */
   std::size_t batch_size = 0;
   /** Largest step size, in (0, 1]; 1 would be a Newton step. */
   double max_step_size = 0.75;
-  /** Metropolis steps on StochasticEnergy::energy() in place of Langevin steps:
-   * asymptotically exact for that energy. */
-  bool metropolis = false;
+  /** Steps on StochasticEnergy::fullEnergy(), asymptotically exact. */
+  MetropolisUse metropolis = MetropolisUse::Automatic;
 };
 
 /** \brief Run the chains.
  *
  * Each chain draws a start, burns in and fits a Gaussian on its own. Chains whose
  * Gaussians agree form a mode; those of modes more than 10 nats worse than the best are
- * moved to it. The chains of a mode refine its Gaussian together, then sample.
+ * moved to it. The chains of a mode refine its Gaussian together, then sample with
+ * Langevin steps; or all chains together learn a proposal of Metropolis steps, for all
+ * modes, then freeze it and sample.
  *
  * \param[in] options num_burn_in 0 and thinning 1 are automatic, so that draws are
  *            nearly independent; initial_spread is not used (the energies draw their

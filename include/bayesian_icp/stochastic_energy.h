@@ -54,6 +54,11 @@ public:
   virtual double
   energy(const Vector6d& x) = 0;
 
+  /** \brief U(x) up to a constant from all terms: what Metropolis steps sample. The
+   * default is energy(), for densities that have no fewer terms there. */
+  virtual double
+  fullEnergy(const Vector6d& x);
+
   /** \brief A starting point, over-dispersed with respect to the density. */
   virtual Vector6d
   drawStart(Random& random) = 0;

@@ -65,7 +65,7 @@ class Options(ExactTest):
     GIVEN = {
         "residual=point-to-plane": ("residual", "point-to-plane"),
         "kernel=huber": ("kernel", "huber"),
-        "metropolis": ("metropolis", True),
+        "metropolis=always": ("metropolis", "always"),
     }
 
     def test_options_arrive_and_are_obeyed(self):
@@ -75,7 +75,7 @@ class Options(ExactTest):
             "residual": "point-to-point",
             "kernel": "none",
             "kernel_width_m": 0.01,
-            "metropolis": False,
+            "metropolis": "automatic",
             "fixed_batch_size": 4000,
         }
         self.assertEqual(document["options"]["exact"], defaults)
@@ -85,7 +85,7 @@ class Options(ExactTest):
             self.assertNotEqual(samples, plain, word)
         for words in (
             (["--kernel=tukey"], ["--kernel=tukey", "--kernel-width=0.02"]),
-            (["--metropolis"], ["--metropolis", "--fixed-batch-size=100"]),
+            (["--metropolis=always"], ["--metropolis=always", "--fixed-batch-size=100"]),
             ([], ["--max-distance=0.02"]),
             ([], ["--batch-size=100"]),
             ([], ["--thinning=3"]),
@@ -98,7 +98,7 @@ class Options(ExactTest):
     def test_a_run_is_repeated_from_its_posterior_json(self):
         pair = self.small_pair()
         given = ["--residual=point-to-plane", "--kernel=tukey", "--kernel-width=0.0301"]
-        given += ["--metropolis", "--fixed-batch-size=250", "--seed=18446744073709551615"]
+        given += ["--metropolis=always", "--fixed-batch-size=250", "--seed=18446744073709551615"]
         for options in (given, ["--kernel=huber", "--guess=0.01,0,0,0,0,0.02", "-d0.2"]):
             expected, document = self.run_to_files(*pair, *self.SMALL, *options)
             config = self.file("config.json", json.dumps(document))
@@ -110,6 +110,7 @@ class Options(ExactTest):
         for words, *reason in (
             (["--residual=plane"], "--residual", "'plane'", "point-to-point or point-to-plane"),
             (["--kernel=cauchy"], "--kernel", "'cauchy'", "none, huber or tukey"),
+            (["--metropolis=yes"], "--metropolis", "'yes'", "automatic, never or always"),
             (["--kernel-width=0"], "--kernel-width: kernel_width is 0"),
             (["--fixed-batch-size=0"], "--fixed-batch-size: fixed_batch_size is 0"),
             (["--step-size=2"], "--step-size: step_size is 2", "exact"),
@@ -131,6 +132,8 @@ class Options(ExactTest):
 
 class Modes(ExactTest):
     OPTIONS = ["--preset=exact", "--sigma=0.003", "--effective-points=300", "--chains=8"]
+    # Chains would travel between the modes with Metropolis steps.
+    OPTIONS += ["--metropolis=never"]
     OPTIONS += ["--samples=400", "--initial-spread=0.08,0.01,0.01,0.01,0.01,0.01"]
 
     def test_one_mode_is_the_posterior(self):

@@ -39,6 +39,7 @@ class Usage(ToolTest):
             "residual": "point-to-point",
             "kernel": "none",
             "kernel-width": "0.01",
+            "metropolis": "automatic",
             "fixed-batch-size": "4000",
             "initial-spread": "0",
             "seed": "1",
@@ -198,11 +199,12 @@ class Values(ToolTest):
             "residual": ("exact", "residual", "point-to-plane"),
             "kernel": ("exact", "kernel", "tukey"),
             "kernel-width": ("exact", "kernel_width_m", 0.125),
+            "metropolis": ("exact", "metropolis", "always"),
             "fixed-batch-size": ("exact", "fixed_batch_size", 77),
             "iterations": ("registration", "icp_iterations", 3),
         }
         words = [f"--{name}={value}" for name, (_, _, value) in given.items()]
-        words += ["--reciprocal", "--one-to-one", "--mean", "--metropolis"]
+        words += ["--reciprocal", "--one-to-one", "--mean"]
         # FAST has some of them already.
         result = run(*self.small_pair(), "--json", *words)
         self.assert_ran(result)
@@ -211,7 +213,6 @@ class Values(ToolTest):
             self.assertEqual(options[group][key], value)
         for key in ("reciprocal", "one_to_one", "use_mean"):
             self.assertIs(options["registration"][key], True)
-        self.assertIs(options["exact"]["metropolis"], True)
 
 
 class GuessFiles(ToolTest):

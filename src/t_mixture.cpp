@@ -1,10 +1,8 @@
-#include "gaussian_mixture.h"
-
-#include "draw_statistics.h"
+#include <bayesian_icp/t_mixture.h>
 
 #include <cmath>
 
-namespace bayesian_icp::evaluate {
+namespace bayesian_icp {
 
 namespace {
 
@@ -14,6 +12,18 @@ constexpr double degrees_of_freedom = 8.0;
 constexpr double regularisation = 1e-6;
 /** Draws from which a covariance in six dimensions is worth having. */
 constexpr double min_draws = 60.0;
+
+/** log Gamma((nu + 6) / 2) - log Gamma(nu / 2) - 3 log(nu pi): of the standard t. */
+const double log_normalisation = std::lgamma(0.5 * (degrees_of_freedom + 6.0)) -
+                                 std::lgamma(0.5 * degrees_of_freedom) -
+                                 3.0 * std::log(degrees_of_freedom * std::acos(-1.0));
+
+Matrix6d
+covarianceOf(const PoseMatrix& draws)
+{
+  const PoseMatrix centred = draws.rowwise() - draws.colwise().mean();
+  return centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
+}
 
 double
 logSumExp(const Eigen::VectorXd& values)
@@ -27,7 +37,7 @@ logSumExp(const Eigen::VectorXd& values)
 Eigen::MatrixXd
 randomShares(const PoseMatrix& draws, int num_components, Random& random)
 {
-  const Eigen::LLT<Matrix6d> llt(momentsOf(draws).covariance);
+  const Eigen::LLT<Matrix6d> llt(covarianceOf(draws));
   const Eigen::MatrixXd whitened = llt.matrixL().solve(draws.transpose());
   const auto num_draws = static_cast<std::size_t>(draws.rows());
   Eigen::MatrixXd centres(6, num_components);
@@ -44,21 +54,52 @@ randomShares(const PoseMatrix& draws, int num_components, Random& random)
 
 } // namespace
 
-Mixture::Mixture(const PoseMatrix& draws, int num_components, Random& random)
+TMixture::TMixture(const PoseMatrix& draws, int num_components, Random& random)
 {
   maximise(draws, randomShares(draws, num_components, random));
   for (int iteration = 0; iteration < num_iterations; ++iteration)
     maximise(draws, responsibilities(draws));
 }
 
+TMixture::Component
+TMixture::makeComponent(const Vector6d& mean,
+                        const Matrix6d& covariance,
+                        double log_weight)
+{
+  Component c;
+  c.log_weight = log_weight;
+  c.mean = mean;
+  c.covariance.compute(covariance);
+  c.log_determinant = 2.0 * c.covariance.matrixLLT().diagonal().array().log().sum();
+  return c;
+}
+
+void
+TMixture::add(const Vector6d& mean, const Matrix6d& covariance, double weight)
+{
+  for (Component& c : components_)
+    c.log_weight += std::log1p(-weight);
+  components_.push_back(
+      makeComponent(mean, covariance, components_.empty() ? 0.0 : std::log(weight)));
+}
+
+Matrix6d
+TMixture::covarianceWithin() const
+{
+  Matrix6d sum = Matrix6d::Zero();
+  for (const Component& c : components_)
+    sum += std::exp(c.log_weight) * c.covariance.reconstructedMatrix();
+  return sum;
+}
+
 double
-Mixture::squaredDistance(const Component& component, const Vector6d& x)
+TMixture::squaredDistance(const Component& component, const Vector6d& x)
 {
   return component.covariance.matrixL().solve(x - component.mean).squaredNorm();
 }
 
 Eigen::MatrixXd
-Mixture::responsibilities(const PoseMatrix& draws) const
+TMixture::responsibilities(const PoseMatrix& draws) const
 {
   const auto num_components = static_cast<Eigen::Index>(components_.size());
   Eigen::MatrixXd shares(draws.rows(), num_components);
@@ -75,23 +116,20 @@ Mixture::responsibilities(const PoseMatrix& draws) const
 }
 
 void
-Mixture::maximise(const PoseMatrix& draws, const Eigen::MatrixXd& shares)
+TMixture::maximise(const PoseMatrix& draws, const Eigen::MatrixXd& shares)
 {
   components_.clear();
-  const Matrix6d floor = regularisation * momentsOf(draws).covariance;
+  const Matrix6d floor = regularisation * covarianceOf(draws);
   double total_weight = 0.0;
   for (Eigen::Index j = 0; j < shares.cols(); ++j) {
     const double weight = shares.col(j).sum();
     if (weight < min_draws && shares.cols() > 1)
       continue;
-    Component c;
-    c.log_weight = std::log(weight);
-    c.mean = draws.transpose() * shares.col(j) / weight;
-    const PoseMatrix centred = draws.rowwise() - c.mean.transpose();
-    c.covariance.compute(
-        centred.transpose() * shares.col(j).asDiagonal() * centred / weight + floor);
-    c.log_determinant = 2.0 * c.covariance.matrixLLT().diagonal().array().log().sum();
-    components_.push_back(c);
+    const Vector6d mean = draws.transpose() * shares.col(j) / weight;
+    const PoseMatrix centred = draws.rowwise() - mean.transpose();
+    const Matrix6d covariance =
+        centred.transpose() * shares.col(j).asDiagonal() * centred / weight;
+    components_.push_back(makeComponent(mean, covariance + floor, std::log(weight)));
     total_weight += weight;
   }
   for (Component& c : components_)
@@ -101,7 +139,7 @@ Mixture::maximise(const PoseMatrix& draws, const Eigen::MatrixXd& shares)
 }
 
 Vector6d
-Mixture::draw(Random& random) const
+TMixture::draw(Random& random) const
 {
   double u = random.uniform();
   std::size_t j = 0;
@@ -115,7 +153,7 @@ Mixture::draw(Random& random) const
 }
 
 double
-Mixture::logDensity(const Vector6d& x) const
+TMixture::logDensity(const Vector6d& x) const
 {
   Eigen::VectorXd logs(static_cast<Eigen::Index>(components_.size()));
   for (std::size_t j = 0; j < components_.size(); ++j) {
@@ -125,7 +163,7 @@ Mixture::logDensity(const Vector6d& x) const
         0.5 * (degrees_of_freedom + 6.0) *
             std::log1p(squaredDistance(c, x) / degrees_of_freedom);
   }
-  return logSumExp(logs);
+  return log_normalisation + logSumExp(logs);
 }
 
-} // namespace bayesian_icp::evaluate
+} // namespace bayesian_icp
