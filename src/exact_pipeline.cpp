@@ -21,7 +21,10 @@ startSpread(const Options& options, const Prior& prior)
   return prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread);
 }
 
-/** Every k-th source point, so that about \p size of them are chosen. */
+/** Source points on which the energies of modes are compared. */
+constexpr std::size_t fixed_batch_size = 4000;
+
+/** \p size of the points, evenly over their order. */
 std::vector<std::size_t>
 evenlySpread(std::size_t num_points, std::size_t size)
 {
@@ -52,6 +55,17 @@ samplerOptions(const Options& options)
 
 } // namespace
 
+Eigen::Matrix3Xd
+thinned(const Eigen::Matrix3Xd& points, std::size_t max_points)
+{
+  const auto chosen = evenlySpread(static_cast<std::size_t>(points.cols()), max_points);
+  Eigen::Matrix3Xd kept(3, static_cast<Eigen::Index>(chosen.size()));
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    kept.col(static_cast<Eigen::Index>(i)) =
+        points.col(static_cast<Eigen::Index>(chosen[i]));
+  return kept;
+}
+
 ChainSet
 sampleExact(const PoseEnergy& energy,
             const Vector6d& initial_pose,
@@ -62,8 +76,7 @@ sampleExact(const PoseEnergy& energy,
   PoseChainSettings settings;
   settings.start_centre = energy.toPhi(initial_pose);
   settings.start_spread = startSpread(options, energy.prior());
-  settings.fixed_batch = evenlySpread(
-      energy.numPoints(), static_cast<std::size_t>(options.exact.fixed_batch_size));
+  settings.fixed_batch = evenlySpread(energy.numPoints(), fixed_batch_size);
   settings.has_diverged = has_diverged;
 
   PreconditionedTarget target;

@@ -11,6 +11,10 @@
 
 namespace bayesian_icp {
 
+/** \brief At most \p max_points of the points, evenly over their order. */
+Eigen::Matrix3Xd
+thinned(const Eigen::Matrix3Xd& points, std::size_t max_points);
+
 /** \brief Sample \p energy.
  * \param[in] initial_pose the starts are spread about it [m, rad] */
 ChainSet

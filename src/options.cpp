@@ -115,7 +115,7 @@ check(const ExactOptions& exact, Checker& checker)
                   "max_distance",
                   exact.residual.max_distance,
                   "positive (m), infinity is none");
-  checker.atLeast("fixed_batch_size", exact.fixed_batch_size, 1);
+  checker.atLeast("max_source_points", exact.max_source_points, 1);
 }
 
 } // namespace

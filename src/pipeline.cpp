@@ -161,7 +161,9 @@ estimate(const Eigen::Matrix3Xd& source_points,
   };
   ChainSet chain_set;
   if (options.preset == Preset::Exact) {
-    const PoseEnergy energy(source_points,
+    const Eigen::Matrix3Xd sampled_points = thinned(
+        source_points, static_cast<std::size_t>(options.exact.max_source_points));
+    const PoseEnergy energy(sampled_points,
                             target,
                             prior,
                             options.likelihood.weight(),
@@ -191,8 +193,16 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
     return failure(Status::InvalidOptions,
                    "residual is point-to-plane, but must be point-to-point: a search "
                    "of the user's own gives no normals");
-  return estimate(
-      source_points, search, SearchTarget(search), initial_pose, options, progress);
+  // The search knows points by their index in the whole source: it cannot be thinned.
+  Options whole_source = options;
+  whole_source.exact.max_source_points =
+      std::max(options.exact.max_source_points, static_cast<int>(source_points.cols()));
+  return estimate(source_points,
+                  search,
+                  SearchTarget(search),
+                  initial_pose,
+                  whole_source,
+                  progress);
 }
 
 PosteriorEstimate

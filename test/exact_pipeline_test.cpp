@@ -220,7 +220,7 @@ TEST(Exact, OptionsAreChecked)
   };
   expect("kernel_width", [](Options& o) { o.exact.residual.kernel_width = 0.0; });
   expect("max_distance", [](Options& o) { o.exact.residual.max_distance = -1.0; });
-  expect("fixed_batch_size", [](Options& o) { o.exact.fixed_batch_size = 0; });
+  expect("max_source_points", [](Options& o) { o.exact.max_source_points = 0; });
   expect("step_size", [](Options& o) { o.sgld.step_size = 1.5; });
 }
 

@@ -43,11 +43,12 @@ visitExact(ExactT& exact, Visitor& visit)
        "mini-batches are too noisy"},
       exact.metropolis);
   visit({"exact",
-         "fixed_batch_size",
-         "fixed-batch-size",
+         "max_source_points",
+         "max-source-points",
          "N",
-         "source points on which energies of modes are compared"},
-        exact.fixed_batch_size);
+         "largest number of source points; a larger source is thinned, evenly over its "
+         "order"},
+        exact.max_source_points);
 }
 
 } // namespace bayesian_icp::app

@@ -47,9 +47,11 @@ struct ExactOptions {
    * of (nearly) the whole source; never if mini_batch.batch_size or sgld.step_size are
    * set, which are of Langevin steps. */
   MetropolisUse metropolis = MetropolisUse::Automatic;
-  /** Source points on which energies are compared between modes; evenly spread over the
-   * source. Positive; more than the source has is taken as all of it. */
-  int fixed_batch_size = 4000;
+  /** Largest number of source points that are used; a larger source is thinned to it,
+   * evenly over its order. The energy is N / sigma^2 times a mean over the source,
+   * which some thousand points give; more only take longer. Not with a search of the
+   * user's own, which knows points by their index. Positive. */
+  int max_source_points = 4000;
 };
 
 /** \brief Options of the estimate; the defaults are the preset `paper`.

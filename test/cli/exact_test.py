@@ -76,7 +76,7 @@ class Options(ExactTest):
             "kernel": "none",
             "kernel_width_m": 0.01,
             "metropolis": "automatic",
-            "fixed_batch_size": 4000,
+            "max_source_points": 4000,
         }
         self.assertEqual(document["options"]["exact"], defaults)
         for word, (key, value) in self.GIVEN.items():
@@ -85,7 +85,7 @@ class Options(ExactTest):
             self.assertNotEqual(samples, plain, word)
         for words in (
             (["--kernel=tukey"], ["--kernel=tukey", "--kernel-width=0.02"]),
-            (["--metropolis=always"], ["--metropolis=always", "--fixed-batch-size=100"]),
+            (["--metropolis=always"], ["--metropolis=always", "--max-source-points=100"]),
             ([], ["--max-distance=0.02"]),
             ([], ["--batch-size=100"]),
             ([], ["--thinning=3"]),
@@ -98,7 +98,7 @@ class Options(ExactTest):
     def test_a_run_is_repeated_from_its_posterior_json(self):
         pair = self.small_pair()
         given = ["--residual=point-to-plane", "--kernel=tukey", "--kernel-width=0.0301"]
-        given += ["--metropolis=always", "--fixed-batch-size=250", "--seed=18446744073709551615"]
+        given += ["--metropolis=always", "--max-source-points=250", "--seed=18446744073709551615"]
         for options in (given, ["--kernel=huber", "--guess=0.01,0,0,0,0,0.02", "-d0.2"]):
             expected, document = self.run_to_files(*pair, *self.SMALL, *options)
             config = self.file("config.json", json.dumps(document))
@@ -112,7 +112,7 @@ class Options(ExactTest):
             (["--kernel=cauchy"], "--kernel", "'cauchy'", "none, huber or tukey"),
             (["--metropolis=yes"], "--metropolis", "'yes'", "automatic, never or always"),
             (["--kernel-width=0"], "--kernel-width: kernel_width is 0"),
-            (["--fixed-batch-size=0"], "--fixed-batch-size: fixed_batch_size is 0"),
+            (["--max-source-points=0"], "--max-source-points: max_source_points is 0"),
             (["--step-size=2"], "--step-size: step_size is 2", "exact"),
             (["--residual=point-to-plane", "--one-to-one"], "--residual: ", "--one-to-one"),
             (["--residual=point-to-plane", "--reciprocal"], "--residual: ", "--reciprocal"),
@@ -126,7 +126,7 @@ class Options(ExactTest):
     def test_help_tells_what_exact_finds_itself(self):
         text = " ".join(run("--help").stdout.split())
         self.assertIn("It finds --batch-size, --thinning, --burn-in and --step-size itself", text)
-        for name, default in (("kernel-width", "0.01"), ("fixed-batch-size", "4000")):
+        for name, default in (("kernel-width", "0.01"), ("max-source-points", "4000")):
             self.assertRegex(text, rf"--{name} \w [^-]*\(default {default}\)")
 
 

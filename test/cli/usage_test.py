@@ -40,7 +40,7 @@ class Usage(ToolTest):
             "kernel": "none",
             "kernel-width": "0.01",
             "metropolis": "automatic",
-            "fixed-batch-size": "4000",
+            "max-source-points": "4000",
             "initial-spread": "0",
             "seed": "1",
             "threads": "0",
@@ -200,7 +200,7 @@ class Values(ToolTest):
             "kernel": ("exact", "kernel", "tukey"),
             "kernel-width": ("exact", "kernel_width_m", 0.125),
             "metropolis": ("exact", "metropolis", "always"),
-            "fixed-batch-size": ("exact", "fixed_batch_size", 77),
+            "max-source-points": ("exact", "max_source_points", 77),
             "iterations": ("registration", "icp_iterations", 3),
         }
         words = [f"--{name}={value}" for name, (_, _, value) in given.items()]
