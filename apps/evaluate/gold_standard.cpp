@@ -51,6 +51,7 @@ adaptTogether(const GoldOptions& options, std::vector<GoldRun>& runs)
   Random random(options.seed, 0);
   for (int round = 0; round < num_adaptive_rounds; ++round) {
     std::vector<PoseMatrix> positions;
+    positions.reserve(runs.size());
     for (GoldRun& run : runs)
       positions.push_back(run.adapt());
     const auto mixture =
@@ -118,8 +119,10 @@ sampleGold(const GoldTarget& target,
            const std::function<void(const std::string&)>& report)
 {
   const double begin = cpuSeconds();
+  constexpr int num_runs = 2;
   std::vector<GoldRun> runs;
-  for (int run = 0; run < 2; ++run)
+  runs.reserve(num_runs);
+  for (int run = 0; run < num_runs; ++run)
     runs.emplace_back(target, options, run);
   for (GoldRun& run : runs)
     run.anneal();

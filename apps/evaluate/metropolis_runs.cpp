@@ -9,7 +9,7 @@ MetropolisState::MetropolisState(const Vector6d& start,
                                  EnergyFunction energy,
                                  Random random)
 : energy_(std::move(energy))
-, random_(std::move(random))
+, random_(random)
 , position_(start)
 , current_energy_(energy_(start))
 {}
