@@ -10,6 +10,14 @@
 #include <string>
 
 namespace bayesian_icp {
+
+/** How GoogleTest names the test's parameter. */
+static void
+PrintTo(MetropolisUse use, std::ostream* stream)
+{
+  *stream << (use == MetropolisUse::Never ? "Langevin" : "Automatic");
+}
+
 namespace {
 
 /** Points on the faces of a cube of 0.2 m about the origin. */
