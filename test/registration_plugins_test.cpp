@@ -342,6 +342,47 @@ TEST_F(PluginTest, OwnSearchTreeIsAskedByEveryStep)
   EXPECT_EQ(tree->num_queries, n + n + 40 * 20);
 }
 
+/** Runs preset exact against \p target, which holds the true target and then a decoy at
+ * the identity, and returns how far the mean is from the truth. */
+double
+yawErrorOfExact(BayesianIcp& icp, const Cloud::Ptr& target)
+{
+  icp.setPreset(bayesian_icp::Preset::Exact);
+  icp.setNumberOfSamples(200);
+  icp.setMeasurementSigma(0.005);
+  icp.setEffectivePoints(300);
+  icp.setInitialSpread(bayesian_icp::Vector6d::Constant(0.001));
+  icp.setInputTarget(target);
+  Cloud output;
+  icp.align(output);
+  return (std::abs(icp.getMean()[5] - smallPose()[5]));
+}
+
+TEST_F(PluginTest, PresetExactSearchesTheSelectedTargetPointsOnly)
+{
+  const Cloud::Ptr with_decoy(new Cloud(*scans.target));
+  *with_decoy += *scans.source;
+  const IndicesPtr selected(new Indices(scans.target->size()));
+  for (std::size_t i = 0; i < selected->size(); ++i)
+    (*selected)[i] = static_cast<index_t>(i);
+
+  BayesianIcp all_points;
+  all_points.setInputSource(scans.source);
+  EXPECT_GT(yawErrorOfExact(all_points, with_decoy), 0.04);
+
+  const pcl::shared_ptr<Estimation> estimation(new Estimation);
+  estimation->setIndicesTarget(selected);
+  icp.setCorrespondenceEstimation(estimation);
+  EXPECT_LT(yawErrorOfExact(icp, with_decoy), 0.02);
+
+  const search::KdTree<PointXYZ>::Ptr ready_tree(new search::KdTree<PointXYZ>);
+  ready_tree->setInputCloud(with_decoy, selected);
+  BayesianIcp with_tree;
+  with_tree.setInputSource(scans.source);
+  with_tree.setSearchMethodTarget(ready_tree, true);
+  EXPECT_LT(yawErrorOfExact(with_tree, with_decoy), 0.02);
+}
+
 TEST_F(PluginTest, ASharedReadyTreeIsNeverRebuilt)
 {
   const pcl::shared_ptr<CountingTree> tree(new CountingTree);

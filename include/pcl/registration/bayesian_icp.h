@@ -275,6 +275,7 @@ protected:
   using Base::correspondence_rejectors_;
   using Base::correspondences_;
   using Base::final_transformation_;
+  using Base::force_no_recompute_;
   using Base::indices_;
   using Base::input_;
   using Base::min_number_correspondences_;
@@ -306,6 +307,11 @@ private:
 
   bool
   hasDefaultEstimation() const;
+
+  /** \brief Whether the target tree is not a ready one of the user's, or of a selection
+   * of the target: only then may another tree over the target stand in for it. */
+  bool
+  isTreeOfWholeTarget() const;
 
   std::unique_ptr<bayesian_icp::CorrespondenceSearch>
   makeCorrespondenceSearch(const PointCloudSourceConstPtr& source);

@@ -240,7 +240,8 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
   options.exact.residual.max_distance = bayesian_icp_detail::smallerGate(
       options.exact.residual.max_distance, corr_dist_threshold_);
   if (options.preset == bayesian_icp::Preset::Exact && hasDefaultEstimation() &&
-      correspondence_rejectors_.empty() && !use_reciprocal_correspondence_)
+      correspondence_rejectors_.empty() && !use_reciprocal_correspondence_ &&
+      isTreeOfWholeTarget())
     estimate_ = bayesian_icp::estimatePosterior(
         points,
         bayesian_icp::KdTree(
@@ -276,6 +277,14 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::hasDefaultEstim
   return (bayesian_icp_detail::isDefaultTree(*tree_) &&
           (!use_reciprocal_correspondence_ ||
            bayesian_icp_detail::isDefaultTree(*tree_reciprocal_)));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::isTreeOfWholeTarget()
+    const
+{
+  return (!force_no_recompute_ && !correspondence_estimation_->getIndicesTarget());
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
