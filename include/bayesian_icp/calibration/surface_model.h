@@ -1,0 +1,134 @@
+/** \file
+ * \brief The target as a surface: a quadric at every target point, with its noise.
+ */
+#pragma once
+
+#include <bayesian_icp/export.h>
+#include <bayesian_icp/kd_tree.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief A piece of surface z = a0 + a1 x + a2 y + a3 x^2 + a4 x y + a5 y^2 in its own
+ * frame. */
+struct SurfacePatch {
+  /** Origin of the frame [m]. */
+  Eigen::Vector3d origin;
+  /** Columns: the frame's x, y and z; z is across the surface. */
+  Eigen::Matrix3d axes;
+  /** a0 ... a5 [m, 1, 1, 1/m, 1/m, 1/m]. */
+  std::array<double, 6> quadric;
+  /** The target point that the patch stands for [m]; the origin, unless the patch was
+   * taken over from a neighbour. */
+  Eigen::Vector3d centre;
+  /** Radius of the neighbourhood that was fitted, in the plane of x and y [m]. */
+  double radius;
+  /** Noise of target points across the surface, pooled over the neighbourhood [m]. */
+  double sigma;
+  /** Whether distances to it mean something: not at an edge, not in a tangle. */
+  bool is_usable;
+};
+
+/** \brief Where a point is with respect to a patch. */
+struct SurfaceOffset {
+  /** Signed, across the surface, to first order in the surface's slope [m]. */
+  double distance;
+  /** In the plane of x and y, from the patch's centre [m]. */
+  double in_plane;
+  /** Unit normal of the surface under the point. */
+  Eigen::Vector3d normal;
+};
+
+/** \brief \p point relative to \p patch, both in the frame of the model [m]. */
+BAYESIAN_ICP_EXPORT SurfaceOffset
+offsetFrom(const SurfacePatch& patch, const Eigen::Vector3d& point);
+
+/** \brief How patches are fitted. The defaults are those of docs/calibration.md. */
+struct SurfaceModelOptions {
+  /** Points of a neighbourhood; doubled where the noise or a scan line makes it thin.
+   */
+  int num_neighbors = 30;
+  /** Smallest ratio of radius to noise of a usable patch. */
+  double min_radius_to_noise = 3.0;
+  /** Largest F statistic of a quartic against the quadric. */
+  double max_misfit = 2.2;
+  /** Largest distance of the neighbours' centroid from the point, in radii: beyond, the
+   * point is at an edge. */
+  double max_centroid_offset = 0.28;
+  /** In-plane distance, in radii of the donor, within which a point that has no usable
+   * patch takes over its neighbour's; 0 for never. */
+  double takeover_radius = 0.5;
+  /** Largest number of patches; of larger targets, points evenly chosen get one (their
+   * neighbourhoods are of all points). */
+  int max_patches = 20000;
+};
+
+/** \brief Quadric patches of a target cloud and the tree to find them.
+ *
+ * Coordinates inside are relative to origin(), so that scans far from the origin of
+ * their frame (UTM) lose nothing. Building is parallel and gives the same bits for
+ * every number of threads. */
+class BAYESIAN_ICP_EXPORT SurfaceModel {
+public:
+  /** \param[in] target_points 3 x n [m]; points that are not finite are left out
+   * \param[in] num_threads 0: as OpenMP would */
+  explicit SurfaceModel(const Eigen::Matrix3Xd& target_points,
+                        const SurfaceModelOptions& options = SurfaceModelOptions(),
+                        int num_threads = 0);
+
+  /** \brief Origin of the model's frame, in the target frame [m]. */
+  const Eigen::Vector3d&
+  origin() const
+  {
+    return origin_;
+  }
+
+  const std::vector<SurfacePatch>&
+  patches() const
+  {
+    return patches_;
+  }
+
+  /** \brief Over the points of patches(), projected to their quadrics, in this order
+   * and in the model's frame. */
+  const KdTree&
+  tree() const
+  {
+    return tree_;
+  }
+
+  /** \brief Median noise of the usable patches [m]; 0 if there is none. */
+  double
+  medianSigma() const
+  {
+    return median_sigma_;
+  }
+
+  /** \brief Median distance of a target point to its nearest other one [m]. */
+  double
+  spacing() const
+  {
+    return spacing_;
+  }
+
+  /** \brief Share of patches that are usable, those taken over included, in [0, 1]. */
+  double
+  usableFraction() const
+  {
+    return usable_fraction_;
+  }
+
+private:
+  Eigen::Vector3d origin_;
+  std::vector<SurfacePatch> patches_;
+  KdTree tree_;
+  double median_sigma_ = 0.0;
+  double spacing_ = 0.0;
+  double usable_fraction_ = 0.0;
+};
+
+} // namespace bayesian_icp

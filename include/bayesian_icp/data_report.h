@@ -1,0 +1,98 @@
+/** \file
+ * \brief What the data say about the pose, direction by direction, and what in them
+ * calls for caution (preset `calibrated`).
+ */
+#pragma once
+
+#include <bayesian_icp/export.h>
+#include <bayesian_icp/pose.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief How well the data hold a motion. */
+enum class Observability {
+  /** By the data. */
+  Observed,
+  /** By the data, but hardly above their noise. */
+  Weak,
+  /** Not by the data: the posterior is the prior. */
+  PriorOnly
+};
+
+/** \brief Short name: "observed", "weak", "prior_only". */
+BAYESIAN_ICP_EXPORT const char*
+toString(Observability observability);
+
+/** \brief One motion and how well it is known. */
+struct DataDirection {
+  /** Left twist (v, w) about DataReport::centre, target frame, of unit root mean
+   * squared displacement of the source's points [1, rad/m]. */
+  Vector6d twist = Vector6d::Zero();
+  /** Posterior and prior standard deviation along it, as root mean squared displacement
+   * of the source's points [m]. */
+  double standard_deviation = std::numeric_limits<double>::quiet_NaN();
+  double prior_standard_deviation = std::numeric_limits<double>::quiet_NaN();
+  /** Information of the data along it, in units of the prior's. */
+  double relative_information = 0.0;
+  Observability observability = Observability::Observed;
+  /** In words: "translation along (0.98, 0.10, 0.10)", "rotation about (0, 0, 1)
+   * through (0.10, 0.20, 0.05) m". */
+  std::string description;
+};
+
+/** \brief Things that make a posterior doubtful. */
+struct DataFlags {
+  /** The two starts ended more than 3 standard deviations apart. */
+  bool wrong_basin = false;
+  /** Too few source points lie on the target's surface. */
+  bool low_support = false;
+  /** Too few independent patches hold the pose for a Gaussian's quantiles. */
+  bool few_patches = false;
+  /** The surfaces disagree by more than the noise. */
+  bool misfit = false;
+
+  bool
+  any() const
+  {
+    return wrong_basin || low_support || few_patches || misfit;
+  }
+};
+
+/** \brief The report of preset `calibrated`. */
+struct BAYESIAN_ICP_EXPORT DataReport {
+  /** False for the other presets: all else is then meaningless. */
+  bool is_available = false;
+  /** Standard deviation of a source point's distance to the target's surface [m]. */
+  double noise_scale = std::numeric_limits<double>::quiet_NaN();
+  /** The same in units of the target's own noise: 1 to 1.5 if all is well. */
+  double residual_scale = std::numeric_limits<double>::quiet_NaN();
+  /** Number of independent patches of surface that the information amounts to. */
+  double effective_patches = std::numeric_limits<double>::quiet_NaN();
+  /** Share of the source points that lie on the target's surface, in [0, 1]. */
+  double active_fraction = std::numeric_limits<double>::quiet_NaN();
+  /** kappa_inf: by how much neighbouring points repeat each other. */
+  double correlation_factor = std::numeric_limits<double>::quiet_NaN();
+  /** Distance between the ends of the two starts, in posterior standard deviations. */
+  double basin_distance = std::numeric_limits<double>::quiet_NaN();
+  /** Centre of the twists: the moved source's centroid, target frame [m]. */
+  Eigen::Vector3d centre =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** Six directions, best known first. */
+  std::vector<DataDirection> directions;
+  DataFlags flags;
+};
+
+/** \brief A twist about \p centre in words, as in DataDirection::description. */
+BAYESIAN_ICP_EXPORT std::string
+describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre);
+
+/** \brief The raised flags in words, each with its number and threshold; empty if none.
+ */
+BAYESIAN_ICP_EXPORT std::vector<std::string>
+describeFlags(const DataReport& report);
+
+} // namespace bayesian_icp
