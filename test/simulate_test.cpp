@@ -82,6 +82,7 @@ TEST(SimulatedScenes, HaveTheirStatedSizes)
   EXPECT_NEAR(makeScene("bowl").distance({0.0826, 0.0, 0.138}), 0.1, 1e-8);
   EXPECT_NEAR(makeScene("bowl").distance({0.2, 0.0, 0.0355}), 0.2 - 0.0851136, 1e-6);
   EXPECT_NEAR(makeScene("table_top").distance({0.7, 0.0, -0.01}), 0.1, 1e-15);
+  EXPECT_NEAR(makeScene("table_plate").distance({0.6, 0.0, -0.01}), 0.1, 1e-15);
   EXPECT_NEAR(makeScene("corridor").distance({0.75, 0.3, 1.2}), 0.7, 1e-15);
   EXPECT_NEAR(makeScene("corridor").distance({-1.5, 0.3, 1.2}), 0.64, 1e-15);
   EXPECT_NEAR(makeScene("stairs").distance({0.42, 0.0, 0.4}), 0.06, 1e-15);

@@ -83,7 +83,7 @@ defaultOptions(const std::string& scene)
                        {{-3.1, -2.9, 1.8}, {-2.2, -1.8, 1.8}});
   if (scene == "table_top")
     return cameraOnObject(scene, {0.0, -0.2, 0.5}, {0.04, -0.22, 0.5});
-  if (scene == "table")
+  if (scene == "table" || scene == "table_plate")
     return cameraOnObject(scene, {0.0, -1.2, 0.9}, {0.3, -1.15, 0.9});
   if (scene == "bowl")
     return cameraOnObject(scene, {0.0, -0.7, 0.45}, {0.18, -0.68, 0.45});
