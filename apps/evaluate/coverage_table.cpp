@@ -1,0 +1,154 @@
+#include "coverage_table.h"
+
+#include "coverage_summary.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr double mm = 1e3;
+constexpr double degree = 180.0 / 3.14159265358979323846;
+
+using Runs = std::vector<CoverageRun>;
+
+template <typename... Values>
+std::string
+format(const char* pattern, Values... values)
+{
+  std::array<char, 256> text;
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+/** ".95 [.90,.98]" */
+std::string
+shareText(const Share& share)
+{
+  if (std::isnan(share.value))
+    return "      -       ";
+  return format("%4.2f [%.2f,%.2f]", share.value, share.low, share.high).substr(0, 16);
+}
+
+std::string
+percentText(const Share& share)
+{
+  return std::isnan(share.value) ? "   -" : format("%4.0f", 100.0 * share.value);
+}
+
+/** Large numbers without digits nobody reads. */
+std::string
+compact(double value, int width)
+{
+  return std::isnan(value)
+             ? std::string(static_cast<std::size_t>(width - 1), ' ') + '-'
+             : format(std::abs(value) < 1000.0 ? "%*.2f" : "%*.2g", width, value);
+}
+
+void
+printLine(const std::string& method,
+          const CoverageSummary& summary,
+          std::ostream& stream)
+{
+  stream << format("  %-18s %4zu/%-4zu",
+                   method.c_str(),
+                   summary.num_valid,
+                   summary.num_runs)
+         << compact(summary.anees, 9);
+  for (const Share& share : summary.coverage)
+    stream << "  " << shareText(share);
+  stream << compact(summary.mean_log_score, 9)
+         << format("%8.4f", summary.mean_energy_score)
+         << compact(mm * summary.translation_error, 9)
+         << compact(degree * summary.rotation_error, 8) << ' '
+         << percentText(summary.flagged) << "    "
+         << percentText(summary.flagged_outside)
+         << format("%9.3f", summary.median_seconds);
+  stream << (summary.median_queries >= 0.0 ? format("%9.0f", summary.median_queries)
+                                           : "        -")
+         << '\n';
+}
+
+void
+printBlock(const std::string& title, const Runs& runs, std::ostream& stream)
+{
+  if (runs.empty())
+    return;
+  stream << title << '\n';
+  for (const auto& [method, of_method] : runsByMethod(runs))
+    printLine(method, summaryOf(of_method), stream);
+}
+
+Runs
+select(const Runs& runs, const std::string& scene, const std::string& condition)
+{
+  Runs selected;
+  for (const CoverageRun& run : runs)
+    if ((scene.empty() || run.name.scene == scene) &&
+        (condition.empty() || run.name.condition == condition))
+      selected.push_back(run);
+  return selected;
+}
+
+std::vector<std::string>
+namesOf(const Runs& runs, std::string CoverageRunName::*member)
+{
+  std::vector<std::string> names;
+  for (const CoverageRun& run : runs)
+    if (std::find(names.begin(), names.end(), run.name.*member) == names.end())
+      names.push_back(run.name.*member);
+  return names;
+}
+
+void
+printHeader(std::ostream& stream)
+{
+  stream
+      << "                        valid     mean    share of truths within the region "
+         "of probability, and its 95 % interval            mean    mean   median  "
+         "median flagged %        median   median\n"
+         "  method                /runs   NEES/6  50 %              68 %              "
+         "90 %              95 %               log p  energy       mm     deg  all "
+         "out95        s  queries\n";
+}
+
+} // namespace
+
+std::vector<std::pair<std::string, Runs>>
+runsByMethod(const Runs& runs)
+{
+  std::vector<std::pair<std::string, Runs>> methods;
+  for (const std::string& method : namesOf(runs, &CoverageRunName::method)) {
+    methods.emplace_back(method, Runs());
+    for (const CoverageRun& run : runs)
+      if (run.name.method == method)
+        methods.back().second.push_back(run);
+  }
+  return methods;
+}
+
+void
+printCoverageTable(const Runs& runs, std::ostream& stream)
+{
+  const auto scenes = namesOf(runs, &CoverageRunName::scene);
+  const auto conditions = namesOf(runs, &CoverageRunName::condition);
+  printHeader(stream);
+  for (const std::string& scene : scenes)
+    for (const std::string& condition : conditions)
+      printBlock(scene + ", " + condition, select(runs, scene, condition), stream);
+  if (conditions.size() > 1)
+    for (const std::string& scene : scenes)
+      printBlock(scene + ", all conditions", select(runs, scene, ""), stream);
+  if (scenes.size() > 1)
+    for (const std::string& condition : conditions)
+      printBlock("all scenes, " + condition, select(runs, "", condition), stream);
+  if (scenes.size() * conditions.size() > 1)
+    printBlock("all", runs, stream);
+}
+
+} // namespace bayesian_icp::evaluate
