@@ -18,7 +18,6 @@ namespace {
 
 constexpr Eigen::Index max_source_points = 2000;
 constexpr double radians_per_degree = 3.14159265358979323846 / 180.0;
-constexpr std::uint64_t case_stream = 0x7265616c;
 
 Eigen::Isometry3d
 readTransform(const std::string& file)
@@ -31,6 +30,19 @@ readTransform(const std::string& file)
   if (!transform.linear().isUnitary(1e-3))
     throw io::FileError(file, "is not a rigid motion");
   return transform;
+}
+
+/** A number that differs from pair to pair (64 bit FNV-1a), so that cases of one seed
+ * share no random numbers. */
+std::uint64_t
+streamOf(const std::string& name)
+{
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char character : name) {
+    hash ^= static_cast<unsigned char>(character);
+    hash *= 1099511628211u;
+  }
+  return hash;
 }
 
 /** \p size of 0 ... count - 1, in random order. */
@@ -118,7 +130,7 @@ RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
   const Entry& entry = entryOf(name);
   const auto clouds = cloudsOf(entry);
   const RealScale& scale = entry.scale;
-  Random random(seed, case_stream);
+  Random random(seed, streamOf(name));
   CoverageCase made;
   made.scene = name;
   made.condition = "real";

@@ -26,28 +26,30 @@ format(const char* pattern, Values... values)
   return text.data();
 }
 
-/** ".95 [.90,.98]" */
+/** "0.95 [0.90,0.98]" */
 std::string
 shareText(const Share& share)
 {
-  if (std::isnan(share.value))
-    return "      -       ";
-  return format("%4.2f [%.2f,%.2f]", share.value, share.low, share.high).substr(0, 16);
+  return std::isnan(share.value)
+             ? format("%16s", "-")
+             : format("%4.2f [%.2f,%.2f]", share.value, share.low, share.high);
 }
 
 std::string
 percentText(const Share& share)
 {
-  return std::isnan(share.value) ? "   -" : format("%4.0f", 100.0 * share.value);
+  return std::isnan(share.value) ? format("%6s", "-")
+                                 : format("%6.0f", 100.0 * share.value);
 }
 
 /** Large numbers without digits nobody reads. */
 std::string
-compact(double value, int width)
+numberText(double value, int width, int num_decimals)
 {
-  return std::isnan(value)
-             ? std::string(static_cast<std::size_t>(width - 1), ' ') + '-'
-             : format(std::abs(value) < 1000.0 ? "%*.2f" : "%*.2g", width, value);
+  if (std::isnan(value))
+    return format("%*s", width, "-");
+  return std::abs(value) < 1e4 ? format("%*.*f", width, num_decimals, value)
+                               : format("%*.1e", width, value);
 }
 
 void
@@ -59,18 +61,17 @@ printLine(const std::string& method,
                    method.c_str(),
                    summary.num_valid,
                    summary.num_runs)
-         << compact(summary.anees, 9);
+         << numberText(summary.anees, 9, 2);
   for (const Share& share : summary.coverage)
     stream << "  " << shareText(share);
-  stream << compact(summary.mean_log_score, 9)
-         << format("%8.4f", summary.mean_energy_score)
-         << compact(mm * summary.translation_error, 9)
-         << compact(degree * summary.rotation_error, 8) << ' '
-         << percentText(summary.flagged) << "    "
-         << percentText(summary.flagged_outside)
-         << format("%9.3f", summary.median_seconds);
-  stream << (summary.median_queries >= 0.0 ? format("%9.0f", summary.median_queries)
-                                           : "        -")
+  const double queries =
+      summary.median_queries >= 0.0 ? summary.median_queries : std::nan("");
+  stream << numberText(summary.mean_log_score, 9, 2)
+         << numberText(summary.mean_energy_score, 8, 4)
+         << numberText(mm * summary.translation_error, 9, 2)
+         << numberText(degree * summary.rotation_error, 8, 2)
+         << percentText(summary.flagged) << percentText(summary.flagged_outside)
+         << numberText(summary.median_seconds, 9, 3) << numberText(queries, 9, 0)
          << '\n';
 }
 
@@ -109,12 +110,14 @@ void
 printHeader(std::ostream& stream)
 {
   stream
-      << "                        valid     mean    share of truths within the region "
-         "of probability, and its 95 % interval            mean    mean   median  "
-         "median flagged %        median   median\n"
-         "  method                /runs   NEES/6  50 %              68 %              "
-         "90 %              95 %               log p  energy       mm     deg  all "
-         "out95        s  queries\n";
+      << "                        valid     mean  share of truths within the region of "
+         "probability ..., and its 95 % interval      mean    mean   median  median  "
+         "flagged %   median   median\n"
+         "  method                /runs   NEES/6              50 %              68 %   "
+         "  "
+         "         90 %              95 %    log p  energy       mm     deg   all "
+         "out95  "
+         "      s  queries\n";
 }
 
 } // namespace
