@@ -26,10 +26,18 @@ sceneMakers()
       {"mug_hidden_handle", makeMugHiddenHandle},
       {"table_top", makeTableTop},
       {"table", makeTable},
+      {"box", makeBox},
+      {"bracket", makeBracket},
+      {"carton", makeCarton},
+      {"cube", makeCube},
+      {"tool", makeTool},
       {"corridor", makeCorridor},
+      {"plain_corridor", makePlainCorridor},
       {"stairs", makeStairs},
       {"room", makeRoom},
-      {"ground", makeGround}};
+      {"ground", makeGround},
+      {"car", makeCar},
+      {"tree", makeTree}};
   return makers;
 }
 
