@@ -48,8 +48,9 @@ numberText(double value, int width, int num_decimals)
 {
   if (std::isnan(value))
     return format("%*s", width, "-");
-  return std::abs(value) < 1e4 ? format("%*.*f", width, num_decimals, value)
-                               : format("%*.1e", width, value);
+  return std::abs(value) < (num_decimals > 0 ? 1e4 : 1e7)
+             ? format("%*.*f", width, num_decimals, value)
+             : format("%*.1e", width, value);
 }
 
 void
@@ -147,7 +148,7 @@ printCoverageTable(const Runs& runs, std::ostream& stream)
   if (conditions.size() > 1)
     for (const std::string& scene : scenes)
       printBlock(scene + ", all conditions", select(runs, scene, ""), stream);
-  if (scenes.size() > 1)
+  if (scenes.size() > 1 && conditions.size() > 1)
     for (const std::string& condition : conditions)
       printBlock("all scenes, " + condition, select(runs, "", condition), stream);
   if (scenes.size() * conditions.size() > 1)
