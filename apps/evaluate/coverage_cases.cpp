@@ -32,7 +32,9 @@ std::uint64_t
 streamOf(const std::string& scene, const std::string& condition)
 {
   std::uint64_t hash = 14695981039346656037u;
-  for (const char character : scene + '/' + condition) {
+  std::string name = scene;
+  name.append("/").append(condition);
+  for (const char character : name) {
     hash ^= static_cast<unsigned char>(character);
     hash *= 1099511628211u;
   }
@@ -165,7 +167,7 @@ makeCoverageCase(const std::string& scene,
   Random random(seed, streamOf(scene, condition));
   const ScanPlan plan = planScans(setup, condition, random);
   const std::uint64_t scan_seed = random.index(std::size_t{1} << 62);
-  const simulator::Scene solids = simulator::makeScene(scene);
+  const simulator::Scene solids = simulator::makeScene(setup.simulated_scene);
   const Isometry3d target_pose = sensorPose(plan.target_sensor.kind, plan.target_view);
   const Isometry3d source_pose = sensorPose(plan.source_sensor.kind, plan.source_view);
 

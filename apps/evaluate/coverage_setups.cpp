@@ -173,11 +173,13 @@ newScenes()
 CoverageSetup
 coverageSetup(const std::string& scene)
 {
-  if (contains(tunedScenes(), scene))
-    return makeTunedSetup(scene);
-  if (contains(newScenes(), scene))
-    return makeNewSetup(scene);
-  throw std::invalid_argument("the coverage study has no scene '" + scene + "'");
+  const bool is_tuned = contains(tunedScenes(), scene);
+  if (!is_tuned && !contains(newScenes(), scene))
+    throw std::invalid_argument("the coverage study has no scene '" + scene + "'");
+  CoverageSetup setup = is_tuned ? makeTunedSetup(scene) : makeNewSetup(scene);
+  // The study's table top has its edges in view.
+  setup.simulated_scene = scene == "table_top" ? "table_plate" : scene;
+  return setup;
 }
 
 View

@@ -17,6 +17,8 @@ namespace bayesian_icp::evaluate {
 
 /** \brief How a scene of the study is seen. */
 struct CoverageSetup {
+  /** The simulator's name of the scene. */
+  std::string simulated_scene;
   simulator::SensorOptions sensor;
   simulator::View view;
   /** How far the sensor moves on to a second view [m]; zero: it goes around the point

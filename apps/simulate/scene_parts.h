@@ -57,6 +57,10 @@ makeMugHiddenHandle();
 Scene
 makeTableTop();
 
+/** \brief A smaller table top, for views that show its edges. */
+Scene
+makeTablePlate();
+
 Scene
 makeTable();
 

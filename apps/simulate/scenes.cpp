@@ -25,6 +25,7 @@ sceneMakers()
       {"mug", makeMug},
       {"mug_hidden_handle", makeMugHiddenHandle},
       {"table_top", makeTableTop},
+      {"table_plate", makeTablePlate},
       {"table", makeTable},
       {"box", makeBox},
       {"bracket", makeBracket},
