@@ -1,5 +1,6 @@
 #include "coverage_methods.h"
 
+#include "coverage_baselines.h"
 #include "coverage_calibrated.h"
 
 #include <bayesian_icp/calibration/twist.h>
@@ -69,13 +70,14 @@ runPaperPreset(const CoverageCase& problem)
 const std::vector<CoverageMethod>&
 coverageMethods()
 {
-  static const std::vector<CoverageMethod> methods = {
-      {"prior", runPrior},
-      {"paper", runPaperPreset},
-      // Baselines.
-      {"calibrated", runCalibrated},
-      {"calibrated-draws", runCalibratedDraws},
-  };
+  static const std::vector<CoverageMethod> methods = [] {
+    std::vector<CoverageMethod> all = {{"prior", runPrior}, {"paper", runPaperPreset}};
+    for (CoverageMethod& baseline : baselineMethods())
+      all.push_back(std::move(baseline));
+    all.push_back({"calibrated", runCalibrated});
+    all.push_back({"calibrated-draws", runCalibratedDraws});
+    return all;
+  }();
   return methods;
 }
 
