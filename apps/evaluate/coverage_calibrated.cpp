@@ -59,7 +59,7 @@ resultOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
   return result;
 }
 
-void
+[[maybe_unused]] void
 addDraws(const ChainSet& chains, MethodResult& result)
 {
   Eigen::Index num_draws = 0;
@@ -89,8 +89,6 @@ runWith(const CoverageCase& problem, bool has_draws)
     options.num_threads = 1;
 #ifdef HAS_CALIBRATED_DRAWS
     addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
-#else
-    addDraws(ChainSet(), result);
 #endif
     result.is_valid = result.draws.rows() > 0;
   }

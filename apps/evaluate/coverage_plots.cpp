@@ -220,7 +220,10 @@ plotCoverage(const Runs& runs, const std::string& folder)
   std::filesystem::create_directories(folder, error);
   if (error)
     throw io::FileError(folder, "cannot be made: " + error.message());
-  const Methods methods = runsByMethod(validOf(runs));
+  Methods methods;
+  for (const auto& [name, of_method] : runsByMethod(runs))
+    if (const Runs valid = validOf(of_method); !valid.empty())
+      methods.emplace_back(name, valid);
   if (methods.empty())
     throw io::FileError(folder, "no plots: there is no valid run");
   runGnuplot("set encoding utf8\n" + coverageScript(methods, folder) +

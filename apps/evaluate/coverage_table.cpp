@@ -58,7 +58,7 @@ printLine(const std::string& method,
           const CoverageSummary& summary,
           std::ostream& stream)
 {
-  stream << format("  %-18s %4zu/%-4zu",
+  stream << format("  %-23s %5zu/%-5zu",
                    method.c_str(),
                    summary.num_valid,
                    summary.num_runs)
@@ -111,10 +111,12 @@ void
 printHeader(std::ostream& stream)
 {
   stream
-      << "                        valid     mean  share of truths within the region of "
+      << "                               valid     mean  share of truths within the "
+         "region of "
          "probability ..., and its 95 % interval      mean    mean   median  median  "
          "flagged %   median   median\n"
-         "  method                /runs   NEES/6              50 %              68 %   "
+         "  method                       /runs   NEES/6              50 %              "
+         "68 %   "
          "  "
          "         90 %              95 %    log p  energy       mm     deg   all "
          "out95  "
