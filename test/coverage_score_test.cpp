@@ -118,6 +118,24 @@ TEST(CoverageScore, RightDrawsAreCalibrated)
   expectEnergyScoreOfRightOnes(runs);
 }
 
+TEST(CoverageScore, DrawsScoreAsTheirGaussian)
+{
+  constexpr Eigen::Index num_draws = 4000;
+  const RightPosterior right = rightPosterior(1, num_draws);
+  MethodResult gaussian = right.result;
+  gaussian.draws.resize(0, 6);
+  const CoverageScore drawn = coverageScoreOf(right.problem, right.result);
+  const CoverageScore exact = coverageScoreOf(right.problem, gaussian);
+  for (int k = 0; k < 6; ++k) {
+    const double p = exact.pit[k];
+    EXPECT_NEAR(drawn.pit[k], p, fourErrors(p * (1.0 - p), num_draws)) << k;
+    // Of a mean and of a standard deviation s: s / sqrt(n) and s / sqrt(2 n).
+    EXPECT_NEAR(drawn.z[k],
+                exact.z[k],
+                fourErrors(1.0 + 0.5 * exact.z[k] * exact.z[k], num_draws));
+  }
+}
+
 TEST(CoverageScore, GaussianScoresAreTheClosedForms)
 {
   RightPosterior right = rightPosterior(1, 0);
