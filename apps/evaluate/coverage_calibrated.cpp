@@ -1,38 +1,30 @@
 #include "coverage_calibrated.h"
 
 #include "coverage_methods.h"
+#include "random_part.h"
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
-#include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>
 
 #include <cmath>
-#include <numeric>
 
 namespace bayesian_icp::evaluate {
 
 namespace {
 
-constexpr std::size_t max_source_points = 2000;
+constexpr Eigen::Index max_source_points = 2000;
 constexpr std::uint64_t thinning_stream = 0x7468696e;
 
 /** All points, or max_source_points of them at random. */
 Eigen::Matrix3Xd
 thinnedSource(const CoverageCase& problem)
 {
-  const auto size = static_cast<std::size_t>(problem.source.cols());
-  if (size <= max_source_points)
+  if (problem.source.cols() <= max_source_points)
     return problem.source;
-  std::vector<Eigen::Index> order(size);
-  std::iota(order.begin(), order.end(), 0);
   Random random(problem.seed, thinning_stream);
-  Eigen::Matrix3Xd thinned(3, static_cast<Eigen::Index>(max_source_points));
-  for (std::size_t i = 0; i < max_source_points; ++i) {
-    std::swap(order[i], order[i + random.index(size - i)]);
-    thinned.col(static_cast<Eigen::Index>(i)) = problem.source.col(order[i]);
-  }
-  return thinned;
+  return problem.source(Eigen::all,
+                        randomPart(problem.source.cols(), max_source_points, random));
 }
 
 /** The flags of DataReport, and how many directions the data say nothing about. */
@@ -67,7 +59,7 @@ resultOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
   return result;
 }
 
-void
+[[maybe_unused]] void
 addDraws(const ChainSet& chains, MethodResult& result)
 {
   Eigen::Index num_draws = 0;
@@ -97,8 +89,6 @@ runWith(const CoverageCase& problem, bool has_draws)
     options.num_threads = 1;
 #ifdef HAS_CALIBRATED_DRAWS
     addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
-#else
-    addDraws(ChainSet(), result);
 #endif
     result.is_valid = result.draws.rows() > 0;
   }

@@ -61,7 +61,7 @@ std::string
 coverageData(const Runs& runs)
 {
   std::vector<double> regions;
-  for (const CoverageRun& run : validOf(runs))
+  for (const CoverageRun& run : runs)
     regions.push_back(regionOf(run.score.nees));
   std::sort(regions.begin(), regions.end());
   std::string lines = "0 0\n";
@@ -77,10 +77,9 @@ coverageData(const Runs& runs)
 std::string
 pitData(const Runs& runs)
 {
-  const Runs valid = validOf(runs);
   Eigen::Matrix<double, num_bins, 6> counts;
   counts.setZero();
-  for (const CoverageRun& run : valid)
+  for (const CoverageRun& run : runs)
     for (int k = 0; k < 6; ++k)
       counts(std::min(num_bins - 1, static_cast<int>(num_bins * run.score.pit[k])),
              k) += 1.0;
@@ -88,8 +87,8 @@ pitData(const Runs& runs)
   for (int bin = 0; bin < num_bins; ++bin) {
     lines += io::textOf((bin + 0.5) / num_bins);
     for (int k = 0; k < 6; ++k)
-      lines += ' ' + io::textOf(counts(bin, k) * num_bins /
-                                std::max(1.0, static_cast<double>(valid.size())));
+      lines += ' ' +
+               io::textOf(counts(bin, k) * num_bins / static_cast<double>(runs.size()));
     lines += '\n';
   }
   return lines;
@@ -221,7 +220,12 @@ plotCoverage(const Runs& runs, const std::string& folder)
   std::filesystem::create_directories(folder, error);
   if (error)
     throw io::FileError(folder, "cannot be made: " + error.message());
-  const Methods methods = runsByMethod(runs);
+  Methods methods;
+  for (const auto& [name, of_method] : runsByMethod(runs))
+    if (const Runs valid = validOf(of_method); !valid.empty())
+      methods.emplace_back(name, valid);
+  if (methods.empty())
+    throw io::FileError(folder, "no plots: there is no valid run");
   runGnuplot("set encoding utf8\n" + coverageScript(methods, folder) +
                  pitScript(methods, folder) + aneesScript(runs, methods, folder),
              folder);

@@ -1,16 +1,15 @@
 #include "coverage_real.h"
 
+#include "random_part.h"
 #include "scene.h"
 
 #include <bayesian_icp/calibration/twist.h>
-#include <bayesian_icp/random.h>
 
 #include <io/errors.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <fstream>
-#include <numeric>
 
 namespace bayesian_icp::evaluate {
 
@@ -43,18 +42,6 @@ streamOf(const std::string& name)
     hash *= 1099511628211u;
   }
   return hash;
-}
-
-/** \p size of 0 ... count - 1, in random order. */
-std::vector<Eigen::Index>
-randomPart(Eigen::Index count, Eigen::Index size, Random& random)
-{
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), 0);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i)
-    std::swap(order[i], order[i + random.index(order.size() - i)]);
-  order.resize(static_cast<std::size_t>(size));
-  return order;
 }
 
 } // namespace
@@ -141,8 +128,7 @@ RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
   made.truth_sd_translation = scale.truth_sd_translation;
   made.truth_sd_rotation = scale.truth_sd_rotation;
   const Eigen::Matrix3Xd& all = clouds->source_in_target;
-  const auto part =
-      randomPart(all.cols(), std::min(all.cols(), max_source_points), random);
+  const auto part = randomPart(all.cols(), max_source_points, random);
   made.source = all(Eigen::all, part);
   // The prior is about no motion: the truth turns the source about its centroid, and
   // shifts the centroid by the first three numbers.

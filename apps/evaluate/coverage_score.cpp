@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include <cmath>
+#include <optional>
 
 namespace bayesian_icp::evaluate {
 
@@ -53,7 +54,7 @@ posteriorOf(const CoverageCase& problem, const MethodResult& result)
                                  .transpose();
   if (result.draws.rows() == 0)
     posterior.moments.covariance = result.covariance;
-  else if (result.draws.rows() >= min_draws)
+  else
     posterior.moments = momentsOf(posterior.draws);
   posterior.moments.covariance.diagonal() += posterior.truth_sd.cwiseAbs2();
   return posterior;
@@ -116,6 +117,37 @@ energyScore(const PoseMatrix& scaled_draws, const Vector6d& truth)
   return to_truth - 0.5 * sum / num_pairs;
 }
 
+/** L with covariance = L L^T; empty if there is none. */
+std::optional<Matrix6d>
+factorOf(const Matrix6d& covariance)
+{
+  // In units of its own standard deviations it is as well conditioned as can be.
+  const Vector6d sd = covariance.diagonal().cwiseSqrt();
+  const Matrix6d correlation =
+      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  const Eigen::LLT<Matrix6d> cholesky(correlation);
+  if (!correlation.allFinite() || cholesky.info() != Eigen::Success)
+    return std::nullopt;
+  return sd.asDiagonal() * Matrix6d(cholesky.matrixL());
+}
+
+void
+addGaussianScores(const CoverageCase& problem,
+                  const TwistPosterior& posterior,
+                  const Matrix6d& factor,
+                  CoverageScore& score)
+{
+  const Vector6d deviation = posterior.truth - posterior.moments.mean;
+  const Vector6d sd = posterior.moments.covariance.diagonal().cwiseSqrt();
+  score.nees = factor.triangularView<Eigen::Lower>().solve(deviation).squaredNorm();
+  score.relative_sd = sd.cwiseQuotient(problem.prior_sd);
+  score.z = deviation.cwiseQuotient(sd);
+  const double log_determinant =
+      factor.diagonal().cwiseQuotient(problem.prior_sd).array().log().sum();
+  score.log_score =
+      -0.5 * score.nees - 3.0 * std::log(2.0 * std::acos(-1.0)) - log_determinant;
+}
+
 void
 addErrors(const CoverageCase& problem,
           const MethodResult& result,
@@ -152,35 +184,22 @@ coverageScoreOf(const CoverageCase& problem, const MethodResult& result)
   score.notes = result.notes;
   if (!result.is_valid)
     return score;
-  const TwistPosterior posterior = posteriorOf(problem, result);
-  const Matrix6d& covariance = posterior.moments.covariance;
-  const Vector6d deviation = posterior.truth - posterior.moments.mean;
-  const Vector6d sd = covariance.diagonal().cwiseSqrt();
-  // In units of its own standard deviations a covariance is as well conditioned as can
-  // be.
-  const Matrix6d correlation =
-      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
-  const Eigen::LLT<Matrix6d> cholesky(correlation);
-  const bool has_few_draws = result.draws.rows() > 0 && result.draws.rows() < min_draws;
-  if (has_few_draws || !deviation.allFinite() || !correlation.allFinite() ||
-      cholesky.info() != Eigen::Success) {
-    addNote(has_few_draws ? "too few draws" : "not a posterior", score.notes);
+  if (result.draws.rows() > 0 && result.draws.rows() < min_draws) {
+    addNote("too few draws", score.notes);
     return score;
   }
-  const Matrix6d factor = sd.asDiagonal() * Matrix6d(cholesky.matrixL());
-  const Vector6d white = factor.triangularView<Eigen::Lower>().solve(deviation);
-  const double half_log_two_pi = 0.5 * std::log(2.0 * std::acos(-1.0));
+  const TwistPosterior posterior = posteriorOf(problem, result);
+  const auto factor = factorOf(posterior.moments.covariance);
+  if (!factor || !posterior.truth.allFinite() || !posterior.moments.mean.allFinite()) {
+    addNote("not a posterior", score.notes);
+    return score;
+  }
   score.is_valid = true;
-  score.nees = white.squaredNorm();
-  score.relative_sd = sd.cwiseQuotient(problem.prior_sd);
-  score.z = deviation.cwiseQuotient(sd);
-  score.log_score =
-      -0.5 * score.nees - 6.0 * half_log_two_pi -
-      factor.diagonal().cwiseQuotient(problem.prior_sd).array().log().sum();
+  addGaussianScores(problem, posterior, *factor, score);
   score.pit = pitOf(posterior);
   const auto scale = problem.prior_sd.cwiseInverse().asDiagonal();
-  score.energy_score = energyScore(scoredDraws(posterior, factor, problem.seed) * scale,
-                                   scale * posterior.truth);
+  score.energy_score = energyScore(
+      scoredDraws(posterior, *factor, problem.seed) * scale, scale * posterior.truth);
   addErrors(problem, result, posterior.moments.mean, score);
   return score;
 }

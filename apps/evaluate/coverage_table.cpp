@@ -48,8 +48,9 @@ numberText(double value, int width, int num_decimals)
 {
   if (std::isnan(value))
     return format("%*s", width, "-");
-  return std::abs(value) < 1e4 ? format("%*.*f", width, num_decimals, value)
-                               : format("%*.1e", width, value);
+  return std::abs(value) < (num_decimals > 0 ? 1e4 : 1e7)
+             ? format("%*.*f", width, num_decimals, value)
+             : format("%*.1e", width, value);
 }
 
 void
@@ -57,7 +58,7 @@ printLine(const std::string& method,
           const CoverageSummary& summary,
           std::ostream& stream)
 {
-  stream << format("  %-18s %4zu/%-4zu",
+  stream << format("  %-23s %5zu/%-5zu",
                    method.c_str(),
                    summary.num_valid,
                    summary.num_runs)
@@ -110,10 +111,12 @@ void
 printHeader(std::ostream& stream)
 {
   stream
-      << "                        valid     mean  share of truths within the region of "
+      << "                               valid     mean  share of truths within the "
+         "region of "
          "probability ..., and its 95 % interval      mean    mean   median  median  "
          "flagged %   median   median\n"
-         "  method                /runs   NEES/6              50 %              68 %   "
+         "  method                       /runs   NEES/6              50 %              "
+         "68 %   "
          "  "
          "         90 %              95 %    log p  energy       mm     deg   all "
          "out95  "
@@ -147,7 +150,7 @@ printCoverageTable(const Runs& runs, std::ostream& stream)
   if (conditions.size() > 1)
     for (const std::string& scene : scenes)
       printBlock(scene + ", all conditions", select(runs, scene, ""), stream);
-  if (scenes.size() > 1)
+  if (scenes.size() > 1 && conditions.size() > 1)
     for (const std::string& condition : conditions)
       printBlock("all scenes, " + condition, select(runs, "", condition), stream);
   if (scenes.size() * conditions.size() > 1)
