@@ -1,0 +1,95 @@
+#include <bayesian_icp/calibration/calibrated_report.h>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** Clusters of the score for kappa_inf = kappa_48: independent patches, at least. */
+constexpr double num_smallest_clusters = 96.0;
+
+Observability
+observabilityOf(double keep)
+{
+  if (!(keep > 0.0))
+    return Observability::PriorOnly;
+  return keep < min_observed_keep ? Observability::Weak : Observability::Observed;
+}
+
+/** Standard deviations of the coordinates along the columns of \p directions. */
+Vector6d
+deviationsAlong(const Matrix6d& directions, const Matrix6d& covariance)
+{
+  const Matrix6d to_coordinates = directions.inverse();
+  return (to_coordinates * covariance * to_coordinates.transpose())
+      .diagonal()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
+}
+
+std::vector<DataDirection>
+directionsOf(const CalibratedEstimate& estimate)
+{
+  const Vector6d deviations = deviationsAlong(estimate.directions, estimate.covariance);
+  const Vector6d prior_deviations =
+      deviationsAlong(estimate.directions, estimate.prior.precision.inverse());
+  std::vector<DataDirection> directions(6);
+  for (int k = 0; k < 6; ++k) {
+    DataDirection& direction = directions[static_cast<std::size_t>(k)];
+    direction.twist = estimate.directions.col(k);
+    direction.standard_deviation = deviations[k];
+    direction.prior_standard_deviation = prior_deviations[k];
+    direction.relative_information = estimate.relative_information[k];
+    direction.observability = observabilityOf(estimate.keep[k]);
+    direction.description = describeTwist(direction.twist, estimate.centre);
+  }
+  std::stable_sort(directions.begin(),
+                   directions.end(),
+                   [](const DataDirection& a, const DataDirection& b) {
+                     return a.standard_deviation < b.standard_deviation;
+                   });
+  return directions;
+}
+
+DataFlags
+flagsOf(const DataReport& report)
+{
+  DataFlags flags;
+  flags.wrong_basin = !(report.basin_distance <= max_basin_distance);
+  flags.low_support = !(report.active_fraction >= min_active_fraction);
+  flags.few_patches = !(report.effective_patches >= min_effective_patches);
+  flags.misfit = !(report.residual_scale <= max_residual_scale &&
+                   report.correlation_factor <= max_correlation_factor);
+  return flags;
+}
+
+} // namespace
+
+DataReport
+dataReportOf(const CalibratedEstimate& estimate,
+             std::size_t num_source_points,
+             double target_noise)
+{
+  const Matrix6d posterior_precision = estimate.information + estimate.prior.precision;
+  DataReport report;
+  report.is_available = true;
+  report.residual_scale = estimate.residual_scale;
+  report.noise_scale = estimate.residual_scale * target_noise;
+  report.effective_patches =
+      num_smallest_clusters * estimate.kappa_48 / estimate.kappa_inf;
+  report.active_fraction = static_cast<double>(estimate.scores.num_active) /
+                           static_cast<double>(num_source_points);
+  report.correlation_factor = estimate.kappa_inf;
+  report.basin_distance = std::sqrt(
+      std::max(0.0, estimate.other_end.dot(posterior_precision * estimate.other_end)));
+  report.centre = estimate.centre;
+  report.directions = directionsOf(estimate);
+  report.flags = flagsOf(report);
+  return report;
+}
+
+} // namespace bayesian_icp
