@@ -25,7 +25,9 @@ using PatchHints = std::vector<std::uint32_t>;
 struct SurfaceScores {
   /** Residual u = distance / sigma of each point; 0 where there is no patch. */
   Eigen::VectorXd residuals;
-  /** Whether a point has a usable patch and (Tukey) a weight above zero. */
+  /** Whether a point has a usable patch. */
+  std::vector<char> has_patch;
+  /** Whether it also has a (Tukey) weight above zero. */
   std::vector<char> active;
   /** psi(u) J^T n / sigma [1/m, 1/rad], zero if not active. */
   Matrix6Xd scores;

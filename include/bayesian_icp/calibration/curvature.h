@@ -1,0 +1,79 @@
+/** \file
+ * \brief Curvature of the surface likelihood with correspondences made anew, and how
+ * much of it is above its noise.
+ */
+#pragma once
+
+#include <bayesian_icp/calibration/surface_score.h>
+
+#include <array>
+
+namespace bayesian_icp {
+
+/** \brief Where and how far the curvature is measured. Twists about \p centre. */
+struct SecantPlan {
+  /** Directions are the principal axes of this covariance in the displacement metric,
+   * and three of its standard deviations the length of the steps. */
+  Matrix6d covariance;
+  /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
+  Matrix6d displacement_metric;
+  /** No step is longer than 1.5 prior standard deviations. */
+  Matrix6d prior_precision;
+  /** Least root mean squared displacement of a step [m]: below, neighbouring patches
+   * are not told apart. */
+  double min_displacement;
+  /** J: a step is shortened until its secant is above its noise in this metric. */
+  Matrix6d score_covariance;
+};
+
+/** \brief Central differences of the total score along six steps. */
+struct Secants {
+  /** Columns are the steps, tightest direction first [m, rad]. */
+  Matrix6d steps = Matrix6d::Zero();
+  /** Half the difference of the scores at +step and -step. */
+  Matrix6d differences = Matrix6d::Zero();
+  /** Covariance of each difference, without what Gauss-Newton predicts of it. */
+  std::array<Matrix6d, 6> noise;
+  /** H: symmetric, in the twists' coordinates. */
+  Matrix6d curvature = Matrix6d::Zero();
+  /** Evaluations of all points that were needed. */
+  int num_evaluations = 0;
+};
+
+/** \brief Measure the curvature about a mode.
+ * \param[in] at_mode scores there
+ * \param[in] tau scale of the residuals in Tukey's weight */
+BAYESIAN_ICP_EXPORT Secants
+measureSecants(const SurfaceScorer& scorer,
+               const Eigen::Isometry3d& mode,
+               const SurfaceScores& at_mode,
+               double tau,
+               const SecantPlan& plan);
+
+/** \brief Factor c on the expected noise tr(J^-1 N) of a secant's information, which
+ * noise alone exceeds with a probability of 1 in 1000 (Wilson and Hilferty's
+ * approximation of chi-square, with the noise's own number of degrees of freedom). */
+BAYESIAN_ICP_EXPORT double
+noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise);
+
+/** \brief What is left of the curvature after its noise is debited. */
+struct DebitedInformation {
+  /** keep_k = max(0, 1 - c tr(J^-1 N_k) / info_k), one a step. */
+  Vector6d keep = Vector6d::Zero();
+  /** info_k: information of the data along each step before the debit. */
+  Vector6d raw = Vector6d::Zero();
+  /** T = V diag(sqrt(keep)) V^-1. */
+  Matrix6d transfer = Matrix6d::Zero();
+  /** Lambda = T^T H J^-1 H T. */
+  Matrix6d information = Matrix6d::Zero();
+};
+
+/** \brief Debit the noise. A direction that keeps less than \p min_relative_information
+ * times the prior's information along it keeps nothing. */
+BAYESIAN_ICP_EXPORT DebitedInformation
+debitedInformation(const Secants& secants,
+                   const Matrix6d& score_covariance,
+                   const Matrix6d& prior_precision,
+                   double min_relative_information);
+
+} // namespace bayesian_icp

@@ -1,0 +1,192 @@
+#include <bayesian_icp/calibration/calibrated_estimate.h>
+#include <bayesian_icp/calibration/curvature.h>
+#include <bayesian_icp/calibration/robust_mode.h>
+#include <bayesian_icp/calibration/score_clusters.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+
+namespace {
+
+/** Starts and the mode have converged at this part of the target's noise. */
+constexpr double start_tolerance = 0.03;
+constexpr double mode_tolerance = 0.01;
+constexpr int max_mode_steps = 8;
+
+/** A point-to-point result is nearer to the mode than the prior's mean is, by about
+ * this factor. */
+constexpr double icp_to_prior_scale = 0.25;
+
+/** Standard deviation of the first secants' steps is at least that of the target's
+ * noise. */
+constexpr double points_to_prior = 0.2;
+
+/** Directions with less information, in units of the prior's, are held by the prior
+ * only. */
+constexpr double min_relative_information = 0.02;
+
+/** Two ends of starts, and which is the mode. */
+struct Ends {
+  RobustFit best;
+  RobustFit other;
+  long num_queries = 0;
+};
+
+/** Scale at which a start sees all of the target that the prior allows. */
+double
+priorScale(const Prior& prior, const SurfaceModel& model)
+{
+  return std::sqrt(prior.variance().head<3>().maxCoeff()) / model.medianSigma();
+}
+
+Ends
+followStarts(const SurfaceScorer& scorer,
+             const Prior& prior,
+             const EstimateOptions& options,
+             const Isometry3d* start)
+{
+  const Index num_points =
+      std::min<Index>(options.num_mode_points, scorer.sourcePoints().cols());
+  const SurfaceScorer subset(scorer.sourcePoints().leftCols(num_points),
+                             scorer.model());
+  RobustFitOptions fit;
+  fit.tolerance = start_tolerance * scorer.model().medianSigma();
+  Ends ends;
+  if (start) {
+    ends.best = ends.other = fitRobustly(subset, prior, *start, fit);
+    ends.num_queries = num_points * ends.best.num_evaluations;
+    return ends;
+  }
+  const Isometry3d prior_mean = isometryOf(prior.mean());
+  fit.start_scale = priorScale(prior, scorer.model());
+  ends.best = fitRobustly(subset, prior, prior_mean, fit);
+  const RobustFit icp = fitPointToPoint(subset, prior, prior_mean);
+  fit.start_scale *= icp_to_prior_scale;
+  ends.other = fitRobustly(subset, prior, icp.pose, fit);
+  ends.num_queries = num_points * (ends.best.num_evaluations + icp.num_evaluations +
+                                   ends.other.num_evaluations);
+  if (ends.other.cost < ends.best.cost)
+    std::swap(ends.best, ends.other);
+  return ends;
+}
+
+/** Covariance whose principal axes, in the displacement metric, are the first
+ * directions: of independent points, but nowhere narrower than the target's noise. */
+Matrix6d
+firstCovariance(const CalibratedEstimate& estimate, double noise)
+{
+  const double weight =
+      points_to_prior / (estimate.residual_scale * estimate.residual_scale);
+  const Matrix6d covariance =
+      (weight * estimate.scores.information + estimate.prior.precision).inverse();
+  const Matrix6d L = estimate.displacement_metric.llt().matrixL();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * covariance * L);
+  const Matrix6d axes =
+      L.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
+  const Vector6d variances = solver.eigenvalues().cwiseMax(noise * noise);
+  return axes * variances.asDiagonal() * axes.transpose();
+}
+
+/** J with the noise of secants along directions that the data do not hold: the pose is
+ * unknown along them, and the score with it. */
+Matrix6d
+withUnheldNoise(const Matrix6d& score_covariance,
+                const Secants& secants,
+                const Vector6d& keep,
+                const Matrix6d& covariance)
+{
+  const Matrix6d to_steps = secants.steps.inverse();
+  const Matrix6d in_steps = to_steps * covariance * to_steps.transpose();
+  Matrix6d J = score_covariance;
+  for (int k = 0; k < 6; ++k)
+    if (keep[k] <= 0.0)
+      J += std::min(1.0, in_steps(k, k)) * secants.noise[static_cast<std::size_t>(k)];
+  return J;
+}
+
+void
+finish(const Secants& secants, const DebitedInformation& debited, CalibratedEstimate& e)
+{
+  const Eigen::LDLT<Matrix6d> J(e.score_covariance);
+  e.curvature = secants.curvature;
+  e.transfer = debited.transfer;
+  e.information = debited.information;
+  e.keep = debited.keep;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d step = secants.steps.col(k);
+    e.relative_information[k] =
+        e.keep[k] * debited.raw[k] / step.dot(e.prior.precision * step);
+    e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
+  }
+  e.covariance = (e.information + e.prior.precision).inverse();
+  e.covariance = (0.5 * (e.covariance + e.covariance.transpose())).eval();
+  e.mean =
+      -e.covariance * (e.transfer.transpose() * e.curvature * J.solve(e.scores.total) +
+                       e.prior.gradient);
+}
+
+} // namespace
+
+CalibratedEstimate
+estimateCalibrated(const SurfaceScorer& scorer,
+                   const Prior& prior,
+                   const EstimateOptions& options,
+                   const Isometry3d* start)
+{
+  const Index num_points = scorer.sourcePoints().cols();
+  const double noise = scorer.model().medianSigma();
+  const Ends ends = followStarts(scorer, prior, options, start);
+  RobustFitOptions fit;
+  fit.max_steps = max_mode_steps;
+  fit.tolerance = mode_tolerance * noise;
+  const RobustFit mode = fitRobustly(scorer, prior, ends.best.pose, fit);
+
+  CalibratedEstimate e;
+  e.mode = mode.pose;
+  e.centre = e.mode * scorer.centroid();
+  e.residual_scale = mode.residual_scale;
+  e.cost = mode.cost;
+  e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
+  PatchHints hints;
+  scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
+  e.prior = twistPrior(prior, e.mode, e.centre);
+  e.displacement_metric = displacementMetric(scorer, e.mode);
+
+  const double tau = e.residual_scale;
+  const ScoreCovariance J = scoreCovariance(
+      activeScores(e.scores, scorer.sourcePoints()), tau * tau * e.prior.precision);
+  e.kappa_48 = J.kappa_48;
+  e.kappa_inf = J.kappa_inf;
+  e.covariance = firstCovariance(e, noise);
+  int num_evaluations = mode.num_evaluations + 1;
+  Secants secants;
+  DebitedInformation debited;
+  for (int round = 0; round < options.num_rounds; ++round) {
+    const SecantPlan plan = {
+        e.covariance, e.displacement_metric, e.prior.precision, noise, J.covariance};
+    secants = measureSecants(scorer, e.mode, e.scores, tau, plan);
+    num_evaluations += secants.num_evaluations;
+    e.score_covariance = J.covariance;
+    for (int pass = 0; pass < 2; ++pass) {
+      debited = debitedInformation(
+          secants, e.score_covariance, e.prior.precision, min_relative_information);
+      e.covariance = (debited.information + e.prior.precision).inverse();
+      if (pass == 0)
+        e.score_covariance =
+            withUnheldNoise(J.covariance, secants, debited.keep, e.covariance);
+    }
+  }
+  finish(secants, debited, e);
+  e.num_queries = ends.num_queries + num_points * num_evaluations;
+  return e;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,242 @@
+#include <bayesian_icp/calibration/curvature.h>
+#include <bayesian_icp/calibration/score_clusters.h>
+#include <bayesian_icp/calibration/twist.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+
+namespace {
+
+/** Length of a step in posterior, and at most in prior, standard deviations. */
+constexpr double step_to_posterior_sd = 3.0;
+constexpr double max_step_to_prior_sd = 1.5;
+
+/** A step whose secant is below its noise is shortened by this factor, so many times.
+ */
+constexpr double step_shortening = 0.25;
+constexpr int max_shortenings = 3;
+/** Steps shorter than this part of the least displacement are not tried. */
+constexpr double min_shortened = 0.2;
+
+/** A secant is clear if its information is so many times the noise threshold. */
+constexpr double clear_to_threshold = 2.0;
+
+constexpr int num_noise_clusters = 48;
+constexpr int num_noise_partitions = 3;
+
+/** The secant along one step. */
+struct Secant {
+  Vector6d step;
+  Vector6d difference;
+  Matrix6d noise;
+};
+
+/** Makes secants about one mode. */
+class SecantMaker {
+public:
+  SecantMaker(const SurfaceScorer& scorer,
+              const Isometry3d& mode,
+              const SurfaceScores& at_mode,
+              double tau,
+              const Matrix6d& score_covariance)
+  : scorer_(scorer)
+  , mode_(mode)
+  , centre_(mode * scorer.centroid())
+  , at_mode_(at_mode)
+  , tau_(tau)
+  , J_(score_covariance)
+  , J_factor_(score_covariance)
+  {}
+
+  Secant
+  along(const Vector6d& step, int direction)
+  {
+    evaluateAt(step, forward_);
+    evaluateAt(-step, backward_);
+    num_evaluations_ += 2;
+    Secant secant;
+    secant.step = step;
+    secant.difference = 0.5 * (forward_.total - backward_.total);
+    ClusterOptions options;
+    options.num_clusters = num_noise_clusters;
+    options.num_partitions = num_noise_partitions;
+    options.stream = 1000 + static_cast<std::uint64_t>(direction);
+    secant.noise =
+        clusteredCovariance(unpredictedScores(step), Matrix6d::Zero(), options);
+    return secant;
+  }
+
+  bool
+  isClear(const Secant& secant) const
+  {
+    const double information =
+        secant.difference.dot(J_factor_.solve(secant.difference));
+    const double noise = J_factor_.solve(secant.noise).trace();
+    return information > clear_to_threshold * noiseThreshold(J_, secant.noise) * noise;
+  }
+
+  int
+  numEvaluations() const
+  {
+    return num_evaluations_;
+  }
+
+private:
+  void
+  evaluateAt(const Vector6d& step, SurfaceScores& scores)
+  {
+    scorer_.evaluate(movedBy(step, centre_, mode_), centre_, tau_, hints_, scores);
+  }
+
+  /** What Gauss-Newton at the mode does not predict of the points' differences. */
+  PointScores
+  unpredictedScores(const Vector6d& step) const
+  {
+    const Index num_points = scorer_.sourcePoints().cols();
+    PointScores points;
+    points.scores.resize(6, num_points);
+    points.positions.resize(3, num_points);
+    Index count = 0;
+    for (Index i = 0; i < num_points; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      const bool both = forward_.active[index] && backward_.active[index];
+      if (!forward_.active[index] && !backward_.active[index])
+        continue;
+      points.scores.col(count) =
+          0.5 * (forward_.scores.col(i) - backward_.scores.col(i));
+      const auto jacobian = at_mode_.jacobians.col(i);
+      if (both)
+        points.scores.col(count) -= jacobian * jacobian.dot(step);
+      points.positions.col(count) = scorer_.sourcePoints().col(i);
+      ++count;
+    }
+    points.scores.conservativeResize(6, count);
+    points.positions.conservativeResize(3, count);
+    return points;
+  }
+
+  const SurfaceScorer& scorer_;
+  const Isometry3d& mode_;
+  Eigen::Vector3d centre_;
+  const SurfaceScores& at_mode_;
+  double tau_;
+  const Matrix6d& J_;
+  Eigen::LDLT<Matrix6d> J_factor_;
+  PatchHints hints_;
+  SurfaceScores forward_;
+  SurfaceScores backward_;
+  int num_evaluations_ = 0;
+};
+
+/** Principal axes of a covariance in a metric, ascending: columns of unit length. */
+struct PrincipalAxes {
+  Matrix6d axes;
+  Vector6d standard_deviations;
+
+  PrincipalAxes(const Matrix6d& covariance, const Matrix6d& metric)
+  {
+    const Matrix6d L = metric.llt().matrixL();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * covariance *
+                                                         L);
+    axes = L.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
+    standard_deviations = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  }
+};
+
+} // namespace
+
+Secants
+measureSecants(const SurfaceScorer& scorer,
+               const Isometry3d& mode,
+               const SurfaceScores& at_mode,
+               double tau,
+               const SecantPlan& plan)
+{
+  const PrincipalAxes principal(plan.covariance, plan.displacement_metric);
+  SecantMaker maker(scorer, mode, at_mode, tau, plan.score_covariance);
+  Secants secants;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d axis = principal.axes.col(k);
+    const double longest =
+        max_step_to_prior_sd / std::sqrt(axis.dot(plan.prior_precision * axis));
+    double length =
+        std::min(longest,
+                 std::max(plan.min_displacement,
+                          step_to_posterior_sd * principal.standard_deviations[k]));
+    const Secant widest = maker.along(length * axis, k);
+    Secant secant = widest;
+    for (int i = 0; i < max_shortenings && !maker.isClear(secant); ++i) {
+      length *= step_shortening;
+      if (length < min_shortened * plan.min_displacement)
+        break;
+      secant = maker.along(length * axis, k);
+    }
+    if (!maker.isClear(secant))
+      secant = widest;
+    secants.steps.col(k) = secant.step;
+    secants.differences.col(k) = secant.difference;
+    secants.noise[static_cast<std::size_t>(k)] = secant.noise;
+  }
+  secants.num_evaluations = maker.numEvaluations();
+  const Matrix6d products = secants.steps.transpose() * secants.differences;
+  const Matrix6d inverse = secants.steps.inverse();
+  secants.curvature =
+      inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
+  return secants;
+}
+
+double
+noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise)
+{
+  // 99.9 % quantile of a chi-square variate over its mean; z is the normal quantile.
+  constexpr double z = 3.09;
+  const auto L = score_covariance.llt();
+  const Matrix6d half = L.matrixL().solve(noise);
+  const Matrix6d whitened = L.matrixL().solve(half.transpose());
+  const double sum = whitened.trace(), sum_of_squares = whitened.squaredNorm();
+  const double nu =
+      sum_of_squares > 0.0 ? std::clamp(sum * sum / sum_of_squares, 1.0, 6.0) : 6.0;
+  const double q = 2.0 / (9.0 * nu);
+  const double root = 1.0 - q + z * std::sqrt(q);
+  return root * root * root;
+}
+
+DebitedInformation
+debitedInformation(const Secants& secants,
+                   const Matrix6d& score_covariance,
+                   const Matrix6d& prior_precision,
+                   double min_relative_information)
+{
+  const Eigen::LDLT<Matrix6d> J(score_covariance);
+  const Matrix6d HV = secants.curvature * secants.steps;
+  DebitedInformation result;
+  result.raw = (HV.transpose() * J.solve(HV)).diagonal();
+  for (int k = 0; k < 6; ++k) {
+    const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
+    const double debit =
+        noiseThreshold(score_covariance, noise) * J.solve(noise).trace();
+    const Vector6d step = secants.steps.col(k);
+    const double kept = result.raw[k] - debit;
+    const bool is_held = kept > 0.0 && kept >= min_relative_information *
+                                                   step.dot(prior_precision * step);
+    result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
+  }
+  result.transfer =
+      secants.steps * result.keep.cwiseSqrt().asDiagonal() * secants.steps.inverse();
+  const Matrix6d HT = secants.curvature * result.transfer;
+  result.information = HT.transpose() * J.solve(HT);
+  result.information =
+      (0.5 * (result.information + result.information.transpose())).eval();
+  return result;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,215 @@
+#include <bayesian_icp/calibration/score_clusters.h>
+#include <bayesian_icp/random.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <numeric>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+namespace {
+
+/** Seed of the partitions: they belong to the method, not to the run. */
+constexpr std::uint64_t partition_seed = 1;
+
+/** Leaves of one randomised kd-split. */
+class Partition {
+public:
+  Partition(const Matrix3Xd& positions, Index max_points, Random& random)
+  : rotated_(randomRotation(random) * positions)
+  , max_points_(max_points)
+  , random_(random)
+  , order_(static_cast<std::size_t>(positions.cols()))
+  , labels_(order_.size())
+  {
+    std::iota(order_.begin(), order_.end(), Index(0));
+    split(0, positions.cols());
+  }
+
+  Index
+  numLeaves() const
+  {
+    return num_leaves_;
+  }
+
+  Index
+  leafOf(Index point) const
+  {
+    return labels_[static_cast<std::size_t>(point)];
+  }
+
+private:
+  static Eigen::Matrix3d
+  randomRotation(Random& random)
+  {
+    const double w = random.normal(), x = random.normal(), y = random.normal(),
+                 z = random.normal();
+    return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+  }
+
+  void
+  split(Index begin, Index end)
+  {
+    if (end - begin <= max_points_) {
+      for (Index i = begin; i < end; ++i)
+        labels_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])] =
+            num_leaves_;
+      ++num_leaves_;
+      return;
+    }
+    const Index axis = widestAxis(begin, end);
+    const double part = 0.4 + 0.2 * random_.uniform();
+    const Index middle =
+        begin + std::max<Index>(1, static_cast<Index>(part * double(end - begin)));
+    std::nth_element(order_.begin() + begin,
+                     order_.begin() + middle,
+                     order_.begin() + end,
+                     [&](Index a, Index b) {
+                       const double xa = rotated_(axis, a), xb = rotated_(axis, b);
+                       return xa < xb || (xa == xb && a < b);
+                     });
+    split(begin, middle);
+    split(middle, end);
+  }
+
+  Index
+  widestAxis(Index begin, Index end) const
+  {
+    Vector3d low = rotated_.col(order_[static_cast<std::size_t>(begin)]), high = low;
+    for (Index i = begin; i < end; ++i) {
+      const auto point = rotated_.col(order_[static_cast<std::size_t>(i)]);
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+    Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    return axis;
+  }
+
+  Matrix3Xd rotated_;
+  Index max_points_;
+  Random& random_;
+  std::vector<Index> order_;
+  std::vector<Index> labels_;
+  Index num_leaves_ = 0;
+};
+
+/** sum_b tr((H_w^-1 H_b)^2): what fitting six parameters took from the clusters.
+ * \param[in] whitened columns are L^-1 j with H_w = L L^T */
+double
+leverage(const Matrix6Xd& whitened, const Partition& partition)
+{
+  std::vector<Matrix6d> informations(static_cast<std::size_t>(partition.numLeaves()),
+                                     Matrix6d::Zero());
+  for (Index i = 0; i < whitened.cols(); ++i)
+    informations[static_cast<std::size_t>(partition.leafOf(i))]
+        .selfadjointView<Eigen::Lower>()
+        .rankUpdate(whitened.col(i));
+  double sum = 0.0;
+  for (const Matrix6d& lower : informations)
+    sum += Matrix6d(lower.selfadjointView<Eigen::Lower>()).squaredNorm();
+  return sum;
+}
+
+/** Sum of outer products of the clusters' scores, less their share of the total. */
+Matrix6d
+sumOfOuterProducts(const Matrix6Xd& scores, const Partition& partition)
+{
+  Matrix6Xd sums = Matrix6Xd::Zero(6, partition.numLeaves());
+  Eigen::RowVectorXd counts = Eigen::RowVectorXd::Zero(partition.numLeaves());
+  for (Index i = 0; i < scores.cols(); ++i) {
+    sums.col(partition.leafOf(i)) += scores.col(i);
+    counts[partition.leafOf(i)] += 1.0;
+  }
+  const Vector6d mean = scores.rowwise().mean();
+  sums -= mean * counts;
+  return sums * sums.transpose();
+}
+
+} // namespace
+
+PointScores
+activeScores(const SurfaceScores& scores, const Matrix3Xd& source_points)
+{
+  PointScores points;
+  points.scores.resize(6, scores.num_active);
+  points.jacobians.resize(6, scores.num_active);
+  points.positions.resize(3, scores.num_active);
+  Index next = 0;
+  for (Index i = 0; i < source_points.cols(); ++i)
+    if (scores.active[static_cast<std::size_t>(i)]) {
+      points.scores.col(next) = scores.scores.col(i);
+      points.jacobians.col(next) = scores.jacobians.col(i);
+      points.positions.col(next) = source_points.col(i);
+      ++next;
+    }
+  return points;
+}
+
+Matrix6d
+clusteredCovariance(const PointScores& points,
+                    const Matrix6d& working_information,
+                    const ClusterOptions& options)
+{
+  const Index num_points = points.scores.cols();
+  if (num_points == 0)
+    return Matrix6d::Zero();
+  const Index max_points =
+      std::max<Index>(2, num_points / std::max(1, options.num_clusters));
+  const bool is_fitted = points.jacobians.cols() == num_points;
+  Matrix6Xd whitened;
+  if (is_fitted)
+    whitened = working_information.llt().matrixL().solve(points.jacobians);
+  Random random(partition_seed, options.stream);
+  Matrix6d sum = Matrix6d::Zero();
+  for (int k = 0; k < options.num_partitions; ++k) {
+    const Partition partition(points.positions, max_points, random);
+    const auto num_leaves = static_cast<double>(partition.numLeaves());
+    const double factor = is_fitted
+                              ? 6.0 / std::max(1.0, 6.0 - leverage(whitened, partition))
+                              : num_leaves / std::max(1.0, num_leaves - 1.0);
+    sum += factor * sumOfOuterProducts(points.scores, partition);
+  }
+  return sum / options.num_partitions;
+}
+
+ScoreCovariance
+scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
+{
+  const Matrix6d independent = points.scores * points.scores.transpose();
+  const Matrix6d information = points.jacobians * points.jacobians.transpose();
+  // The prior held the fit with the weight that the robust start gives it.
+  const Matrix6d working_information = information + 5.0 * fit_precision;
+  const Eigen::LDLT<Matrix6d> metric(
+      independent + independent.trace() / information.trace() * fit_precision);
+  const double size = metric.solve(independent).trace();
+  const auto kappa = [&](const Matrix6d& covariance) {
+    return metric.solve(covariance).trace() / size;
+  };
+  const auto clustered = [&](int num_clusters, int num_partitions) {
+    ClusterOptions options;
+    options.num_clusters = num_clusters;
+    options.num_partitions = num_partitions;
+    options.stream = static_cast<std::uint64_t>(num_clusters);
+    return clusteredCovariance(points, working_information, options);
+  };
+  ScoreCovariance result;
+  const Matrix6d J_48 = clustered(48, 8);
+  const double kappa_12 = kappa(clustered(12, 16));
+  const double kappa_24 = kappa(clustered(24, 12));
+  const double kappa_96 = kappa(clustered(96, 8));
+  result.kappa_48 = kappa(J_48);
+  // Block extrapolation: what is missed at the borders of clusters shrinks with their
+  // surface, about by half from 48 to 12 and from 96 to 24.
+  result.kappa_inf = std::max(
+      {1.0, kappa_24, kappa_24 + kappa_12 - 0.5 * (kappa_96 + result.kappa_48)});
+  result.covariance = 0.5 * result.kappa_inf * (J_48 / result.kappa_48 + independent);
+  return result;
+}
+
+} // namespace bayesian_icp
