@@ -1,22 +1,17 @@
 #include "calibrated_pipeline.h"
 
 #include "pipeline_parts.h"
+#include "random_subset.h"
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
 #include <bayesian_icp/calibration/calibrated_estimate.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
-#include <bayesian_icp/random.h>
 
-#include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace bayesian_icp {
 
 namespace {
-
-/** Stream of the random choice of source points; those of chains count from 0. */
-constexpr std::uint64_t subset_stream = std::uint64_t(1) << 40;
 
 std::string
 textOfCount(Eigen::Index num_points)
@@ -43,6 +38,13 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   if (num_finite < min_calibrated_points)
     return failure(Status::InvalidInput, "the target has " + textOfCount(num_finite));
   return checked;
+}
+
+/** Tells that something is under way of which the length is not known. */
+bool
+isCancelled(const ProgressCallback& progress)
+{
+  return progress && !progress({0, 0, 0, 0});
 }
 
 /** Why distances to the target's surface mean nothing; empty if they do. */
@@ -96,23 +98,30 @@ judgeData(Summary& summary)
     summary.message += (i > 0 ? "; " : is_doubtful ? ", but " : "; also ") + flags[i];
 }
 
-} // namespace
-
-Eigen::Matrix3Xd
-randomSubset(const Eigen::Matrix3Xd& points, int max_points, std::uint64_t seed)
+PosteriorEstimate
+estimateAndDraw(const SurfaceScorer& scorer,
+                const Prior& prior,
+                const Options& options,
+                const ProgressCallback& progress)
 {
-  const auto num_points = static_cast<std::size_t>(points.cols());
-  const std::size_t size = std::min(num_points, static_cast<std::size_t>(max_points));
-  std::vector<Eigen::Index> order(num_points);
-  std::iota(order.begin(), order.end(), Eigen::Index(0));
-  Random random(seed, subset_stream);
-  Eigen::Matrix3Xd subset(3, static_cast<Eigen::Index>(size));
-  for (std::size_t i = 0; i < size; ++i) {
-    std::swap(order[i], order[i + random.index(num_points - i)]);
-    subset.col(static_cast<Eigen::Index>(i)) = points.col(order[i]);
-  }
-  return subset;
+  const Eigen::Index num_points = scorer.sourcePoints().cols();
+  EstimateOptions estimate_options;
+  estimate_options.num_mode_points = options.calibrated.num_mode_points;
+  const CalibratedEstimate estimate =
+      estimateCalibrated(scorer, prior, estimate_options);
+  const std::string complaint = complaintAbout(estimate, num_points);
+  if (!complaint.empty())
+    return failure(Status::TooFewCorrespondences, complaint);
+
+  PosteriorEstimate result =
+      withDraws(sampleCalibrated(scorer, prior, estimate, options.chains, progress));
+  result.summary.data = dataReportOf(
+      estimate, static_cast<std::size_t>(num_points), scorer.model().medianSigma());
+  judgeData(result.summary);
+  return result;
 }
+
+} // namespace
 
 PosteriorEstimate
 estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
@@ -121,10 +130,12 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                             const Options& options,
                             const ProgressCallback& progress)
 {
-  PosteriorEstimate result =
+  const PosteriorEstimate checked =
       checkInput(source_points, target_points, initial_pose, options);
-  if (result.summary.status != Status::NotRun)
-    return result;
+  if (checked.summary.status != Status::NotRun)
+    return checked;
+  if (isCancelled(progress))
+    return failure(Status::Cancelled, "cancelled before the first draw");
   const SurfaceModel model(
       target_points, SurfaceModelOptions(), options.chains.num_threads);
   const std::string no_surface = complaintAbout(model);
@@ -135,22 +146,7 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                                           options.chains.seed),
                              model);
   const Prior prior = makePrior(options.prior, initial_pose, source_points);
-  EstimateOptions estimate_options;
-  estimate_options.num_mode_points = options.calibrated.num_mode_points;
-  const CalibratedEstimate estimate =
-      estimateCalibrated(scorer, prior, estimate_options);
-  const std::string complaint = complaintAbout(estimate, scorer.sourcePoints().cols());
-  if (!complaint.empty())
-    return failure(Status::TooFewCorrespondences, complaint);
-
-  result =
-      withDraws(sampleCalibrated(scorer, prior, estimate, options.chains, progress));
-  result.summary.data =
-      dataReportOf(estimate,
-                   static_cast<std::size_t>(scorer.sourcePoints().cols()),
-                   model.medianSigma());
-  judgeData(result.summary);
-  return result;
+  return estimateAndDraw(scorer, prior, options, progress);
 }
 
 } // namespace bayesian_icp

@@ -15,9 +15,4 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                             const Options& options,
                             const ProgressCallback& progress);
 
-/** \brief At most \p max_points of the points, chosen at random, in a random order:
- * any part of the result is a random choice as well. */
-Eigen::Matrix3Xd
-randomSubset(const Eigen::Matrix3Xd& points, int max_points, std::uint64_t seed);
-
 } // namespace bayesian_icp

@@ -27,7 +27,7 @@ deviationsAlong(const Matrix6d& directions, const Matrix6d& covariance)
   const Matrix6d to_coordinates = directions.inverse();
   return (to_coordinates * covariance * to_coordinates.transpose())
       .diagonal()
-      .cwiseMax(0.0)
+      .cwiseAbs()
       .cwiseSqrt();
 }
 
@@ -85,7 +85,7 @@ dataReportOf(const CalibratedEstimate& estimate,
                            static_cast<double>(num_source_points);
   report.correlation_factor = estimate.kappa_inf;
   report.basin_distance = std::sqrt(
-      std::max(0.0, estimate.other_end.dot(posterior_precision * estimate.other_end)));
+      std::abs(estimate.other_end.dot(posterior_precision * estimate.other_end)));
   report.centre = estimate.centre;
   report.directions = directionsOf(estimate);
   report.flags = flagsOf(report);
