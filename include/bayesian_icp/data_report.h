@@ -26,6 +26,9 @@ enum class Observability {
 /** \brief CalibratedEstimate::keep below which a direction is weak: its information is
  * then less than twice the threshold at which it would be left to the prior. */
 constexpr double min_observed_keep = 0.5;
+/** \brief Ratio of posterior to prior standard deviation from which a direction is held
+ * by the prior only, whatever little the data add. */
+constexpr double max_share_of_prior = 0.99;
 /** \brief Flags are raised beyond these; why there: docs/calibration.md. */
 constexpr double max_basin_distance = 3.0;
 constexpr double min_active_fraction = 0.25;

@@ -13,9 +13,9 @@ namespace {
 constexpr double num_smallest_clusters = 96.0;
 
 Observability
-observabilityOf(double keep)
+observabilityOf(double keep, double share_of_prior)
 {
-  if (!(keep > 0.0))
+  if (!(keep > 0.0) || !(share_of_prior < max_share_of_prior))
     return Observability::PriorOnly;
   return keep < min_observed_keep ? Observability::Weak : Observability::Observed;
 }
@@ -44,7 +44,8 @@ directionsOf(const CalibratedEstimate& estimate)
     direction.standard_deviation = deviations[k];
     direction.prior_standard_deviation = prior_deviations[k];
     direction.relative_information = estimate.relative_information[k];
-    direction.observability = observabilityOf(estimate.keep[k]);
+    direction.observability =
+        observabilityOf(estimate.keep[k], deviations[k] / prior_deviations[k]);
     direction.description = describeTwist(direction.twist, estimate.centre);
   }
   std::stable_sort(directions.begin(),
