@@ -130,7 +130,7 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                             const Options& options,
                             const ProgressCallback& progress)
 {
-  const PosteriorEstimate checked =
+  PosteriorEstimate checked =
       checkInput(source_points, target_points, initial_pose, options);
   if (checked.summary.status != Status::NotRun)
     return checked;

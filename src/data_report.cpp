@@ -58,11 +58,14 @@ textOfPoint(const Eigen::Vector3d& point)
 Eigen::Vector3d
 canonicalDirection(const Eigen::Vector3d& vector)
 {
-  const Eigen::Vector3d direction = vector.normalized();
+  Eigen::Vector3d direction = vector.normalized();
   const double large = 0.5 * direction.cwiseAbs().maxCoeff();
   for (int k = 0; k < 3; ++k)
-    if (std::abs(direction[k]) >= large)
-      return direction[k] < 0.0 ? Eigen::Vector3d(-direction) : direction;
+    if (std::abs(direction[k]) >= large) {
+      if (direction[k] < 0.0)
+        direction = -direction;
+      break;
+    }
   return direction;
 }
 
