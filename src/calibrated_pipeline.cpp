@@ -70,7 +70,8 @@ complaintAbout(const CalibratedEstimate& estimate, Eigen::Index num_source_point
            " source points lie on a usable surface of the target at the best pose";
   if (!estimate.mode.matrix().allFinite() || !estimate.covariance.allFinite() ||
       !estimate.mean.allFinite())
-    return "the scores of the source points do not give a finite covariance";
+    return "the scores of the source points do not give a finite covariance (clouds "
+           "without noise have no scale)";
   return std::string();
 }
 
