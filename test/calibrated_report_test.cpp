@@ -69,21 +69,26 @@ TEST(Report, ClosedFormOfADiagonalEstimate)
   }
 }
 
-TEST(Report, WhatHardlyNarrowsThePriorIsThePrior)
+TEST(Report, WhatHardlyNarrowsThePriorIsNotObserved)
 {
-  // Standard deviations of 1 / sqrt(1 + information) times the prior's: 0.9902, 0.9898.
+  // Standard deviations are 1 / sqrt(1 + information) times the prior's: 0.9902,
+  // 0.9898, 0.709, 0.705.
+  const double information[] = {0.0199, 0.0207, 0.99, 1.01};
+  const Observability expected[] = {Observability::PriorOnly,
+                                    Observability::Weak,
+                                    Observability::Weak,
+                                    Observability::Observed};
   CalibratedEstimate estimate = diagonalEstimate();
-  for (const double information : {0.0199, 0.0207}) {
-    estimate.information(0, 0) = 4.0 * information;
-    estimate.covariance(0, 0) = 0.25 / (1.0 + information);
+  for (std::size_t i = 0; i < 4; ++i) {
+    estimate.information(0, 0) = 4.0 * information[i];
+    estimate.covariance(0, 0) = 0.25 / (1.0 + information[i]);
     const DataReport report = dataReportOf(estimate, 100, 0.002);
     const auto found =
         std::find_if(report.directions.begin(),
                      report.directions.end(),
                      [](const DataDirection& d) { return d.twist[0] == 1.0; });
-    EXPECT_EQ(found->observability,
-              information < 0.0203 ? Observability::PriorOnly
-                                   : Observability::Observed);
+    ASSERT_NE(found, report.directions.end());
+    EXPECT_EQ(found->observability, expected[i]) << information[i];
   }
 }
 
@@ -95,6 +100,9 @@ TEST(Report, DeviationsAlongObliqueDirectionsAreThoseOfTheirCoordinates)
   // Coordinates c of xi = V c: c_1 = xi_1, c_0 = xi_0 - xi_1.
   const auto& covariance = estimate.covariance;
   for (const DataDirection& direction : report.directions) {
+    const double prior_precision = 4.0 * direction.twist.squaredNorm();
+    EXPECT_NEAR(
+        direction.prior_standard_deviation, 1.0 / std::sqrt(prior_precision), 1e-12);
     if (direction.twist == Vector6d(Vector6d::Unit(0))) {
       EXPECT_NEAR(direction.standard_deviation,
                   std::sqrt(covariance(0, 0) + covariance(1, 1)),

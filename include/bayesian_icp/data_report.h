@@ -17,7 +17,7 @@ namespace bayesian_icp {
 enum class Observability {
   /** By the data. */
   Observed,
-  /** By the data, but hardly above their noise. */
+  /** By the data, but hardly above their noise, or less than by the prior. */
   Weak,
   /** Not by the data: the posterior is the prior. */
   PriorOnly
@@ -26,6 +26,9 @@ enum class Observability {
 /** \brief CalibratedEstimate::keep below which a direction is weak: its information is
  * then less than twice the threshold at which it would be left to the prior. */
 constexpr double min_observed_keep = 0.5;
+/** \brief Ratio of posterior to prior standard deviation from which a direction is
+ * weak: the data then say less about it than the prior does. */
+constexpr double max_observed_share_of_prior = 0.7071;
 /** \brief Ratio of posterior to prior standard deviation from which a direction is held
  * by the prior only, whatever little the data add. */
 constexpr double max_share_of_prior = 0.99;
@@ -46,7 +49,8 @@ struct DataDirection {
    * squared displacement of the source's points [1, rad/m]. */
   Vector6d twist = Vector6d::Zero();
   /** Posterior and prior standard deviation along it, as root mean squared displacement
-   * of the source's points [m]. */
+   * of the source's points [m]. The prior's is that of this motion alone, without any
+   * other: the one that the posterior has where the data hold all others. */
   double standard_deviation = std::numeric_limits<double>::quiet_NaN();
   double prior_standard_deviation = std::numeric_limits<double>::quiet_NaN();
   /** Information of the data along it, in units of the prior's. */

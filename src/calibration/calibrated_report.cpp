@@ -17,7 +17,9 @@ observabilityOf(double keep, double share_of_prior)
 {
   if (!(keep > 0.0) || !(share_of_prior < max_share_of_prior))
     return Observability::PriorOnly;
-  return keep < min_observed_keep ? Observability::Weak : Observability::Observed;
+  const bool is_observed =
+      keep >= min_observed_keep && share_of_prior < max_observed_share_of_prior;
+  return is_observed ? Observability::Observed : Observability::Weak;
 }
 
 /** Standard deviations of the coordinates along the columns of \p directions. */
@@ -35,17 +37,17 @@ std::vector<DataDirection>
 directionsOf(const CalibratedEstimate& estimate)
 {
   const Vector6d deviations = deviationsAlong(estimate.directions, estimate.covariance);
-  const Vector6d prior_deviations =
-      deviationsAlong(estimate.directions, estimate.prior.precision.inverse());
   std::vector<DataDirection> directions(6);
   for (int k = 0; k < 6; ++k) {
     DataDirection& direction = directions[static_cast<std::size_t>(k)];
     direction.twist = estimate.directions.col(k);
     direction.standard_deviation = deviations[k];
-    direction.prior_standard_deviation = prior_deviations[k];
+    direction.prior_standard_deviation =
+        1.0 /
+        std::sqrt(direction.twist.dot(estimate.prior.precision * direction.twist));
     direction.relative_information = estimate.relative_information[k];
-    direction.observability =
-        observabilityOf(estimate.keep[k], deviations[k] / prior_deviations[k]);
+    direction.observability = observabilityOf(
+        estimate.keep[k], deviations[k] / direction.prior_standard_deviation);
     direction.description = describeTwist(direction.twist, estimate.centre);
   }
   std::stable_sort(directions.begin(),
