@@ -85,12 +85,12 @@ planSteps(const GaussianFit& fit,
 
 LangevinChain::LangevinChain(const StepPlan& plan,
                              const Vector6d& start,
-                             StochasticEnergy& energy,
+                             StochasticGradient& gradient,
                              Random& random)
 : plan_(plan)
 , noise_amplitudes_(
       (2.0 * plan.step_sizes.array() * (1.0 - plan.noise_shares.array())).sqrt())
-, energy_(energy)
+, gradient_(gradient)
 , random_(random)
 , position_(start)
 , last_noise_(random.normal6())
@@ -99,7 +99,7 @@ LangevinChain::LangevinChain(const StepPlan& plan,
 void
 LangevinChain::step()
 {
-  const SplitGradient g = energy_.gradient(position_, plan_.batch_size, random_);
+  const SplitGradient g = gradient_.gradient(position_, plan_.batch_size, random_);
   Vector6d drift = plan_.step_sizes.cwiseProduct(plan_.directions.transpose() *
                                                  (g.likelihood + g.prior));
   drift *= std::min(1.0, max_drift / std::max(drift.norm(), 1e-12));

@@ -13,6 +13,8 @@ constexpr std::size_t newton_batch_size = 160;
 
 } // namespace
 
+StochasticGradient::~StochasticGradient() = default;
+
 StochasticEnergy::~StochasticEnergy() = default;
 
 double

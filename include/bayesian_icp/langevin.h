@@ -41,10 +41,10 @@ planSteps(const GaussianFit& fit,
  * Gaussians has the right variance for every step size. */
 class BAYESIAN_ICP_EXPORT LangevinChain : public SamplingChain {
 public:
-  /** \p energy and \p random must outlive this object. */
+  /** \p gradient and \p random must outlive this object. */
   LangevinChain(const StepPlan& plan,
                 const Vector6d& start,
-                StochasticEnergy& energy,
+                StochasticGradient& gradient,
                 Random& random);
 
   /** \brief One step with the gradient of the next batch. */
@@ -57,7 +57,7 @@ public:
 private:
   StepPlan plan_;
   Vector6d noise_amplitudes_;
-  StochasticEnergy& energy_;
+  StochasticGradient& gradient_;
   Random& random_;
   Vector6d position_;
   Vector6d last_noise_;

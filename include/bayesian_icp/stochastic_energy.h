@@ -20,20 +20,28 @@ struct SplitGradient {
   Vector6d prior;
 };
 
+/** \brief What Langevin steps need of a density: noisy gradients of -log density, the
+ * likelihood's part from a batch of its terms. One object belongs to one chain. */
+class BAYESIAN_ICP_EXPORT StochasticGradient {
+public:
+  virtual ~StochasticGradient();
+
+  /** \brief Gradient from \p batch_size terms, at most all, drawn without replacement.
+   */
+  virtual SplitGradient
+  gradient(const Vector6d& x, std::size_t batch_size, Random& random) = 0;
+};
+
 /** \brief Energy U(x) = likelihood + prior, the likelihood a mean of n terms of which a
  * batch may be looked at. One object belongs to one chain: it may keep buffers and
  * remember what speeds it up, but its answers must depend on the arguments alone. */
-class BAYESIAN_ICP_EXPORT StochasticEnergy {
+class BAYESIAN_ICP_EXPORT StochasticEnergy : public StochasticGradient {
 public:
-  virtual ~StochasticEnergy();
+  ~StochasticEnergy() override;
 
   /** \brief n, at least 1. A batch of n terms has no noise. */
   virtual std::size_t
   numTerms() const = 0;
-
-  /** \brief Gradient from \p batch_size terms, at most n, drawn without replacement. */
-  virtual SplitGradient
-  gradient(const Vector6d& x, std::size_t batch_size, Random& random) = 0;
 
   /** \brief Covariance C of the gradient of a single term, such that the likelihood
    * gradient of m terms has the covariance C (1/m - 1/n). May be an estimate. */

@@ -9,40 +9,52 @@
 
 namespace bayesian_icp {
 
-/** \brief Coordinates z = (a, b) of poses near a mode in which motions held by the
- * prior only come last: pose(z) = exp(V0 a) exp(VK b) mode, V0 the directions with keep
- * = 0, VK the others. */
-class BAYESIAN_ICP_EXPORT ProductCoordinates {
-public:
-  explicit ProductCoordinates(const CalibratedEstimate& estimate);
+/** \brief Sum of the scores of some source points, as SurfaceScorer::batchScore() gives
+ * it for the estimate's centre and residual scale.
+ * \param[in] T_target_source the pose
+ * \param[in] indices columns of the source, none twice
+ * \param[out] total sum of their scores
+ * \return how many of them have a usable patch */
+using BatchScore = std::function<int(const Eigen::Isometry3d& T_target_source,
+                                     const std::vector<std::size_t>& indices,
+                                     Vector6d& total)>;
 
-  /** \brief Number of directions held by the prior only, the length of a. */
-  int
-  numPriorOnly() const
-  {
-    return num_prior_only_;
-  }
-
-  Eigen::Isometry3d
-  pose(const Vector6d& z) const;
-
-private:
-  Eigen::Isometry3d mode_;
-  Eigen::Vector3d centre_;
-  Matrix6d directions_;
-  int num_prior_only_;
-};
+/** \brief Makes the score of one chain: it may keep buffers, but its answers must
+ * depend on its arguments alone. */
+using MakeBatchScore = std::function<BatchScore()>;
 
 /** \brief Draw by stochastic gradient Langevin dynamics over mini-batches of the source
  * (the guarded pre-weighted score of docs/calibration.md).
  *
  * Chains have their own random streams, so that draws are bit-identical for every
- * number of threads. options.num_burn_in 0 and thinning 1 are automatic. */
+ * number of threads. options.num_burn_in 0 and thinning 1 are automatic, and
+ * initial_spread is not used: chains start from draws of the calibrated Gaussian. A
+ * chain has diverged if a pose is not finite: the data and the prior leave a motion
+ * free. */
 BAYESIAN_ICP_EXPORT ChainSet
 sampleCalibrated(const SurfaceScorer& scorer,
                  const Prior& prior,
                  const CalibratedEstimate& estimate,
                  const ChainOptions& options,
                  const ProgressCallback& progress = ProgressCallback());
+
+/** \brief The same for any score. */
+BAYESIAN_ICP_EXPORT ChainSet
+sampleCalibrated(const MakeBatchScore& make_score,
+                 const Prior& prior,
+                 const CalibratedEstimate& estimate,
+                 const ChainOptions& options,
+                 const ProgressCallback& progress = ProgressCallback());
+
+/** \brief Draw as if the likelihood were Gaussian about the mode, in
+ * ProductCoordinates, with the exact prior: Metropolis steps that look at no points.
+ *
+ * Right however wide the prior is along motions that it alone holds. options as in
+ * sampleCalibrated(); thinning is in units of three Metropolis steps. */
+BAYESIAN_ICP_EXPORT ChainSet
+sampleProductForm(const Prior& prior,
+                  const CalibratedEstimate& estimate,
+                  const ChainOptions& options,
+                  const ProgressCallback& progress = ProgressCallback());
 
 } // namespace bayesian_icp

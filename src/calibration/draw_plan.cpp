@@ -1,0 +1,150 @@
+#include "draw_plan.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/** Where and how often the noise of a point's score is measured. */
+constexpr int num_noise_positions = 24, num_noise_points = 32;
+
+constexpr double max_step_size = 0.75;
+
+/** Batches to choose from. */
+constexpr std::array<std::size_t, 3> batch_sizes = {32, 48, 64};
+
+/** Effective draws of the slowest direction that one draw is to be worth; the rest is
+ * for tails and for what is not Gaussian. */
+constexpr double wanted_ess_share = 0.6;
+
+/** Queries that a draw may cost. */
+constexpr double max_queries_per_draw = 120.0;
+
+/** Integrated autocorrelation time of every \p thinning-th position on a Gaussian:
+ * after one step the correlation is 1 - b/2 (the noise of two steps is shared), then it
+ * shrinks by 1 - b a step. */
+double
+autocorrelationTime(double step_size, int thinning)
+{
+  const double decay = std::pow(1.0 - step_size, thinning - 1);
+  return 1.0 +
+         2.0 * (1.0 - 0.5 * step_size) * decay / (1.0 - decay * (1.0 - step_size));
+}
+
+int
+thinningFor(double step_size, int max_thinning)
+{
+  int thinning = 1;
+  while (thinning < max_thinning &&
+         autocorrelationTime(step_size, thinning) * wanted_ess_share > 1.0)
+    ++thinning;
+  return thinning;
+}
+
+/** Largest changes of a direction's spread. */
+constexpr double min_spread_factor = 0.7, max_spread_factor = 1.4;
+
+/** The symmetric map, in units of \p wanted, that brings one covariance to the other.
+ */
+MatrixXd
+mapBetween(const MatrixXd& covariance, const MatrixXd& wanted)
+{
+  const MatrixXd L = wanted.llt().matrixL();
+  const MatrixXd inverse = L.triangularView<Eigen::Lower>().solve(
+      MatrixXd::Identity(wanted.rows(), wanted.cols()));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> ratio(inverse * covariance *
+                                                      inverse.transpose());
+  const VectorXd factors = ratio.eigenvalues()
+                               .cwiseMax(1e-6)
+                               .cwiseSqrt()
+                               .cwiseInverse()
+                               .cwiseMax(min_spread_factor)
+                               .cwiseMin(max_spread_factor);
+  return L * ratio.eigenvectors() * factors.asDiagonal() *
+         ratio.eigenvectors().transpose() * inverse;
+}
+
+} // namespace
+
+StepPlan
+planDraws(WeightedScore& score,
+          const WeightedScoreModel& model,
+          const ChainOptions& options,
+          Random& random)
+{
+  GaussianFit fit;
+  fit.gaussian = model.coordinates.gaussian();
+  fit.term_covariance =
+      score.termCovariance(num_noise_positions, num_noise_points, random);
+  const std::size_t num_terms = std::max<std::size_t>(1, model.active.size());
+  StepPlan best;
+  double best_ess = 0.0;
+  for (const std::size_t batch_size : batch_sizes) {
+    StepPlan plan = planSteps(fit, num_terms, batch_size, max_step_size);
+    const double slowest = plan.step_sizes.minCoeff();
+    const auto cost = static_cast<double>(plan.batch_size);
+    plan.thinning = thinningFor(
+        slowest, std::max(1, static_cast<int>(max_queries_per_draw / cost)));
+    const double ess = std::min(1.0 / wanted_ess_share,
+                                1.0 / autocorrelationTime(slowest, plan.thinning));
+    if (best_ess == 0.0 || ess > 1.05 * best_ess) {
+      best = plan;
+      best_ess = ess;
+    }
+  }
+  if (options.num_burn_in > 0)
+    best.num_burn_in = options.num_burn_in;
+  if (options.thinning > 1)
+    best.thinning = options.thinning;
+  return best;
+}
+
+void
+spreadAsEstimated(const ProductCoordinates& coordinates,
+                  std::vector<Matrix6Xd>& positions)
+{
+  const Index num_held = 6 - coordinates.numPriorOnly();
+  Index num_draws = 0;
+  VectorXd mean = VectorXd::Zero(num_held);
+  for (const Matrix6Xd& chain : positions) {
+    num_draws += chain.cols();
+    mean += chain.bottomRows(num_held).rowwise().sum();
+  }
+  if (num_held == 0 || num_draws <= num_held)
+    return;
+  mean /= static_cast<double>(num_draws);
+  MatrixXd covariance = MatrixXd::Zero(num_held, num_held);
+  for (Matrix6Xd& chain : positions) {
+    chain.bottomRows(num_held).colwise() -= mean;
+    covariance += chain.bottomRows(num_held) * chain.bottomRows(num_held).transpose();
+  }
+  covariance /= static_cast<double>(num_draws - 1);
+  const Matrix6d& factor = coordinates.gaussian().factor();
+  const Matrix6d wanted = factor * factor.transpose();
+  const MatrixXd map =
+      mapBetween(covariance, wanted.bottomRightCorner(num_held, num_held));
+  for (Matrix6Xd& chain : positions)
+    chain.bottomRows(num_held) =
+        ((map * chain.bottomRows(num_held)).colwise() + mean).eval();
+}
+
+PoseMatrix
+posesOf(const ProductCoordinates& coordinates, const Matrix6Xd& positions)
+{
+  PoseMatrix poses(positions.cols(), 6);
+  for (Index i = 0; i < positions.cols(); ++i)
+    poses.row(i) = poseOf(coordinates.pose(positions.col(i)).matrix()).transpose();
+  return poses;
+}
+
+} // namespace bayesian_icp

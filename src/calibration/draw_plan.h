@@ -1,0 +1,33 @@
+/** \file
+ * \brief How calibrated draws are taken, and what becomes of them: steps, spread,
+ * poses.
+ */
+#pragma once
+
+#include "weighted_score.h"
+
+#include <bayesian_icp/langevin.h>
+
+namespace bayesian_icp {
+
+/** \brief Choose batch, step sizes, burn-in and thinning with which the draws are
+ * nearly independent, as far as the queries allowed go. */
+StepPlan
+planDraws(WeightedScore& score,
+          const WeightedScoreModel& model,
+          const ChainOptions& options,
+          Random& random);
+
+/** \brief Give b, over all chains and about its own mean, the covariance of the
+ * calibrated Gaussian, by a linear map that changes no direction's spread by more than
+ * a factor of 1.4. What prior and shape of the data do to the mean stays.
+ * \param[in,out] positions one chain an entry, one draw of (a, b) a column */
+void
+spreadAsEstimated(const ProductCoordinates& coordinates,
+                  std::vector<Matrix6Xd>& positions);
+
+/** \brief The poses of draws of (a, b). */
+PoseMatrix
+posesOf(const ProductCoordinates& coordinates, const Matrix6Xd& positions);
+
+} // namespace bayesian_icp

@@ -1,0 +1,133 @@
+#include "../run_state.h"
+#include "draw_plan.h"
+
+#include <bayesian_icp/calibration/calibrated_draws.h>
+#include <bayesian_icp/calibration/product_coordinates.h>
+
+#include <cmath>
+
+namespace bayesian_icp {
+
+namespace {
+
+constexpr int automatic_burn_in = 20;
+
+/** Every other proposal keeps this part of the deviation from the mean: accepted where
+ * an independent one is not. */
+constexpr double kept_deviation = 0.6;
+
+/** Proposals along motions held by the prior only, in standard deviations. */
+constexpr double walk_scale = 2.0;
+
+/** One Metropolis chain in product coordinates. */
+class ProductFormChain {
+public:
+  ProductFormChain(const ProductCoordinates& coordinates,
+                   const Prior& prior,
+                   Random& random)
+  : coordinates_(coordinates)
+  , prior_(prior)
+  , random_(random)
+  , walk_scales_(Vector6d::Zero())
+  , position_(coordinates.gaussian().mean())
+  , energy_(energyAt(position_))
+  {
+    const Matrix6d& L = coordinates.gaussian().factor();
+    const int num_walking = coordinates.numPriorOnly();
+    walk_scales_.head(num_walking) =
+        walk_scale * (L * L.transpose()).diagonal().cwiseSqrt().head(num_walking);
+  }
+
+  void
+  step()
+  {
+    propose(0.0);
+    propose(kept_deviation);
+    if (coordinates_.numPriorOnly() > 0)
+      acceptOrStay(position_ + walk_scales_.cwiseProduct(random_.normal6()), 0.0);
+  }
+
+  const Vector6d&
+  position() const
+  {
+    return position_;
+  }
+
+private:
+  double
+  energyAt(const Vector6d& z) const
+  {
+    return coordinates_.linearEnergy(z) +
+           prior_.energy(poseOf(coordinates_.pose(z).matrix()));
+  }
+
+  /** A proposal that leaves the calibrated Gaussian as it is. */
+  void
+  propose(double kept)
+  {
+    const Gaussian& gaussian = coordinates_.gaussian();
+    const Vector6d proposal =
+        gaussian.mean() + kept * (position_ - gaussian.mean()) +
+        std::sqrt(1.0 - kept * kept) * (gaussian.draw(random_) - gaussian.mean());
+    acceptOrStay(proposal, gaussian.energy(proposal) - gaussian.energy(position_));
+  }
+
+  void
+  acceptOrStay(const Vector6d& proposal, double log_proposal_ratio)
+  {
+    const double energy = energyAt(proposal);
+    if (std::log(random_.uniform()) >= energy_ - energy + log_proposal_ratio)
+      return;
+    position_ = proposal;
+    energy_ = energy;
+  }
+
+  const ProductCoordinates& coordinates_;
+  const Prior& prior_;
+  Random& random_;
+  Vector6d walk_scales_;
+  Vector6d position_;
+  double energy_;
+};
+
+} // namespace
+
+ChainSet
+sampleProductForm(const Prior& prior,
+                  const CalibratedEstimate& estimate,
+                  const ChainOptions& options,
+                  const ProgressCallback& progress)
+{
+  const ProductCoordinates coordinates(estimate);
+  const int burn_in = options.num_burn_in > 0 ? options.num_burn_in : automatic_burn_in;
+  const auto stepsOf = [&](int chain) {
+    return burn_in + static_cast<long>(options.thinning) * options.numDrawsOf(chain);
+  };
+  ChainSet result;
+  result.chains.resize(static_cast<std::size_t>(options.num_chains));
+  long total_steps = 0;
+  for (int i = 0; i < options.num_chains; ++i)
+    total_steps += stepsOf(i);
+  RunState run(progress, total_steps);
+  forEachChain(options.num_chains, numThreadsFor(options, true), run, [&](int i) {
+    Random random(options.seed, static_cast<std::uint64_t>(i));
+    ProductFormChain chain(coordinates, prior, random);
+    Chain& kept = result.chains[static_cast<std::size_t>(i)];
+    Matrix6Xd positions(6, options.numDrawsOf(i));
+    Eigen::Index num_kept = 0;
+    const long num_steps = stepsOf(i);
+    for (long step = 1; step <= num_steps && !run.stopped(); ++step) {
+      chain.step();
+      const long sampled = step - burn_in;
+      if (sampled > 0 && sampled % options.thinning == 0)
+        positions.col(num_kept++) = chain.position();
+      run.reportStep(i, step);
+    }
+    kept.draws = posesOf(coordinates, positions.leftCols(num_kept));
+    kept.diverged = !kept.draws.allFinite();
+  });
+  result.cancelled = run.cancelled();
+  return result;
+}
+
+} // namespace bayesian_icp
