@@ -51,7 +51,7 @@ private:
   {
     Random random(options_.seed, plan_stream);
     WeightedScore score(model_, make_score_());
-    const StepPlan plan = planDraws(score, model_, options_, random);
+    const DrawPlan plan = planDraws(score, model_, options_, random);
     long total_steps = 0;
     for (int i = 0; i < options_.num_chains; ++i)
       total_steps += numSteps(plan, i);
@@ -62,19 +62,20 @@ private:
   }
 
   long
-  numSteps(const StepPlan& plan, int chain) const
+  numSteps(const DrawPlan& plan, int chain) const
   {
-    return plan.num_burn_in +
-           static_cast<long>(plan.thinning) * options_.numDrawsOf(chain);
+    return plan.steps.num_burn_in +
+           static_cast<long>(plan.steps.thinning) * options_.numDrawsOf(chain);
   }
 
   void
-  sampleChain(const StepPlan& plan, int chain_index, Chain& chain)
+  sampleChain(const DrawPlan& plan, int chain_index, Chain& chain)
   {
     Random random(options_.seed, static_cast<std::uint64_t>(chain_index));
     WeightedScore score(model_, make_score_());
+    score.setShapeGain(plan.shape_gain);
     LangevinChain langevin(
-        plan, model_.coordinates.gaussian().draw(random), score, random);
+        plan.steps, model_.coordinates.gaussian().draw(random), score, random);
     Matrix6Xd& kept = positions_[static_cast<std::size_t>(chain_index)];
     kept.resize(6, options_.numDrawsOf(chain_index));
     Eigen::Index num_kept = 0;
@@ -84,8 +85,8 @@ private:
       chain.diverged = !langevin.position().allFinite();
       if (chain.diverged)
         break;
-      const long sampled = step - plan.num_burn_in;
-      if (sampled > 0 && sampled % plan.thinning == 0)
+      const long sampled = step - plan.steps.num_burn_in;
+      if (sampled > 0 && sampled % plan.steps.thinning == 0)
         kept.col(num_kept++) = langevin.position();
       run_.reportStep(chain_index, step);
     }

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace bayesian_icp {
@@ -20,15 +19,18 @@ constexpr int num_noise_positions = 24, num_noise_points = 32;
 
 constexpr double max_step_size = 0.75;
 
-/** Batches to choose from. */
-constexpr std::array<std::size_t, 3> batch_sizes = {32, 48, 64};
+constexpr std::size_t batch_size = 32;
 
 /** Effective draws of the slowest direction that one draw is to be worth; the rest is
  * for tails and for what is not Gaussian. */
 constexpr double wanted_ess_share = 0.6;
 
-/** Queries that a draw may cost. */
-constexpr double max_queries_per_draw = 120.0;
+/** Steps that a draw may take: 96 queries. */
+constexpr int max_thinning = 3;
+
+/** Variance of a batch's gradient, posterior sd = 1, with which steps are long enough
+ * for max_thinning and wanted_ess_share. */
+constexpr double max_noise = 2.0;
 
 /** Integrated autocorrelation time of every \p thinning-th position on a Gaussian:
  * after one step the correlation is 1 - b/2 (the noise of two steps is shared), then it
@@ -42,13 +44,27 @@ autocorrelationTime(double step_size, int thinning)
 }
 
 int
-thinningFor(double step_size, int max_thinning)
+thinningFor(double step_size)
 {
   int thinning = 1;
   while (thinning < max_thinning &&
          autocorrelationTime(step_size, thinning) * wanted_ess_share > 1.0)
     ++thinning;
   return thinning;
+}
+
+/** The matrix that brings the noise of gradients, of covariance \p noise, down to
+ * max_noise where it is larger. */
+Matrix6d
+gainFor(const Matrix6d& noise, const Gaussian& gaussian)
+{
+  const Matrix6d& L = gaussian.factor();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * noise * L);
+  const Vector6d gains =
+      (max_noise * solver.eigenvalues().cwiseMax(max_noise).cwiseInverse()).cwiseSqrt();
+  const Matrix6d& U = solver.eigenvectors();
+  return gaussian.inverseFactor().transpose() * U * gains.asDiagonal() * U.transpose() *
+         L.transpose();
 }
 
 /** Largest changes of a direction's spread. */
@@ -76,37 +92,29 @@ mapBetween(const MatrixXd& covariance, const MatrixXd& wanted)
 
 } // namespace
 
-StepPlan
+DrawPlan
 planDraws(WeightedScore& score,
           const WeightedScoreModel& model,
           const ChainOptions& options,
           Random& random)
 {
+  const std::size_t num_terms = std::max<std::size_t>(1, model.active.size());
+  const double share = 1.0 / static_cast<double>(std::min(batch_size, num_terms)) -
+                       1.0 / static_cast<double>(num_terms);
+  const Matrix6d covariance =
+      score.termCovariance(num_noise_positions, num_noise_points, random);
+  DrawPlan plan;
   GaussianFit fit;
   fit.gaussian = model.coordinates.gaussian();
-  fit.term_covariance =
-      score.termCovariance(num_noise_positions, num_noise_points, random);
-  const std::size_t num_terms = std::max<std::size_t>(1, model.active.size());
-  StepPlan best;
-  double best_ess = 0.0;
-  for (const std::size_t batch_size : batch_sizes) {
-    StepPlan plan = planSteps(fit, num_terms, batch_size, max_step_size);
-    const double slowest = plan.step_sizes.minCoeff();
-    const auto cost = static_cast<double>(plan.batch_size);
-    plan.thinning = thinningFor(
-        slowest, std::max(1, static_cast<int>(max_queries_per_draw / cost)));
-    const double ess = std::min(1.0 / wanted_ess_share,
-                                1.0 / autocorrelationTime(slowest, plan.thinning));
-    if (best_ess == 0.0 || ess > 1.05 * best_ess) {
-      best = plan;
-      best_ess = ess;
-    }
-  }
+  plan.shape_gain = gainFor(share * covariance, fit.gaussian);
+  fit.term_covariance = plan.shape_gain * covariance * plan.shape_gain.transpose();
+  plan.steps = planSteps(fit, num_terms, batch_size, max_step_size);
+  plan.steps.thinning = options.thinning > 1
+                            ? options.thinning
+                            : thinningFor(plan.steps.step_sizes.minCoeff());
   if (options.num_burn_in > 0)
-    best.num_burn_in = options.num_burn_in;
-  if (options.thinning > 1)
-    best.thinning = options.thinning;
-  return best;
+    plan.steps.num_burn_in = options.num_burn_in;
+  return plan;
 }
 
 void

@@ -10,9 +10,18 @@
 
 namespace bayesian_icp {
 
-/** \brief Choose batch, step sizes, burn-in and thinning with which the draws are
- * nearly independent, as far as the queries allowed go. */
-StepPlan
+/** \brief How to take draws. */
+struct DrawPlan {
+  StepPlan steps;
+  /** For WeightedScore::setShapeGain(). */
+  Matrix6d shape_gain = Matrix6d::Identity();
+};
+
+/** \brief Plan draws that are nearly independent and stay within the queries allowed.
+ *
+ * Where a batch's score is so noisy that this asks for too many steps, the shape of the
+ * data is followed only in part, and the calibrated Gaussian for the rest. */
+DrawPlan
 planDraws(WeightedScore& score,
           const WeightedScoreModel& model,
           const ChainOptions& options,

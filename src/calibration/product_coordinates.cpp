@@ -1,6 +1,9 @@
 #include <bayesian_icp/calibration/product_coordinates.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include <cmath>
 
 namespace bayesian_icp {
 
@@ -68,6 +71,7 @@ ProductCoordinates::ProductCoordinates(const CalibratedEstimate& estimate)
   for (int k = 0; k < 6; ++k)
     if (estimate.keep[k] > 0.0)
       held_.col(next++) = estimate.directions.col(k);
+  setUnwinding(estimate.prior.precision);
   setLikelihood(estimate);
   const Matrix6d basis = prior_only_ + held_;
   const Vector6d gradient = basis.transpose() * estimate.prior.gradient;
@@ -75,6 +79,31 @@ ProductCoordinates::ProductCoordinates(const CalibratedEstimate& estimate)
       information_ + basis.transpose() * estimate.prior.precision * basis;
   gaussian_ = Gaussian(
       precision.llt().solve(Vector6d(information_ * best_fit_ - gradient)), precision);
+}
+
+void
+ProductCoordinates::setUnwinding(const Matrix6d& prior_precision)
+{
+  if (num_prior_only_ == 0)
+    return;
+  const Eigen::MatrixXd V0 = prior_only_.leftCols(num_prior_only_);
+  const Eigen::MatrixXd rotations = V0.bottomRows<3>();
+  const Eigen::MatrixXd weighted =
+      (V0.transpose() * prior_precision * V0).llt().solve(rotations.transpose());
+  const Eigen::MatrixXd turns = rotations * weighted;
+  unwinding_ = V0 * weighted * turns.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+Vector6d
+ProductCoordinates::priorOnlyTwist(const Vector6d& z) const
+{
+  constexpr double turn = 6.283185307179586;
+  const Vector6d twist = prior_only_ * z;
+  const double angle = twist.tail<3>().norm();
+  const double num_turns = std::round(angle / turn);
+  if (num_turns == 0.0)
+    return twist;
+  return twist - unwinding_ * (num_turns * turn / angle * twist.tail<3>());
 }
 
 void
@@ -96,7 +125,7 @@ ProductCoordinates::setLikelihood(const CalibratedEstimate& estimate)
 Isometry3d
 ProductCoordinates::pose(const Vector6d& z) const
 {
-  return movedBy(prior_only_ * z, centre_, movedBy(held_ * z, centre_, mode_));
+  return movedBy(priorOnlyTwist(z), centre_, movedBy(held_ * z, centre_, mode_));
 }
 
 Vector6d
@@ -127,7 +156,7 @@ Vector6d
 ProductCoordinates::priorGradient(const Vector6d& z, const Prior& prior) const
 {
   const Vector6d gradient = twistPrior(prior, pose(z), centre_).gradient;
-  const Vector6d a = prior_only_ * z, b = held_ * z;
+  const Vector6d a = priorOnlyTwist(z), b = held_ * z;
   return prior_only_.transpose() * carriedToTheExponent(a, gradient) +
          held_.transpose() * carriedToTheExponent(b, carriedToTheRight(a, gradient));
 }

@@ -12,8 +12,7 @@ namespace {
 
 constexpr int automatic_burn_in = 20;
 
-/** Every other proposal keeps this part of the deviation from the mean: accepted where
- * an independent one is not. */
+/** Proposals of b alone keep this part of its deviation from the mean. */
 constexpr double kept_deviation = 0.6;
 
 /** Proposals along motions held by the prior only, in standard deviations. */
@@ -29,6 +28,7 @@ public:
   , prior_(prior)
   , random_(random)
   , walk_scales_(Vector6d::Zero())
+  , held_(Vector6d::Ones())
   , position_(coordinates.gaussian().mean())
   , energy_(energyAt(position_))
   {
@@ -36,13 +36,14 @@ public:
     const int num_walking = coordinates.numPriorOnly();
     walk_scales_.head(num_walking) =
         walk_scale * (L * L.transpose()).diagonal().cwiseSqrt().head(num_walking);
+    held_.head(num_walking).setZero();
   }
 
   void
   step()
   {
-    propose(0.0);
-    propose(kept_deviation);
+    proposeAnywhere();
+    proposeHeld();
     if (coordinates_.numPriorOnly() > 0)
       acceptOrStay(position_ + walk_scales_.cwiseProduct(random_.normal6()), 0.0);
   }
@@ -61,15 +62,33 @@ private:
            prior_.energy(poseOf(coordinates_.pose(z).matrix()));
   }
 
-  /** A proposal that leaves the calibrated Gaussian as it is. */
+  /** A draw of the calibrated Gaussian. */
   void
-  propose(double kept)
+  proposeAnywhere()
   {
     const Gaussian& gaussian = coordinates_.gaussian();
-    const Vector6d proposal =
-        gaussian.mean() + kept * (position_ - gaussian.mean()) +
-        std::sqrt(1.0 - kept * kept) * (gaussian.draw(random_) - gaussian.mean());
+    const Vector6d proposal = gaussian.draw(random_);
     acceptOrStay(proposal, gaussian.energy(proposal) - gaussian.energy(position_));
+  }
+
+  /** Another b at the same a: where the prior has more than a Gaussian's tails in a,
+   * proposeAnywhere() is never accepted. L is upper triangular, so that b - E b is that
+   * of a draw, and Gaussian. */
+  void
+  proposeHeld()
+  {
+    const Gaussian& gaussian = coordinates_.gaussian();
+    const Vector6d old = held_.cwiseProduct(position_ - gaussian.mean());
+    const Vector6d other =
+        held_.cwiseProduct(gaussian.factor() * held_.cwiseProduct(random_.normal6()));
+    const Vector6d next =
+        kept_deviation * old + std::sqrt(1.0 - kept_deviation * kept_deviation) * other;
+    const auto energyOf = [&](const Vector6d& deviation) {
+      // Zero a: L^-1 of the last rows.
+      return 0.5 *
+             held_.cwiseProduct(gaussian.inverseFactor() * deviation).squaredNorm();
+    };
+    acceptOrStay(position_ - old + next, energyOf(next) - energyOf(old));
   }
 
   void
@@ -86,6 +105,8 @@ private:
   const Prior& prior_;
   Random& random_;
   Vector6d walk_scales_;
+  /** 1 where b is, 0 where a is. */
+  Vector6d held_;
   Vector6d position_;
   double energy_;
 };

@@ -90,11 +90,11 @@ WeightedScore::guarded(const Vector6d& z, const Vector6d& likelihood) const
 {
   const Matrix6d& L = model_.coordinates.gaussian().factor();
   const Vector6d linear = model_.coordinates.linearGradient(z);
-  const Vector6d deviation = likelihood - linear;
+  const Vector6d deviation = shape_gain_ * (likelihood - linear);
   const double limit =
       max_deviation + max_relative_deviation * (L.transpose() * linear).norm();
   const double length = (L.transpose() * deviation).norm();
-  return length > limit ? Vector6d(linear + limit / length * deviation) : likelihood;
+  return linear + std::min(1.0, limit / std::max(length, 1e-12)) * deviation;
 }
 
 Matrix6d

@@ -30,6 +30,14 @@ public:
   /** \p model must outlive this object. */
   WeightedScore(const WeightedScoreModel& model, BatchScore score);
 
+  /** \brief Follow the shape of the data only in part: the difference between the
+   * likelihood's gradient and that of a Gaussian is multiplied by \p gain. */
+  void
+  setShapeGain(const Matrix6d& gain)
+  {
+    shape_gain_ = gain;
+  }
+
   /** \brief The gradient whose likelihood part differs from that of a Gaussian
    * likelihood by no more than would keep a chain from coming back. */
   SplitGradient
@@ -52,6 +60,7 @@ private:
 
   const WeightedScoreModel& model_;
   BatchScore score_;
+  Matrix6d shape_gain_ = Matrix6d::Identity();
   std::vector<std::size_t> shuffled_;
   std::vector<std::size_t> batch_;
 };

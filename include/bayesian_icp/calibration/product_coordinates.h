@@ -13,7 +13,8 @@ namespace bayesian_icp {
  * directions that the prior alone holds (keep = 0), VK the others.
  *
  * The likelihood depends on b only, so that it stays the same however far a wide prior
- * lets a go: along an axis of symmetry, along an edge. To second order in b its energy
+ * lets a go: along an axis of symmetry, along an edge. Whole turns of V0 a are dropped,
+ * as the prior's angles do: a turn of a screw would shift b. To second order in b its energy
  * is 1/2 (b - b^)^T Lambda_b (b - b^); the prior is exact everywhere. */
 class BAYESIAN_ICP_EXPORT ProductCoordinates {
 public:
@@ -66,6 +67,13 @@ public:
 
 private:
   void
+  setUnwinding(const Matrix6d& prior_precision);
+
+  /** V0 a less whole turns. */
+  Vector6d
+  priorOnlyTwist(const Vector6d& z) const;
+
+  void
   setLikelihood(const CalibratedEstimate& estimate);
 
   Eigen::Isometry3d mode_;
@@ -74,6 +82,8 @@ private:
   /** Twists from the mode of (a, 0) and (0, b). */
   Matrix6d prior_only_, held_;
   int num_prior_only_ = 0;
+  /** The twist V0 a that the prior likes best of those that turn by a vector. */
+  Eigen::Matrix<double, 6, 3> unwinding_ = Eigen::Matrix<double, 6, 3>::Zero();
   Matrix6d score_weights_ = Matrix6d::Zero();
   /** Lambda_b, and zero where a is concerned. */
   Matrix6d information_ = Matrix6d::Zero();

@@ -1,0 +1,122 @@
+// Draws of preset `calibrated` on simulated scans of things with and without an axis.
+#include "simulation.h"
+
+#include <bayesian_icp/calibration/calibrated_draws.h>
+#include <bayesian_icp/summary.h>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+namespace bayesian_icp {
+namespace {
+
+/** At most 2000 points of a scan, chosen at random. */
+Eigen::Matrix3Xd
+thinned(const Eigen::Matrix3Xf& cloud)
+{
+  Random random(1, 0);
+  Eigen::Matrix3Xd points = cloud.cast<double>();
+  const Eigen::Index num_points = std::min<Eigen::Index>(2000, points.cols());
+  for (Eigen::Index i = 0; i < num_points; ++i)
+    points.col(i).swap(
+        points.col(i + static_cast<Eigen::Index>(
+                           random.index(static_cast<std::size_t>(points.cols() - i)))));
+  return points.leftCols(num_points);
+}
+
+/** A registration whose true pose is known and within the prior. */
+struct Case {
+  explicit Case(const std::string& scene, double yaw_sd)
+  : scans(scan(scene))
+  , model(scans.target.cast<double>())
+  , scorer(thinned(scans.source), model)
+  , prior(makePrior(scorer.centroid(), yaw_sd))
+  , estimate(estimateCalibrated(scorer, prior))
+  {}
+
+  static simulator::ScanPair
+  scan(const std::string& scene)
+  {
+    simulator::SimulationOptions options = simulator::defaultOptions(scene);
+    options.source_view = options.target_view;
+    options.offset << 0.02, -0.015, 0.01, 0.05, -0.03, 0.04;
+    return simulator::simulate(options);
+  }
+
+  static Prior
+  makePrior(const Eigen::Vector3d& centroid, double yaw_sd)
+  {
+    Vector6d sd;
+    sd << 0.03, 0.03, 0.03, 0.06, 0.06, yaw_sd;
+    return Prior(Vector6d::Zero(), sd.cwiseAbs2(), centroid);
+  }
+
+  /** Mahalanobis^2 of the true pose under the draws. */
+  double
+  distanceOfTruth(const ChainSet& set) const
+  {
+    const PoseMatrix draws = pooledDraws(set.chains);
+    const Vector6d mean = meanPose(draws);
+    const auto convention = CovarianceConvention::R3xSO3;
+    const Vector6d error = poseError(poseOf(scans.T_target_source), mean, convention);
+    return error.dot(covarianceAbout(mean, draws, convention).ldlt().solve(error));
+  }
+
+  simulator::ScanPair scans;
+  SurfaceModel model;
+  SurfaceScorer scorer;
+  Prior prior;
+  CalibratedEstimate estimate;
+};
+
+/** chi^2 of six degrees of freedom exceeds this with a probability of 0.1 %. */
+constexpr double chi_square_999 = 22.5;
+
+TEST(CalibratedScans, DrawsMixWithinTheQueriesAllowed)
+{
+  for (const char* scene : {"can", "mug"}) {
+    SCOPED_TRACE(scene);
+    const Case c(scene, 0.06);
+    std::atomic<long> num_queries{0};
+    const MakeBatchScore make_score = [&] {
+      return [&, hints = PatchHints()](const Eigen::Isometry3d& pose,
+                                       const std::vector<std::size_t>& indices,
+                                       Vector6d& total) mutable {
+        num_queries += static_cast<long>(indices.size());
+        return c.scorer.batchScore(
+            pose, c.estimate.centre, c.estimate.residual_scale, indices, hints, total);
+      };
+    };
+    const ChainSet set =
+        sampleCalibrated(make_score, c.prior, c.estimate, ChainOptions());
+    EXPECT_LE(num_queries, 250000);
+    const Summary summary = summarize(set);
+    EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+    for (const auto& coordinate : summary.coordinates)
+      EXPECT_GT(std::min(coordinate.bulk_ess, coordinate.tail_ess), 900.0);
+    EXPECT_LT(c.distanceOfTruth(set), chi_square_999);
+    // What counts the queries does not change the draws.
+    const ChainSet same =
+        sampleCalibrated(c.scorer, c.prior, c.estimate, ChainOptions());
+    EXPECT_EQ(same.chains[3].draws, set.chains[3].draws);
+  }
+}
+
+TEST(CalibratedScans, TheYawOfACanKeepsAWidePrior)
+{
+  const double yaw_sd = 0.5;
+  const Case c("can", yaw_sd);
+  const ChainSet set = sampleCalibrated(c.scorer, c.prior, c.estimate, ChainOptions());
+  const Summary summary = summarize(set);
+  EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+  // A von Mises density with 1 / kappa = 0.25 is wider than a Gaussian of this
+  // variance.
+  EXPECT_GT(summary.coordinates[5].standard_deviation, 0.8 * yaw_sd);
+  EXPECT_LT(summary.coordinates[5].standard_deviation, 1.3 * yaw_sd);
+  EXPECT_LT(c.distanceOfTruth(set), chi_square_999);
+}
+
+} // namespace
+} // namespace bayesian_icp
