@@ -163,7 +163,7 @@ gatherNeighbors(const PointNeighbors& cloud,
     ball.col(i) =
         (cloud.points().col(workspace.indices[static_cast<std::size_t>(i)]) - point)
             .cast<double>();
-  const auto plane = principalFrame(ball).axes.leftCols<2>();
+  const Eigen::Matrix<double, 3, 2> plane = principalFrame(ball).axes.leftCols<2>();
   const Eigen::VectorXd squared_distances =
       (plane.transpose() * ball).colwise().squaredNorm();
   auto& order = workspace.order;

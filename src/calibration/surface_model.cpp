@@ -259,7 +259,8 @@ offsetFrom(const SurfacePatch& patch, const Vector3d& point)
   SurfaceOffset offset;
   offset.distance = (local.z() - height) / length;
   offset.normal = patch.axes * Vector3d(-slope_x, -slope_y, 1.0) / length;
-  offset.in_plane = local.head<2>().norm();
+  const Vector3d from_centre = patch.axes.transpose() * (point - patch.centre);
+  offset.in_plane = std::max(local.head<2>().norm(), from_centre.head<2>().norm());
   return offset;
 }
 

@@ -37,7 +37,9 @@ struct SurfacePatch {
 struct SurfaceOffset {
   /** Signed, across the surface, to first order in the surface's slope [m]. */
   double distance;
-  /** In the plane of x and y, from the patch's origin [m]. */
+  /** In the plane of x and y, from the patch's origin or from its centre, whichever is
+   * further: the quadric is known about the one, the surface is there about the other
+   * [m]. */
   double in_plane;
   /** Unit normal of the surface under the point. */
   Eigen::Vector3d normal;

@@ -54,8 +54,8 @@ class BAYESIAN_ICP_EXPORT SurfaceScorer {
 public:
   /** Tukey's constant: 95 % efficiency on Gaussian residuals. */
   static constexpr double tukey_constant = 4.685;
-  /** A point further than this part of a patch's radius from its centre has no patch.
-   */
+  /** A point further than this part of a patch's radius from it (see
+   * SurfaceOffset::in_plane) has no patch. */
   static constexpr double max_in_plane = 0.6;
 
   /** \param[in] source_points 3 x n, finite, source frame [m]
