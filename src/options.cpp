@@ -46,19 +46,26 @@ private:
 };
 
 void
-check(const PriorOptions& prior, Checker& checker)
+check(const PriorOptions& prior, Preset preset, Checker& checker)
 {
+  const bool must_be_finite = preset == Preset::Calibrated;
   const char* names[] = {"prior.variance[x]",
                          "prior.variance[y]",
                          "prior.variance[z]",
                          "prior.variance[roll]",
                          "prior.variance[pitch]",
                          "prior.variance[yaw]"};
-  for (int k = 0; k < 6; ++k)
+  for (int k = 0; k < 6; ++k) {
     checker.require(prior.variance[k] > 0.0,
                     names[k],
                     prior.variance[k],
                     k < 3 ? "positive (m^2)" : "positive (rad^2)");
+    checker.require(!must_be_finite || std::isfinite(prior.variance[k]),
+                    names[k],
+                    prior.variance[k],
+                    "finite for preset calibrated: it is the posterior where the "
+                    "clouds say nothing");
+  }
   checker.require(prior.mean.allFinite() || prior.mean.array().isNaN().all(),
                   "prior.mean",
                   prior.mean.transpose(),
@@ -118,6 +125,16 @@ check(const ExactOptions& exact, Checker& checker)
   checker.atLeast("max_source_points", exact.max_source_points, 1);
 }
 
+void
+check(const CalibratedOptions& calibrated, Checker& checker)
+{
+  checker.atLeast("calibrated.max_source_points",
+                  calibrated.max_source_points,
+                  min_calibrated_points);
+  checker.atLeast(
+      "calibrated.num_mode_points", calibrated.num_mode_points, min_calibrated_points);
+}
+
 } // namespace
 
 const char*
@@ -152,17 +169,14 @@ std::string
 Options::validate() const
 {
   Checker checker;
-  checker.require(preset == Preset::Paper || preset == Preset::Exact,
-                  "preset",
-                  toString(preset),
-                  "paper or exact: the other is not available in this version");
   checker.positive("effective_points", likelihood.effective_points);
   checker.positive("measurement_sigma", likelihood.measurement_sigma, " (m)");
-  check(prior, checker);
+  check(prior, preset, checker);
   checker.atLeast("batch_size", mini_batch.batch_size, 1);
   check(sgld, checker);
   check(chains, checker);
   check(exact, checker);
+  check(calibrated, checker);
   checker.require(preset != Preset::Exact || sgld.step_size <= 1.0,
                   "step_size",
                   sgld.step_size,

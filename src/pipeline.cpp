@@ -1,4 +1,6 @@
+#include "calibrated_pipeline.h"
 #include "exact_pipeline.h"
+#include "pipeline_parts.h"
 
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/posterior.h>
@@ -16,15 +18,6 @@ namespace {
  * many prior standard deviations, on top of the deviation of its start and the size of
  * the source. For angles, whose prior is periodic, see the sampler. */
 constexpr double max_prior_deviations = 20.0;
-
-PosteriorEstimate
-failure(Status status, const std::string& message)
-{
-  PosteriorEstimate estimate;
-  estimate.summary.status = status;
-  estimate.summary.message = message;
-  return estimate;
-}
 
 /** Nearest neighbours in a KdTree, for Algorithm 1. */
 class TreeSearch : public CorrespondenceSearch {
@@ -71,17 +64,6 @@ countCorrespondences(const Eigen::Matrix3Xd& source_points,
   return correspondences.size();
 }
 
-Prior
-makePrior(const PriorOptions& options,
-          const Vector6d& initial_pose,
-          const Eigen::Matrix3Xd& source_points)
-{
-  const Vector6d& mean = options.mean.allFinite() ? options.mean : initial_pose;
-  if (options.frame == PriorFrame::Origin)
-    return Prior(mean, options.variance);
-  return Prior(mean, options.variance, source_points.rowwise().mean());
-}
-
 /** Largest translation from the prior mean that is not called divergence [m]. */
 Eigen::Vector3d
 translationLimit(const Prior& prior,
@@ -95,20 +77,16 @@ translationLimit(const Prior& prior,
   return limit.head<3>().array() + size.norm();
 }
 
-/** What is wrong with the arguments; the status is NotRun if nothing is. */
+/** What is wrong with the input; the status is NotRun if nothing is. */
 PosteriorEstimate
 checkInput(const Eigen::Matrix3Xd& source_points,
            const CorrespondenceSearch& search,
            const Vector6d& initial_pose,
            const Options& options)
 {
-  const std::string complaint = options.validate();
-  if (!complaint.empty())
-    return failure(Status::InvalidOptions, complaint);
-  if (!initial_pose.allFinite())
-    return failure(Status::InvalidInput, "the initial guess is not finite");
-  if (!source_points.allFinite())
-    return failure(Status::InvalidInput, "the source has non-finite points");
+  PosteriorEstimate checked = checkArguments(source_points, initial_pose, options);
+  if (checked.summary.status != Status::NotRun)
+    return checked;
   const std::size_t found = countCorrespondences(source_points, search, initial_pose);
   if (found < min_correspondences)
     return failure(Status::TooFewCorrespondences,
@@ -116,7 +94,7 @@ checkInput(const Eigen::Matrix3Xd& source_points,
                        std::to_string(source_points.cols()) +
                        " source points have a target point within the maximum "
                        "correspondence distance at the initial guess");
-  return PosteriorEstimate();
+  return checked;
 }
 
 /** Algorithm 1. */
@@ -188,6 +166,10 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress)
 {
+  if (options.preset == Preset::Calibrated)
+    return failure(Status::InvalidOptions,
+                   "preset is calibrated, but must be paper or exact with a search of "
+                   "the user's own: calibrated needs the target's points");
   if (options.preset == Preset::Exact &&
       options.exact.residual.residual == Residual::PointToPlane)
     return failure(Status::InvalidOptions,
@@ -212,6 +194,12 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress)
 {
+  if (options.preset == Preset::Calibrated)
+    return estimateCalibratedPosterior(source_points,
+                                       target_tree.points().cast<double>(),
+                                       initial_pose,
+                                       options,
+                                       progress);
   const ResidualOptions& residual = options.exact.residual;
   const bool needs_normals =
       options.preset == Preset::Exact && residual.residual == Residual::PointToPlane;
@@ -225,6 +213,23 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   initial_pose,
                   options,
                   progress);
+}
+
+PosteriorEstimate
+estimatePosterior(const Eigen::Matrix3Xd& source_points,
+                  const Eigen::Matrix3Xd& target_points,
+                  const Vector6d& initial_pose,
+                  const Options& options,
+                  const ProgressCallback& progress)
+{
+  if (options.preset == Preset::Calibrated)
+    return estimateCalibratedPosterior(
+        source_points, target_points, initial_pose, options, progress);
+  const std::string complaint = options.validate();
+  if (!complaint.empty())
+    return failure(Status::InvalidOptions, complaint);
+  const KdTree target_tree(target_points.cast<float>(), options.chains.num_threads);
+  return estimatePosterior(source_points, target_tree, initial_pose, options, progress);
 }
 
 } // namespace bayesian_icp

@@ -149,32 +149,6 @@ messageOf(const Summary& summary, const WorstDiagnostics& worst)
 
 } // namespace
 
-const char*
-toString(Status status)
-{
-  switch (status) {
-  case Status::NotRun:
-    return "not_run";
-  case Status::Ok:
-    return "ok";
-  case Status::NotMixed:
-    return "not_mixed";
-  case Status::SeveralModes:
-    return "several_modes";
-  case Status::Diverged:
-    return "diverged";
-  case Status::Cancelled:
-    return "cancelled";
-  case Status::TooFewCorrespondences:
-    return "too_few_correspondences";
-  case Status::InvalidOptions:
-    return "invalid_options";
-  case Status::InvalidInput:
-    return "invalid_input";
-  }
-  return "unknown";
-}
-
 Summary::Summary()
 {
   covariances.fill(Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN()));

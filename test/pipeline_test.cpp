@@ -91,7 +91,18 @@ TEST(OptionsValidation, NamesFieldValueAndRange)
       {"thinning", "0", [](Options& o) { o.chains.thinning = 0; }},
       {"initial_spread", "-1", [](Options& o) { o.chains.initial_spread[1] = -1; }},
       {"num_threads", "-4", [](Options& o) { o.chains.num_threads = -4; }},
-      {"preset", "calibrated", [](Options& o) { o.preset = Preset::Calibrated; }},
+      {"calibrated.max_source_points",
+       "29",
+       [](Options& o) { o.calibrated.max_source_points = 29; }},
+      {"calibrated.num_mode_points",
+       "0",
+       [](Options& o) { o.calibrated.num_mode_points = 0; }},
+      {"prior.variance[x]",
+       "inf",
+       [](Options& o) {
+         o.preset = Preset::Calibrated;
+         o.prior.variance[0] = 1.0 / 0.0;
+       }},
   };
   for (const auto& bad : bad_options) {
     Options options;

@@ -341,21 +341,6 @@ TEST(Posterior, IncludesTheGuessAndHasItAsPriorMean)
   EXPECT_LT(error.tail<3>().norm(), 0.2);
 }
 
-TEST(Posterior, UnavailablePresetsAreRefused)
-{
-  const Scans<PointXYZ> scans;
-  const QuietConsole quiet;
-  BayesianIcp icp;
-  icp.setPreset(bayesian_icp::Preset::Calibrated);
-  icp.setInputSource(scans.source);
-  icp.setInputTarget(scans.target);
-  Cloud output;
-  icp.align(output);
-  EXPECT_TRUE(icp.hasConverged()); // ICP's meaning
-  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
-  EXPECT_EQ(icp.getSamples().rows(), 0);
-}
-
 /** A registration by preset `exact` at the scale of the scans' noise. */
 void
 useExact(BayesianIcp& icp, const Scans<PointXYZ>& scans)

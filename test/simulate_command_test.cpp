@@ -84,7 +84,8 @@ TEST_F(SimulateCommand, HelpsAndListsScenes)
 {
   const CommandResult help = simulate("--help");
   EXPECT_EQ(help.exit_code, 0);
-  ASSERT_EQ(simulate("--scene can -o " + folder_.string()).exit_code, 0);
+  const std::string all_errors = " --noise-correlation 0.5 --incidence-noise 1";
+  ASSERT_EQ(simulate("--scene can -o " + folder_.string() + all_errors).exit_code, 0);
   ASSERT_EQ(simulate("--scene room -o " + (folder_ / "room").string()).exit_code, 0);
   for (const fs::path& record : {folder_ / "scene.json", folder_ / "room/scene.json"}) {
     const auto json = nlohmann::json::parse(contentOf(record));
@@ -129,6 +130,8 @@ TEST_F(SimulateCommand, RefusesBadArgumentsAndWritesNothing)
                                 "--scene can --width 0",
                                 "--scene can --noise nan",
                                 "--scene can --outliers 1.1",
+                                "--scene can --noise-correlation 2",
+                                "--scene can --incidence-noise no",
                                 "--scene can --offset 1,2,3",
                                 "--scene can --offset 1,2,3,4,5,6,7",
                                 "--scene can --offset 1,2,3,4,5,",
@@ -173,7 +176,8 @@ TEST_F(SimulateCommand, LeavesNoHalfWrittenFiles)
 
 TEST_F(SimulateCommand, WritesTheSameBytesForAnyNumberOfThreads)
 {
-  const std::string arguments = " --scene mug --outliers 0.05 --jitter 1 -o ";
+  const std::string arguments =
+      " --scene mug --outliers 0.05 --jitter 1 --noise-correlation 0.7 -o ";
   for (const std::string threads : {"1", "3"})
     ASSERT_EQ(runShell("OMP_NUM_THREADS=" + threads + " '" + simulator + "'" +
                        arguments + (folder_ / threads).string())
@@ -195,7 +199,9 @@ TEST_F(SimulateCommand, RecordsACommandLineThatMakesThePairAgain)
         "18446744073709551615",
         "--scene room --range-noise 0.01 --noise 2 --rings 8 --min-elevation -20 "
         "--max-elevation 5 --azimuth-step 1.5 --max-range 4 --same-view --frame object "
-        "--offset 0.1,0,-0.05,0,0.02,-0.3 --dropout-from 70"}) {
+        "--offset 0.1,0,-0.05,0,0.02,-0.3 --dropout-from 70",
+        "--scene carton --noise-correlation 0.5 --noise-correlation-pixels 4 "
+        "--incidence-noise 1.5"}) {
     ASSERT_EQ(simulate(arguments + " -o " + first).exit_code, 0);
     const auto record = nlohmann::json::parse(contentOf(folder_ / "first/scene.json"));
     const std::string line = record["command_line"];

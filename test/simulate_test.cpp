@@ -82,9 +82,26 @@ TEST(SimulatedScenes, HaveTheirStatedSizes)
   EXPECT_NEAR(makeScene("bowl").distance({0.0826, 0.0, 0.138}), 0.1, 1e-8);
   EXPECT_NEAR(makeScene("bowl").distance({0.2, 0.0, 0.0355}), 0.2 - 0.0851136, 1e-6);
   EXPECT_NEAR(makeScene("table_top").distance({0.7, 0.0, -0.01}), 0.1, 1e-15);
+  EXPECT_NEAR(makeScene("table_plate").distance({0.6, 0.0, -0.01}), 0.1, 1e-15);
   EXPECT_NEAR(makeScene("corridor").distance({0.75, 0.3, 1.2}), 0.7, 1e-15);
   EXPECT_NEAR(makeScene("corridor").distance({-1.5, 0.3, 1.2}), 0.64, 1e-15);
   EXPECT_NEAR(makeScene("stairs").distance({0.42, 0.0, 0.4}), 0.06, 1e-15);
+  EXPECT_NEAR(makeScene("plain_corridor").distance({0.75, 0.3, 1.2}), 0.7, 1e-15);
+  EXPECT_NEAR(makeScene("cube").distance({0.0, 0.0, 0.2}), 0.1, 1e-15);
+  EXPECT_NEAR(makeScene("cube").distance({0.5, 0.0, 0.03}), 0.03, 1e-15);
+  EXPECT_NEAR(makeScene("box").distance({0.0, -0.3, 0.07}), 0.2, 1e-15);
+  EXPECT_NEAR(makeScene("carton").distance({0.0, 0.0, 0.1}), 0.071, 1e-15);
+  EXPECT_NEAR(makeScene("carton").distance({0.0, 0.0, 0.02}), 0.015, 1e-15);
+  EXPECT_NEAR(makeScene("bracket").distance({0.0, 0.0, 0.046}), 0.034, 1e-15);
+  EXPECT_NEAR(makeScene("bracket").distance({0.0, -0.03, 0.046}), 0.04, 1e-15);
+  EXPECT_NEAR(makeScene("tool").distance({0.07, -0.1, 0.02}), 0.055, 1e-15);
+  EXPECT_NEAR(makeScene("tool").distance({0.0, 0.0, 0.05}), 0.025, 1e-15);
+  EXPECT_NEAR(makeScene("car").distance({0.0, 0.0, 2.0}), 0.55, 1e-15);
+  EXPECT_NEAR(makeScene("car").distance({3.2, 0.0, 1.5}), std::hypot(1.0, 0.7), 1e-15);
+  EXPECT_NEAR(makeScene("car").distance({2.0, 0.0, 1.5}), 0.7, 1e-15);
+  EXPECT_NEAR(makeScene("car").distance({1.35, 0.0, 0.2}), 0.1, 1e-15);
+  EXPECT_NEAR(makeScene("car").distance({1.35, 0.5, 0.2}), 0.1, 1e-15);
+  EXPECT_NEAR(makeScene("tree").distance({0.0, 1.0, 2.0}), 0.8, 1e-15);
   EXPECT_THROW(makeScene("moon"), std::invalid_argument);
 }
 

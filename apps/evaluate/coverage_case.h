@@ -45,7 +45,8 @@ struct MethodResult {
   /** Draws, one pose a row, of methods that have any; they then take the place of the
    * Gaussian in every score. */
   PoseMatrix draws;
-  /** Raised flags and other remarks, separated by ';', no commas. */
+  /** Raised flags, each as "flag:NAME", and other remarks, separated by ';', no
+   * commas. */
   std::string notes;
   double seconds = 0.0;
   /** Nearest-neighbour queries, -1 if not counted. */

@@ -113,4 +113,13 @@ kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b)
   return largest;
 }
 
+double
+median(std::vector<double> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 ? values[middle]
+                           : 0.5 * (values[middle - 1] + values[middle]);
+}
+
 } // namespace bayesian_icp::evaluate

@@ -5,6 +5,8 @@
 
 #include <bayesian_icp/pose.h>
 
+#include <vector>
+
 namespace bayesian_icp::evaluate {
 
 /** \brief Mean and covariance of draws as plain vectors (angles not circular). */
@@ -37,5 +39,9 @@ wasserstein1(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 /** \brief Largest difference of two empirical distribution functions, in [0, 1]. */
 double
 kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+/** \brief The middle one of at least one value, or the mean of the middle two. */
+double
+median(std::vector<double> values);
 
 } // namespace bayesian_icp::evaluate

@@ -2,6 +2,7 @@
  * \brief pcl_bayesian_icp_evaluate: studies of the samplers and the posteriors, one
  * sub-command each.
  */
+#include "coverage_command.h"
 #include "samplers_command.h"
 
 #include <boost/program_options/errors.hpp>
@@ -27,6 +28,9 @@ const SubCommand sub_commands[] = {
     {"samplers",
      "distance of every sampler's draws to a gold standard, and their rate",
      bayesian_icp::evaluate::runSamplersCommand},
+    {"coverage",
+     "posteriors of every method against the true pose, on simulated and real scans",
+     bayesian_icp::evaluate::runCoverageCommand},
 };
 
 void

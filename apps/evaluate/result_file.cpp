@@ -1,11 +1,7 @@
 #include "score.h"
 
-#include <io/errors.h>
-#include <io/output_folder.h>
-
-#include <filesystem>
-#include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 namespace bayesian_icp::evaluate {
 
@@ -79,38 +75,9 @@ isSame(const RunName& a, const RunName& b)
 
 } // namespace
 
-ResultFile::ResultFile(const std::string& name) : file_(name)
-{
-  std::ifstream stream(name);
-  std::string line;
-  const bool exists = stream && std::getline(stream, line);
-  if (exists && line != header)
-    throw io::FileError(name, "is not a file of results of this version");
-  std::string complete = std::string(header) + '\n';
-  bool is_cut_off = false;
-  while (exists && std::getline(stream, line) && !(is_cut_off = stream.eof())) {
-    try {
-      runs_.push_back(runOf(line));
-    }
-    catch (const std::exception&) {
-      throw io::FileError(name, "bad line '" + line + "'");
-    }
-    complete += line + '\n';
-  }
-  stream.close();
-  if (!exists || is_cut_off)
-    rewrite(complete);
-}
-
-void
-ResultFile::rewrite(const std::string& text) const
-{
-  const std::filesystem::path path(file_);
-  io::OutputFolder folder(path.has_parent_path() ? path.parent_path().string() : ".");
-  folder.add(path.filename().string(),
-             [&text](std::ostream& stream) { stream << text; });
-  folder.commit();
-}
+ResultFile::ResultFile(const std::string& name)
+: file_(name, header, [this](const std::string& row) { runs_.push_back(runOf(row)); })
+{}
 
 const ScoredRun*
 ResultFile::find(const RunName& name) const
@@ -124,9 +91,7 @@ ResultFile::find(const RunName& name) const
 void
 ResultFile::add(const ScoredRun& run)
 {
-  std::ofstream stream(file_, std::ios::app);
-  if (!(stream << rowOf(run) << '\n' << std::flush))
-    throw io::FileError(file_, "cannot be written");
+  file_.add(rowOf(run));
   runs_.push_back(run);
 }
 

@@ -1,5 +1,7 @@
 #include "result_table.h"
 
+#include "draw_statistics.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -15,15 +17,6 @@ constexpr double good_ks = 0.06;
 
 using CellName = std::tuple<std::string, double, double>;
 using Scores = std::vector<Score>;
-
-double
-median(std::vector<double> values)
-{
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 ? values[middle]
-                           : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 template <typename Number>
 std::vector<double>

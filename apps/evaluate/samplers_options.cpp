@@ -1,5 +1,7 @@
 #include "samplers_options.h"
 
+#include "option_values.h"
+
 #include <boost/program_options.hpp>
 
 #include <io/errors.h>
@@ -75,16 +77,6 @@ positiveNumber(const std::string& text, const std::string& option)
   return number;
 }
 
-std::vector<std::string>
-split(const std::string& text, char separator)
-{
-  std::vector<std::string> items;
-  std::istringstream stream(text);
-  for (std::string item; std::getline(stream, item, separator);)
-    items.push_back(item);
-  return items;
-}
-
 Cell
 cellOf(const std::string& text)
 {
@@ -93,20 +85,6 @@ cellOf(const std::string& text)
     throw io::UsageError("--cells: " + io::quoted(text) +
                          " is not of the form sigma:N");
   return {positiveNumber(numbers[0], "cells"), positiveNumber(numbers[1], "cells")};
-}
-
-int
-integerWithin(const po::variables_map& given,
-              const std::string& name,
-              int least,
-              int most)
-{
-  const int value = given[name].as<int>();
-  if (value < least || value > most)
-    throw io::UsageError("--" + name + " is " + std::to_string(value) +
-                         ", but must be in [" + std::to_string(least) + ", " +
-                         std::to_string(most) + "]");
-  return value;
 }
 
 void
@@ -134,21 +112,6 @@ takeLists(const po::variables_map& given, SamplersOptions& options)
       throw io::UsageError("--samplers: there is no " + io::quoted(sampler));
 }
 
-po::variables_map
-splitCommandLine(int argc, const char* const* argv)
-{
-  namespace style = po::command_line_style;
-  // No guessing: an abbreviated or misspelt option is an error.
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv)
-                .options(description())
-                .positional(po::positional_options_description())
-                .style(style::unix_style & ~style::allow_guessing)
-                .run(),
-            given);
-  return given;
-}
-
 } // namespace
 
 bool
@@ -160,7 +123,7 @@ SamplersOptions::wants(const std::string& sampler) const
 SamplersOptions
 parseSamplersOptions(int argc, const char* const* argv)
 {
-  const po::variables_map given = splitCommandLine(argc, argv);
+  const po::variables_map given = readCommandLine(argc, argv, description());
   SamplersOptions options;
   options.show_help = given.count("help") > 0;
   if (options.show_help)

@@ -12,18 +12,6 @@ namespace {
 
 constexpr double half_turn = 3.14159265358979323846;
 
-Eigen::Matrix3Xf
-finitePoints(const std::string& file)
-{
-  const io::CloudFile cloud = io::readCloud(file);
-  Eigen::Matrix3Xf finite(3, static_cast<Eigen::Index>(cloud.num_finite));
-  Eigen::Index column = 0;
-  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
-    if (cloud.points.col(i).allFinite())
-      finite.col(column++) = cloud.points.col(i);
-  return finite;
-}
-
 /** \p size columns, evenly spread. */
 Eigen::Matrix3Xd
 thinned(const Eigen::Matrix3Xf& points, std::size_t size)
@@ -37,6 +25,18 @@ thinned(const Eigen::Matrix3Xf& points, std::size_t size)
 }
 
 } // namespace
+
+Eigen::Matrix3Xf
+finitePoints(const std::string& file)
+{
+  const io::CloudFile cloud = io::readCloud(file);
+  Eigen::Matrix3Xf finite(3, static_cast<Eigen::Index>(cloud.num_finite));
+  Eigen::Index column = 0;
+  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
+    if (cloud.points.col(i).allFinite())
+      finite.col(column++) = cloud.points.col(i);
+  return finite;
+}
 
 Scene
 readScene(const std::string& folder, const std::string& name, std::size_t max_points)

@@ -35,6 +35,11 @@ struct Scene {
   KdTree target;
 };
 
+/** \brief The finite points of a cloud file, 3 x n [m].
+ * \throws io::FileError */
+Eigen::Matrix3Xf
+finitePoints(const std::string& file);
+
 /** \brief Read FOLDER/NAME/source.pcd and target.pcd.
  * \param[in] max_points the source is thinned evenly to so many points
  * \throws io::FileError */

@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "row_file.h"
 #include "sampler_runs.h"
 
 #include <bayesian_icp/summary.h>
@@ -85,12 +86,8 @@ public:
   }
 
 private:
-  /** Replace the whole file, completely or not at all. */
-  void
-  rewrite(const std::string& text) const;
-
-  std::string file_;
   std::vector<ScoredRun> runs_;
+  RowFile file_;
 };
 
 } // namespace bayesian_icp::evaluate

@@ -180,6 +180,7 @@ settingsOfAuthorsConfig(const json& document, std::string& note)
   checkKeys(document);
   refuseWhatIsMissing(document);
   Settings settings;
+  settings.options.preset = Preset::Paper;
   settings.guess = matrixOf(poseAt(document, "initial-guess", ""));
   settings.options.prior.mean = poseAt(document, "prior", "mean-");
   settings.options.prior.variance.setConstant(numberAt(document, "prior", "variance"));

@@ -7,6 +7,7 @@
 #include "register/guess.h"
 #include "register/option_descriptions.h"
 #include "register/setting_fields.h"
+#include "register/unused_settings.h"
 
 #include <boost/program_options.hpp>
 
@@ -103,6 +104,22 @@ struct SettingsReader {
   }
 };
 
+/** Refuses options that have no effect with the preset. */
+struct UnusedOptionRefuser {
+  const po::variables_map& given;
+  Preset preset;
+
+  template <typename T>
+  void
+  operator()(const Field& field, const T&) const
+  {
+    const std::string name = longNameOf(field);
+    if (given.count(name) > 0 && isUnused(field, preset))
+      throw io::UsageError("--" + name + ": has no effect with preset " +
+                           toString(preset));
+  }
+};
+
 po::variables_map
 splitCommandLine(int argc, const char* const* argv)
 {
@@ -170,6 +187,13 @@ takeSettings(const po::variables_map& given, Request& request)
   const std::string complaint = request.settings.validate();
   if (!complaint.empty())
     throw io::UsageError(complaint);
+  const UnusedOptionRefuser refuser{given, request.settings.options.preset};
+  visitSettings(request.settings, refuser);
+  const std::string unused = unusedSettings(request.settings);
+  if (!unused.empty())
+    request.note += (request.note.empty() ? "" : "; ") + unused +
+                    ": no effect with preset " +
+                    toString(request.settings.options.preset);
 }
 
 } // namespace

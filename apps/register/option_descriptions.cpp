@@ -111,9 +111,13 @@ describeOptions()
   po::options_description exact("Preset exact only");
   Describer describe_exact{exact};
   visitExact(defaults.options.exact, describe_exact);
+  po::options_description calibrated("Preset calibrated only");
+  Describer describe_calibrated{calibrated};
+  visitCalibrated(defaults.options.calibrated, describe_calibrated);
 
   po::options_description all;
-  all.add(describeGeneral()).add(registration).add(posterior).add(sampler).add(exact);
+  all.add(describeGeneral()).add(registration).add(posterior).add(sampler);
+  all.add(exact).add(calibrated);
   return all;
 }
 
@@ -131,6 +135,18 @@ const char* const about_exact =
     "its\n"
     "mini-batches without replacement and uses no other constant of Algorithm 1.\n";
 
+const char* const about_calibrated =
+    "\nPreset calibrated needs no truth about the sensor: distances are to the "
+    "target's\n"
+    "surface, in units of the noise that is found there, and neighbouring points are "
+    "not\n"
+    "taken for independent. It reports how well the clouds hold the pose in each "
+    "direction;\n"
+    "those they do not hold stay at the prior, which has to be finite. Options of "
+    "the\n"
+    "scale, the mini-batches, the starts and the step sizes have no effect and are "
+    "refused.\n";
+
 } // namespace
 
 std::string
@@ -145,12 +161,12 @@ helpText()
          "draws.\n"
          "Clouds are .pcd or .ply files in metres. Options may begin with one dash or\n"
          "two, their values follow a blank or '='.\n"
-      << describeOptions() << about_exact
+      << describeOptions() << about_exact << about_calibrated
       << "\nExit codes:\n"
          "  0    the posterior is there and can be trusted\n"
-         "  1    the registration failed, the chains have not mixed, or they are in "
+         "  1    the registration failed, the chains have not mixed, they are in "
          "several\n"
-         "       modes\n"
+         "       modes, or the clouds call for doubt (preset calibrated)\n"
          "  2    wrong usage\n"
          "  3    a file cannot be read, used or written\n"
          "  130  interrupted (Ctrl-C); what was drawn until then is written\n"
@@ -158,7 +174,9 @@ helpText()
          "  pcl_bayesian_icp source.pcd target.pcd -d 0.1 --guess 0,0,0.2,0,0,1.57 -o "
          "out\n"
          "  pcl_bayesian_icp source.pcd target.pcd --preset exact --sigma 0.005 \\\n"
-         "      --effective-points 300 --prior-frame source-centroid\n";
+         "      --effective-points 300 --prior-frame source-centroid\n"
+         "  pcl_bayesian_icp source.pcd target.pcd --preset calibrated \\\n"
+         "      --prior-frame source-centroid\n";
   return help.str();
 }
 

@@ -1,5 +1,6 @@
 #include "register/posterior_json.h"
 
+#include "register/data_json.h"
 #include "register/json_values.h"
 #include "register/settings_json.h"
 
@@ -142,8 +143,8 @@ posteriorOf(const RegistrationResult& result)
           {"modes", modesJson(result.summary.modes)},
           {"modes_note",
            "weights are estimates, good to a factor of a few; mean and covariances of "
-           "the whole posterior mix modes in proportion to their chains; preset paper "
-           "looks for no modes"},
+           "the whole posterior mix modes in proportion to their chains; presets paper "
+           "and calibrated look for no modes"},
           {"chains", chainsJson(result.chains)}};
 }
 
@@ -168,6 +169,7 @@ posteriorJson(const Run& run)
         {"T_target_source", jsonOf(result.final_matrix)}}},
       {"icp", icpJson(result)},
       {"posterior", posteriorOf(result)},
+      {"data", dataJson(result.summary.data)},
       {"options", jsonOf(run.settings)},
       {"time",
        {{"reading_s", run.reading_seconds},

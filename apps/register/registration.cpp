@@ -96,9 +96,7 @@ registerClouds(const Eigen::Matrix3Xf& source,
   result.icp_fitness = icp.getFitnessScore();
   result.summary = icp.getSummary();
   result.chains = chainsOf(icp);
-  result.is_final_the_mean =
-      settings.use_mean && (result.summary.status == Status::Ok ||
-                            result.summary.status == Status::NotMixed);
+  result.is_final_the_mean = settings.use_mean && hasUsableMean(result.summary.status);
   result.final_matrix =
       result.is_final_the_mean ? matrixOf(result.summary.mean) : result.icp_matrix;
   return result;

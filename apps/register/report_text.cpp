@@ -1,6 +1,8 @@
 #include "register/report_text.h"
 
 #include "io/numbers.h"
+#include "register/data_text.h"
+#include "register/text_layout.h"
 
 #include <bayesian_icp/pose.h>
 
@@ -17,29 +19,6 @@ constexpr std::size_t column_width = 12;
 constexpr std::size_t diagnostic_width = 10;
 const char* const coordinate_names[] = {
     "x [m]", "y [m]", "z [m]", "roll [rad]", "pitch [rad]", "yaw [rad]"};
-
-std::string
-leftAligned(std::string text, std::size_t width)
-{
-  text.resize(std::max(width, text.size()), ' ');
-  return text;
-}
-
-std::string
-rightAligned(const std::string& text, std::size_t width)
-{
-  return std::string(width > text.size() ? width - text.size() : 1, ' ') + text;
-}
-
-std::string
-cell(double value, int num_decimals, std::size_t width)
-{
-  const bool is_short = std::abs(value) < 1e9;
-  return rightAligned(!std::isfinite(value) ? "-"
-                      : is_short            ? io::fixedTextOf(value, num_decimals)
-                                            : io::textOf(value, 5),
-                      width);
-}
 
 /** Mean, deviation and interval, each times \p factor. */
 std::string
@@ -121,24 +100,6 @@ pasteable(const Eigen::Matrix4d& matrix)
   return text + '\n';
 }
 
-/** Lines of at most 88 characters, those after the first indented. */
-std::string
-wrapped(const std::string& text)
-{
-  constexpr std::size_t max_length = 88;
-  const std::string indent(8, ' ');
-  std::string lines, line;
-  for (const auto word : io::words(text, " ")) {
-    if (line.size() + 1 + word.size() > max_length) {
-      lines += line + '\n';
-      line = indent + std::string(word);
-    }
-    else
-      line += (line.empty() ? "" : " ") + std::string(word);
-  }
-  return lines + line + '\n';
-}
-
 std::string
 cloudLine(const char* role, const io::CloudFile& cloud)
 {
@@ -184,7 +145,8 @@ reportText(const Run& run)
     text += "\nPosterior of the pose that maps source points into the target frame, " +
             std::to_string(summary.num_draws) + " draws of " +
             std::to_string(summary.num_chains - summary.num_diverged_chains) +
-            " chains:\n" + coordinateTable(summary) + modesText(summary.modes);
+            " chains:\n" + coordinateTable(summary) + modesText(summary.modes) +
+            dataText(summary.data);
   text += "\n" + wrapped("Status: " + statusText(summary)) + icpLine(result);
   text += "\nMatrices row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
           "...\n";

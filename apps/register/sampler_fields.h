@@ -17,15 +17,20 @@ visitChains(OptionsT& options, Visitor& visit)
         chains.num_chains);
   visit({"chains", "num_draws", "samples", "N", "draws kept, over all chains"},
         chains.num_draws);
-  visit({"chains",
-         "num_burn_in",
-         "burn-in",
-         "N",
-         "steps at the start of each chain that are not kept; exact finds them"},
-        chains.num_burn_in);
   visit(
-      {"chains", "thinning", "thinning", "N", "steps per kept draw; exact finds them"},
-      chains.thinning);
+      {"chains",
+       "num_burn_in",
+       "burn-in",
+       "N",
+       "steps at the start of each chain that are not kept; exact and calibrated find "
+       "them"},
+      chains.num_burn_in);
+  visit({"chains",
+         "thinning",
+         "thinning",
+         "N",
+         "steps per kept draw; exact and calibrated find them"},
+        chains.thinning);
   visit(
       {"chains",
        "initial_spread_m_rad",

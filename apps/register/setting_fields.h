@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "register/calibrated_fields.h"
 #include "register/exact_fields.h"
 #include "register/field.h"
 #include "register/sampler_fields.h"
@@ -34,7 +35,7 @@ visitRegistration(SettingsT& settings, Visitor& visit)
          "max_distance_m",
          "max-distance,d",
          "M",
-         "largest distance of corresponding points [m]",
+         "largest distance of corresponding points [m]; with calibrated for ICP only",
          infinite,
          true},
         settings.max_distance);
@@ -77,7 +78,7 @@ visitPosterior(OptionsT& options, Visitor& visit)
        "preset",
        "NAME",
        "Algorithm 1 literally, a sampler that is right for the stated posterior, or a "
-       "scale found from the data (not available in this version)"},
+       "scale found from the clouds"},
       options.preset);
   visit(
       {"posterior",
@@ -106,7 +107,7 @@ visitPosterior(OptionsT& options, Visitor& visit)
        "prior-variance",
        "LIST",
        "prior variance of x,y,z [m^2] and roll,pitch,yaw [rad^2]: six numbers, or one "
-       "for all; inf is no prior",
+       "for all; inf is no prior, which calibrated does not take",
        infinite,
        true},
       options.prior.variance);
@@ -127,6 +128,7 @@ visitSettings(SettingsT& settings, Visitor& visit)
   visitPosterior(settings.options, visit);
   visitSampler(settings.options, visit);
   visitExact(settings.options.exact, visit);
+  visitCalibrated(settings.options.calibrated, visit);
 }
 
 } // namespace bayesian_icp::app

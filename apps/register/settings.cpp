@@ -9,8 +9,8 @@ namespace bayesian_icp::app {
 
 namespace {
 
-/** Finds the command line option of a field that Options::validate() complains about.
- */
+/** Finds the command line option of the first field that a complaint of
+ * Options::validate() may speak of. */
 struct OptionFinder {
   std::string complaint;
   std::string option;
@@ -21,11 +21,13 @@ struct OptionFinder {
   {
     const std::string key = field.key;
     const std::string name = nameInComplaint();
-    const bool is_in_group = complaint.rfind(std::string(field.group) + '.', 0) == 0 ||
-                             complaint.rfind("prior.", 0) != 0;
+    const bool names_group = complaint.find('.') < complaint.find(' ');
+    const bool is_in_group =
+        !names_group || complaint.rfind(std::string(field.group) + '.', 0) == 0;
     // Keys of a configuration file may end in a unit.
-    if (is_in_group && (key == name || key.rfind(name + "_m", 0) == 0 ||
-                        key.rfind(name + "_rad", 0) == 0))
+    if (option.empty() && is_in_group &&
+        (key == name || key.rfind(name + "_m", 0) == 0 ||
+         key.rfind(name + "_rad", 0) == 0))
       option = "--" + longNameOf(field);
   }
 

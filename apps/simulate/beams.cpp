@@ -115,7 +115,9 @@ Beams::disturbed(const Hit& hit, const RayDraws& draws) const
 {
   if (isLost(hit.angle_of_incidence, draws))
     return std::nullopt;
-  double reading = hit.reading + readingSigma(options_, hit.reading) * draws.reading;
+  const double sigma = readingSigma(options_, hit.reading) *
+                       incidenceFactor(options_, hit.angle_of_incidence);
+  double reading = hit.reading + sigma * draws.reading;
   if (draws.outlier < options_.outliers)
     reading += options_.outlier_spread * draws.outlier_offset;
   reading = quantised(reading);

@@ -109,6 +109,9 @@ takeSensor(const GivenOptions& given, SensorOptions& sensor)
   given.takeNumber("azimuth-step", sensor.lidar.azimuth_step);
   given.takeNumber("range-noise", sensor.lidar.range_noise);
   given.takeNumber("noise", sensor.noise);
+  given.takeNumber("noise-correlation", sensor.noise_correlation);
+  given.takeNumber("noise-correlation-pixels", sensor.noise_correlation_pixels);
+  given.takeNumber("incidence-noise", sensor.incidence_noise);
   given.takeNumber("dropout-from", sensor.dropout_from);
   given.takeNumber("outliers", sensor.outliers);
   given.takeNumber("outlier-spread", sensor.outlier_spread);

@@ -62,7 +62,7 @@ SimulationOptions
 defaultOptions(const std::string& scene)
 {
   makeScene(scene);
-  if (scene == "corridor")
+  if (scene == "corridor" || scene == "plain_corridor")
     return movingCamera(scene,
                         {{0.0, 0.0, 1.3}, {3.0, 0.0, 1.1}},
                         {{0.15, 0.03, 1.3}, {3.15, 0.15, 1.15}});
@@ -77,9 +77,13 @@ defaultOptions(const std::string& scene)
   if (scene == "ground")
     return movingLidar(
         scene, {{0.0, 0.0, 1.8}, {1.0, 0.0, 1.8}}, {{0.4, 0.05, 1.8}, {1.4, 0.1, 1.8}});
+  if (scene == "car" || scene == "tree")
+    return movingLidar(scene,
+                       {{-3.5, -3.0, 1.8}, {-2.5, -2.0, 1.8}},
+                       {{-3.1, -2.9, 1.8}, {-2.2, -1.8, 1.8}});
   if (scene == "table_top")
     return cameraOnObject(scene, {0.0, -0.2, 0.5}, {0.04, -0.22, 0.5});
-  if (scene == "table")
+  if (scene == "table" || scene == "table_plate")
     return cameraOnObject(scene, {0.0, -1.2, 0.9}, {0.3, -1.15, 0.9});
   if (scene == "bowl")
     return cameraOnObject(scene, {0.0, -0.7, 0.45}, {0.18, -0.68, 0.45});

@@ -78,6 +78,14 @@ makeTableTop()
 }
 
 Scene
+makeTablePlate()
+{
+  return {"an empty plate, 1.0 m x 0.8 m, 40 mm thick",
+          "nothing, but its edges alone hold x, y and the rotation about z",
+          {box("plate", {-0.5, -0.4, -0.04}, {0.5, 0.4, 0.0})}};
+}
+
+Scene
 makeTable()
 {
   Scene scene{"a table, 1.2 m x 0.8 m, with a mug, a can, a bowl, a carton and a book",

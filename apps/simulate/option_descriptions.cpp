@@ -65,13 +65,16 @@ sensorOptions()
   group.add_options()("height", text("N"), "camera: rows [pixels] (default 480)");
   group.add_options()(
       "fov", text("DEG"), "camera: horizontal field of view [degrees] (default 57)");
-  group.add_options()("rings", text("N"), "lidar: rings (default 16; room, ground 32)");
-  group.add_options()("min-elevation",
-                      text("DEG"),
-                      "lidar: lowest ring [degrees] (default -15; room, ground -30)");
-  group.add_options()("max-elevation",
-                      text("DEG"),
-                      "lidar: highest ring [degrees] (default 15; room, ground 10)");
+  group.add_options()(
+      "rings", text("N"), "lidar: rings (default 16; scenes with a lidar 32)");
+  group.add_options()(
+      "min-elevation",
+      text("DEG"),
+      "lidar: lowest ring [degrees] (default -15; scenes with a lidar -30)");
+  group.add_options()(
+      "max-elevation",
+      text("DEG"),
+      "lidar: highest ring [degrees] (default 15; scenes with a lidar 10)");
   group.add_options()(
       "azimuth-step", text("DEG"), "lidar: between rays [degrees] (default 0.4)");
   group.add_options()("min-range", text("M"), "nearest reading [m] (default 0.3)");
@@ -81,10 +84,10 @@ sensorOptions()
 }
 
 po::options_description
-errorOptions()
+noiseOptions()
 {
   po::options_description group(
-      "Errors of the sensor (a reading is a camera's depth or a "
+      "Noise of the readings (a reading is a camera's depth or a "
       "LiDAR's range; independent in source and target)");
   group.add_options()(
       "noise",
@@ -94,6 +97,26 @@ errorOptions()
   group.add_options()("range-noise",
                       text("M"),
                       "lidar: standard deviation of the range [m] (default 0.02)");
+  group.add_options()("noise-correlation",
+                      text("PART"),
+                      "part of the variance of the reading's noise, 0 to 1, that "
+                      "neighbouring rays share (default 0)");
+  group.add_options()("noise-correlation-pixels",
+                      text("N"),
+                      "standard deviation of the Gaussian that smooths the shared part "
+                      "[pixels; rings and azimuth steps] (default 2.5)");
+  group.add_options()("incidence-noise",
+                      text("POWER"),
+                      "divide the noise of the reading by cos(angle of incidence) to "
+                      "this power, 0 to 4; it grows tenfold at most (time-of-flight "
+                      "camera: about 1) (default 0)");
+  return group;
+}
+
+po::options_description
+errorOptions()
+{
+  po::options_description group("Other errors of the sensor");
   group.add_options()("lateral-noise",
                       text("FACTOR"),
                       "camera: factor on the noise across the ray, about 0.8 pixels "
@@ -125,7 +148,11 @@ po::options_description
 allOptions()
 {
   po::options_description all;
-  all.add(generalOptions()).add(viewOptions()).add(sensorOptions()).add(errorOptions());
+  all.add(generalOptions())
+      .add(viewOptions())
+      .add(sensorOptions())
+      .add(noiseOptions())
+      .add(errorOptions());
   return all;
 }
 

@@ -56,6 +56,16 @@ makeCorridor()
 }
 
 Scene
+makePlainCorridor()
+{
+  return {"an endless corridor, 2 m wide and 2.5 m high, with smooth walls",
+          "translation along it",
+          {floorPart(),
+           {"ceiling", [](const Vector3d& point) { return 2.5 - point.z(); }},
+           {"walls", [](const Vector3d& point) { return 1.0 - std::abs(point.y()); }}}};
+}
+
+Scene
 makeStairs()
 {
   constexpr double rise = 0.17;

@@ -49,6 +49,18 @@ addKindOfSensor(const SensorOptions& sensor, Json& options)
   options["range-noise"] = sensor.lidar.range_noise;
 }
 
+/** \brief What changes the noise of the reading, where it is switched on. */
+void
+addOptionalNoise(const SensorOptions& sensor, Json& options)
+{
+  if (sensor.noise_correlation > 0.0) {
+    options["noise-correlation"] = sensor.noise_correlation;
+    options["noise-correlation-pixels"] = sensor.noise_correlation_pixels;
+  }
+  if (sensor.incidence_noise > 0.0)
+    options["incidence-noise"] = sensor.incidence_noise;
+}
+
 Json
 quantisationOf(const SensorOptions& sensor)
 {
@@ -63,7 +75,8 @@ quantisationOf(const SensorOptions& sensor)
   return "none";
 }
 
-/** \brief Every option under its name on the command line. */
+/** \brief Every option under its name on the command line; of the noise that is
+ * correlated or grows with the angle of incidence only what is switched on. */
 Json
 optionsRecord(const SimulationOptions& simulation)
 {
@@ -81,6 +94,7 @@ optionsRecord(const SimulationOptions& simulation)
   options["min-range"] = sensor.min_range;
   options["max-range"] = sensor.max_range;
   options["noise"] = sensor.noise;
+  addOptionalNoise(sensor, options);
   options["quantisation"] = quantisationOf(sensor);
   options["dropout-from"] = sensor.dropout_from;
   options["outliers"] = sensor.outliers;

@@ -35,9 +35,9 @@ box(const std::string& name,
 
 /** \brief The floor z = 0. */
 inline ScenePart
-floorPart()
+floorPart(const std::string& name = "floor")
 {
-  return {"floor", [](const Eigen::Vector3d& point) { return point.z(); }};
+  return {name, [](const Eigen::Vector3d& point) { return point.z(); }};
 }
 
 Scene
@@ -57,11 +57,34 @@ makeMugHiddenHandle();
 Scene
 makeTableTop();
 
+/** \brief A smaller table top, for views that show its edges. */
+Scene
+makeTablePlate();
+
 Scene
 makeTable();
 
 Scene
+makeBox();
+
+Scene
+makeBracket();
+
+Scene
+makeCarton();
+
+Scene
+makeCube();
+
+Scene
+makeTool();
+
+Scene
 makeCorridor();
+
+/** \brief The corridor without its pillars. */
+Scene
+makePlainCorridor();
 
 Scene
 makeStairs();
@@ -71,6 +94,12 @@ makeRoom();
 
 Scene
 makeGround();
+
+Scene
+makeCar();
+
+Scene
+makeTree();
 
 } // namespace simulator
 } // namespace bayesian_icp

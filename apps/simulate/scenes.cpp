@@ -25,11 +25,20 @@ sceneMakers()
       {"mug", makeMug},
       {"mug_hidden_handle", makeMugHiddenHandle},
       {"table_top", makeTableTop},
+      {"table_plate", makeTablePlate},
       {"table", makeTable},
+      {"box", makeBox},
+      {"bracket", makeBracket},
+      {"carton", makeCarton},
+      {"cube", makeCube},
+      {"tool", makeTool},
       {"corridor", makeCorridor},
+      {"plain_corridor", makePlainCorridor},
       {"stairs", makeStairs},
       {"room", makeRoom},
-      {"ground", makeGround}};
+      {"ground", makeGround},
+      {"car", makeCar},
+      {"tree", makeTree}};
   return makers;
 }
 

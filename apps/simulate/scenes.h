@@ -2,8 +2,8 @@
  * \brief The scenes that can be scanned, as signed distance functions in metres.
  *
  * The world frame has z up. Its origin lies on the object: in the middle of the height
- * of a bowl, can or mug, on its axis; in the middle of the upper side of a table; on
- * the floor elsewhere.
+ * of a bowl, can or mug, on its axis; in the middle of the upper side of a table; at
+ * the foot of the other objects; on the floor elsewhere.
  */
 #pragma once
 

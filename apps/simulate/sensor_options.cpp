@@ -1,5 +1,6 @@
 #include "sensor_options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -88,12 +89,26 @@ readingSigma(const SensorOptions& options, double reading)
   return options.noise * (0.0012 + 0.0019 * beyond * beyond);
 }
 
+double
+incidenceFactor(const SensorOptions& options, double angle_of_incidence)
+{
+  constexpr double largest = 10.0;
+  if (options.incidence_noise <= 0.0)
+    return 1.0;
+  const double cosine = std::max(std::cos(angle_of_incidence), 0.0);
+  return std::min(std::pow(cosine, -options.incidence_noise), largest);
+}
+
 void
 validate(const SensorOptions& options)
 {
   validateCamera(options.camera);
   validateLidar(options.lidar);
   requireNotNegative("noise", options.noise);
+  requireWithin("noise-correlation", options.noise_correlation, 0.0, 1.0);
+  requireWithin(
+      "noise-correlation-pixels", options.noise_correlation_pixels, 0.1, 100.0);
+  requireWithin("incidence-noise", options.incidence_noise, 0.0, 4.0);
   if (options.quantisation == Quantisation::Step)
     requirePositive("quantisation", options.quantisation_step);
   if (options.quantisation == Quantisation::Kinect && options.kind == SensorKind::Lidar)

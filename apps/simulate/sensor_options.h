@@ -53,6 +53,15 @@ struct SensorOptions {
   /** Factor on the noise of the reading: 0.0012 + 0.0019 (z - 0.4)^2 m at depth z
    * (camera, Nguyen et al. 2012), or LidarOptions::range_noise. */
   double noise = 1.0;
+  /** Part of the variance of that noise, 0 to 1, that neighbouring rays share: a field
+   * that is smooth over the rows and columns of the scan. */
+  double noise_correlation = 0.0;
+  /** Standard deviation of the Gaussian that smooths the field [pixels; rings and
+   * azimuth steps of a LiDAR]. */
+  double noise_correlation_pixels = 2.5;
+  /** Power p of the factor incidenceFactor() on the noise of the reading, as of
+   * time-of-flight cameras; 0 for none. */
+  double incidence_noise = 0.0;
   Quantisation quantisation = Quantisation::None;
   /** [m] */
   double quantisation_step = 0.0;
@@ -79,9 +88,14 @@ numRows(const SensorOptions& options);
 int
 raysPerRow(const SensorOptions& options);
 
-/** \brief Standard deviation of a reading [m]. */
+/** \brief Standard deviation of a reading at perpendicular incidence [m]. */
 double
 readingSigma(const SensorOptions& options, double reading);
+
+/** \brief Factor on readingSigma() at an angle of incidence [rad]:
+ * 1 / cos(angle)^SensorOptions::incidence_noise, but at most 10. */
+double
+incidenceFactor(const SensorOptions& options, double angle_of_incidence);
 
 /** \brief Check every field.
  * \throws std::invalid_argument naming the option of the command line that sets it, the

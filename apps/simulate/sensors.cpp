@@ -1,6 +1,7 @@
 #include "sensors.h"
 
 #include "beams.h"
+#include "noise_field.h"
 
 #include <bayesian_icp/random.h>
 
@@ -45,13 +46,16 @@ scanScene(const Scene& scene,
   validate(options);
   const int rays_per_row = raysPerRow(options);
   const Beams beams(scene, options, T_world_sensor);
+  const NoiseField noise_field(options, seed, scan_number);
   std::vector<ScanRow> rows(static_cast<std::size_t>(numRows(options)));
 #pragma omp parallel for schedule(dynamic)
   for (int row = 0; row < numRows(options); ++row) {
     // A stream of random numbers per row: the same for any number of threads.
     Random random(seed, (std::uint64_t{scan_number} << 32) + row);
     for (int column = 0; column < rays_per_row; ++column) {
-      const auto point = beams.measure(row, column, RayDraws(random));
+      RayDraws draws(random);
+      draws.reading = noise_field.mixed(draws.reading, row, column);
+      const auto point = beams.measure(row, column, draws);
       if (!point)
         continue;
       rows[row].points.push_back(*point);

@@ -44,9 +44,10 @@ struct Progress {
   /** Chain that has just made a step, and its steps so far. */
   int chain;
   long chain_steps;
-  /** Steps of all chains so far, and of the complete run. Both are 0 while the chains
-   * of preset `exact` warm up: how many steps they need is not known before, and more
-   * are added if the draws have not mixed. */
+  /** Steps of all chains so far, and of the complete run. Both are 0 while preset
+   * `calibrated` makes its estimate and while the chains of `exact` warm up: how many
+   * steps they need is not known before, and more are added if the draws have not
+   * mixed. */
   long steps;
   long total_steps;
 };
@@ -90,7 +91,8 @@ struct ChainMode {
 struct ChainSet {
   std::vector<Chain> chains;
   bool cancelled = false;
-  /** Modes that were told apart; empty if nobody looked (preset `paper`). */
+  /** Modes that were told apart; empty if nobody looked (presets `paper` and
+   * `calibrated`). */
   std::vector<ChainMode> modes;
   /** Chains whose own mode was clearly worse and that were moved to another one, and
    * how much worse the nearest of those modes was [nats]. */

@@ -17,11 +17,27 @@ namespace bayesian_icp {
 enum class Observability {
   /** By the data. */
   Observed,
-  /** By the data, but hardly above their noise. */
+  /** By the data, but hardly above their noise, or less than by the prior. */
   Weak,
   /** Not by the data: the posterior is the prior. */
   PriorOnly
 };
+
+/** \brief CalibratedEstimate::keep below which a direction is weak: its information is
+ * then less than twice the threshold at which it would be left to the prior. */
+constexpr double min_observed_keep = 0.5;
+/** \brief Ratio of posterior to prior standard deviation from which a direction is
+ * weak: the data then say less about it than the prior does. */
+constexpr double max_observed_share_of_prior = 0.7071;
+/** \brief Ratio of posterior to prior standard deviation from which a direction is held
+ * by the prior only, whatever little the data add. */
+constexpr double max_share_of_prior = 0.99;
+/** \brief Flags are raised beyond these; why there: docs/calibration.md. */
+constexpr double max_basin_distance = 3.0;
+constexpr double min_active_fraction = 0.25;
+constexpr double min_effective_patches = 30.0;
+constexpr double max_residual_scale = 2.0;
+constexpr double max_correlation_factor = 10.0;
 
 /** \brief Short name: "observed", "weak", "prior_only". */
 BAYESIAN_ICP_EXPORT const char*
@@ -33,26 +49,28 @@ struct DataDirection {
    * squared displacement of the source's points [1, rad/m]. */
   Vector6d twist = Vector6d::Zero();
   /** Posterior and prior standard deviation along it, as root mean squared displacement
-   * of the source's points [m]. */
+   * of the source's points [m]. The prior's is that of this motion alone, without any
+   * other: the one that the posterior has where the data hold all others. */
   double standard_deviation = std::numeric_limits<double>::quiet_NaN();
   double prior_standard_deviation = std::numeric_limits<double>::quiet_NaN();
   /** Information of the data along it, in units of the prior's. */
   double relative_information = 0.0;
   Observability observability = Observability::Observed;
-  /** In words: "translation along (0.98, 0.10, 0.10)", "rotation about (0, 0, 1)
-   * through (0.10, 0.20, 0.05) m". */
+  /** In words: see describeTwist(). */
   std::string description;
 };
 
 /** \brief Things that make a posterior doubtful. */
 struct DataFlags {
-  /** The two starts ended more than 3 standard deviations apart. */
+  /** The two starts ended more than max_basin_distance standard deviations apart. */
   bool wrong_basin = false;
-  /** Too few source points lie on the target's surface. */
+  /** Less than min_active_fraction of the source points lie on the target's surface. */
   bool low_support = false;
-  /** Too few independent patches hold the pose for a Gaussian's quantiles. */
+  /** Fewer than min_effective_patches independent patches hold the pose: too few for a
+   * Gaussian's quantiles. */
   bool few_patches = false;
-  /** The surfaces disagree by more than the noise. */
+  /** The surfaces disagree by more than the noise: residual_scale above
+   * max_residual_scale, or correlation_factor above max_correlation_factor. */
   bool misfit = false;
 
   bool
@@ -70,13 +88,15 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   double noise_scale = std::numeric_limits<double>::quiet_NaN();
   /** The same in units of the target's own noise: 1 to 1.5 if all is well. */
   double residual_scale = std::numeric_limits<double>::quiet_NaN();
-  /** Number of independent patches of surface that the information amounts to. */
+  /** Number of independent patches of surface that the information amounts to: 96
+   * kappa_48 / kappa_inf, about 96 where neighbouring points are independent. */
   double effective_patches = std::numeric_limits<double>::quiet_NaN();
   /** Share of the source points that lie on the target's surface, in [0, 1]. */
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
   /** kappa_inf: by how much neighbouring points repeat each other. */
   double correlation_factor = std::numeric_limits<double>::quiet_NaN();
-  /** Distance between the ends of the two starts, in posterior standard deviations. */
+  /** Distance between the ends of the two starts, in posterior standard deviations
+   * (Mahalanobis). */
   double basin_distance = std::numeric_limits<double>::quiet_NaN();
   /** Centre of the twists: the moved source's centroid, target frame [m]. */
   Eigen::Vector3d centre =
@@ -86,7 +106,12 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   DataFlags flags;
 };
 
-/** \brief A twist about \p centre in words, as in DataDirection::description. */
+/** \brief A twist in words: "translation along (0.98, 0.10, 0.10)", "rotation about
+ * (0.00, 0.00, 1.00) through (0.100, 0.200, 0.050) m", "screw about ... with a pitch of
+ * 0.250 m/rad". Opposite twists have the same words. Translation is what moves all
+ * points nearly alike; the point is the axis' nearest to the centre.
+ * \param[in] twist left, target frame, of unit root mean squared displacement [1,
+ * rad/m] \param[in] centre of the twist, target frame [m] */
 BAYESIAN_ICP_EXPORT std::string
 describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre);
 

@@ -23,9 +23,14 @@ enum class Preset {
   Paper,
   /** A sampler whose draws are right for the stated likelihood and prior. */
   Exact,
-  /** A likelihood whose scale is found from the data. Not available yet. */
+  /** A likelihood whose scale and correlations are found from the clouds: distances to
+   * the target's surface in units of its own noise, and a covariance that is that of
+   * the robust estimate. Motions that the clouds do not hold stay at the prior. */
   Calibrated
 };
+
+/** \brief The preset of whoever does not choose one. */
+constexpr Preset default_preset = Preset::Paper;
 
 /** \brief Short name: "paper", "exact", "calibrated". */
 BAYESIAN_ICP_EXPORT const char*
@@ -54,22 +59,43 @@ struct ExactOptions {
   int max_source_points = 4000;
 };
 
-/** \brief Options of the estimate; the defaults are the preset `paper`.
+/** \brief What only preset `calibrated` has. */
+struct CalibratedOptions {
+  /** Largest number of source points that are used; of a larger source so many are
+   * chosen at random (chains.seed), since every so-manyth point of a scan would be a
+   * pattern. Time is proportional to it. At least min_calibrated_points. */
+  int max_source_points = 2000;
+  /** Of these, points on which the starts are followed to their modes. At least
+   * min_calibrated_points; more than there are is taken as all. */
+  int num_mode_points = 500;
+};
+
+/** \brief Fewest points of a cloud with which preset `calibrated` can do anything:
+ * those of one neighbourhood of its surface model. */
+constexpr int min_calibrated_points = 30;
+
+/** \brief Options of the estimate; defaults of numbers are the paper's.
  *
  * Preset `exact` finds mini_batch.batch_size, sgld.step_size, chains.num_burn_in and
  * chains.thinning itself where they have their defaults; any other value is obeyed
  * (step_size in (0, 1] is then the largest step, 1 a Newton step). Its chains start
  * chains.initial_spread about the initial guess; where that is zero, as widely as the
  * prior allows, but at most 0.5 m and 0.5 rad. It draws its mini-batches without
- * replacement and uses no other field of sgld. */
+ * replacement and uses no other field of sgld.
+ *
+ * Preset `calibrated` finds its scale, step sizes and starts itself: it uses prior,
+ * whose variances must be finite, chains but for chains.initial_spread, and calibrated;
+ * all else has no effect on it. chains.num_burn_in and chains.thinning are automatic
+ * where they have their defaults. It starts at the prior's mean. */
 struct Options {
-  Preset preset = Preset::Paper;
+  Preset preset = default_preset;
   LikelihoodOptions likelihood;
   PriorOptions prior;
   MiniBatchOptions mini_batch;
   SgldOptions sgld;
   ChainOptions chains;
   ExactOptions exact;
+  CalibratedOptions calibrated;
 
   /** \brief Check every field.
    * \return what is wrong with the first bad one: its name, its value and the allowed

@@ -24,7 +24,8 @@ constexpr std::size_t min_correspondences = 3;
 
 /** \brief Sample the posterior of the source-to-target pose by options.preset.
  * \param[in] source_points 3 x n, finite, source frame [m]
- * \param[in] search finds correspondences in the target, within its gate
+ * \param[in] search finds correspondences in the target, within its gate; preset
+ *            `calibrated`, which needs the target's points, is refused here
  * \param[in] initial_pose start of the chains, and mean of the prior unless the options
  *            say otherwise [m, rad]
  * \return an estimate whose summary.status says what happened; bad options or input
@@ -37,9 +38,20 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());
 
+/** \brief The same for a target given by its points, of which it makes what the preset
+ * needs: the one way for preset `calibrated` that keeps all digits of far coordinates.
+ * \param[in] target_points 3 x n, target frame [m]; not finite ones are left out */
+BAYESIAN_ICP_EXPORT PosteriorEstimate
+estimatePosterior(const Eigen::Matrix3Xd& source_points,
+                  const Eigen::Matrix3Xd& target_points,
+                  const Vector6d& initial_pose,
+                  const Options& options,
+                  const ProgressCallback& progress = ProgressCallback());
+
 /** \brief The same with nearest neighbours in \p target_tree, within
  * options.exact.residual.max_distance: the fast way for preset `exact`, and the only
- * one with Residual::PointToPlane (normals are those of patches of the target). */
+ * one with Residual::PointToPlane (normals are those of patches of the target). Preset
+ * `calibrated` takes the tree's points. */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const KdTree& target_tree,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <bayesian_icp/chains.h>
+#include <bayesian_icp/data_report.h>
 #include <bayesian_icp/pose.h>
 
 #include <array>
@@ -18,6 +19,9 @@ enum class Status {
   NotRun,
   /** Every R-hat <= 1.01 and every bulk and tail ESS >= 400. */
   Ok,
+  /** As Ok, but something in the clouds calls for caution: see Summary::data (preset
+   * `calibrated`). The draws are good ones of a posterior that may be wrong. */
+  Doubtful,
   /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them undefined: mean
    * and covariance describe the draws, but not reliably the posterior. */
   NotMixed,
@@ -32,7 +36,8 @@ enum class Status {
   /** The callback asked to stop; what was drawn until then is there. */
   Cancelled,
   /** Too few source points have a target point within the maximum correspondence
-   * distance at the initial guess; nothing was drawn. */
+   * distance at the initial guess, or (preset `calibrated`) lie on a usable surface of
+   * the target; nothing was drawn. */
   TooFewCorrespondences,
   /** An option is out of its range; nothing was drawn. */
   InvalidOptions,
@@ -40,9 +45,14 @@ enum class Status {
   InvalidInput
 };
 
-/** \brief Short name of a status: "ok", "not_mixed", "too_few_correspondences", ... */
+/** \brief Short name of a status: "ok", "doubtful", "too_few_correspondences", ... */
 BAYESIAN_ICP_EXPORT const char*
 toString(Status status);
+
+/** \brief Whether mean and covariance describe one posterior, well or badly: Ok,
+ * Doubtful or NotMixed. */
+BAYESIAN_ICP_EXPORT bool
+hasUsableMean(Status status);
 
 /** \brief Largest R-hat and smallest bulk and tail effective sample size that count as
  * mixed (Vehtari et al. 2021). */
@@ -94,8 +104,10 @@ struct BAYESIAN_ICP_EXPORT Summary {
   /** Draws behind mean and covariance: those of the chains that did not diverge. */
   long num_draws = 0;
   /** Modes in which the chains are, heaviest first; empty if nobody looked for them
-   * (preset `paper`). */
+   * (presets `paper` and `calibrated`). */
   std::vector<Mode> modes;
+  /** What the clouds say about the pose (preset `calibrated`). */
+  DataReport data;
 
   /** 6x6 covariances [m, rad], one a CovarianceConvention in its order: second moment
    * of the draws' poseError about the mean, over num_draws - 1. NaN with fewer than two

@@ -30,6 +30,10 @@ constexpr double min_shortened = 0.2;
 /** A secant is clear if its information is so many times the noise threshold. */
 constexpr double clear_to_threshold = 2.0;
 
+/** Where the information is so many times the noise threshold, only the noise's mean is
+ * debited. */
+constexpr double full_to_threshold = 3.0;
+
 constexpr int num_noise_clusters = 48;
 constexpr int num_noise_partitions = 3;
 
@@ -152,6 +156,17 @@ struct PrincipalAxes {
   }
 };
 
+/** What a secant's noise of mean information \p noise is debited with: so much that
+ * nothing is left up to the threshold, its mean where that is far exceeded, and in
+ * between a line from the one to the other. */
+double
+noiseDebit(double information, double noise, double threshold)
+{
+  const double above =
+      (information / noise / threshold - 1.0) / (full_to_threshold - 1.0);
+  return noise * (threshold + (1.0 - threshold) * std::clamp(above, 0.0, 1.0));
+}
+
 } // namespace
 
 Secants
@@ -222,10 +237,14 @@ debitedInformation(const Secants& secants,
   result.raw = (HV.transpose() * J.solve(HV)).diagonal();
   for (int k = 0; k < 6; ++k) {
     const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
-    const double debit =
-        noiseThreshold(score_covariance, noise) * J.solve(noise).trace();
     const Vector6d step = secants.steps.col(k);
-    const double kept = result.raw[k] - debit;
+    const double mean_noise = J.solve(noise).trace();
+    const double kept =
+        result.raw[k] - (mean_noise > 0.0
+                             ? noiseDebit(result.raw[k],
+                                          mean_noise,
+                                          noiseThreshold(score_covariance, noise))
+                             : 0.0);
     const bool is_held = kept > 0.0 && kept >= min_relative_information *
                                                    step.dot(prior_precision * step);
     result.keep[k] = is_held ? kept / result.raw[k] : 0.0;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace bayesian_icp {
 
@@ -26,6 +27,11 @@ constexpr int max_growth_for_width = 16;
 constexpr double wanted_aspect = 0.35;
 /** Patches narrower than this ratio are not usable. */
 constexpr double min_aspect = 0.2;
+
+/** Points are gathered in a ball and then chosen by their distance in the plane of the
+ * surface: a ball prefers, at its rim, points whose noise brings them nearer to its
+ * centre, and surfaces would look flatter than they are. */
+constexpr double ball_to_neighborhood = 1.5;
 
 constexpr int num_quadric_terms = 6;
 constexpr int num_quartic_terms = 15;
@@ -140,6 +146,42 @@ fitQuadric(const Matrix3Xd& local,
                     patch.radius > options.min_radius_to_noise * patch.sigma;
 }
 
+/** The \p count points around \p point that are nearest to it in the plane of the
+ * surface, relative to it, into workspace.neighbors. */
+void
+gatherNeighbors(const PointNeighbors& cloud,
+                const Vector3f& point,
+                int count,
+                PatchFitWorkspace& workspace)
+{
+  cloud.find(point,
+             static_cast<std::size_t>(ball_to_neighborhood * count),
+             workspace.indices,
+             workspace.squared_distances);
+  Matrix3Xd ball(3, static_cast<Eigen::Index>(workspace.indices.size()));
+  for (Eigen::Index i = 0; i < ball.cols(); ++i)
+    ball.col(i) =
+        (cloud.points().col(workspace.indices[static_cast<std::size_t>(i)]) - point)
+            .cast<double>();
+  const auto plane = principalFrame(ball).axes.leftCols<2>();
+  const Eigen::VectorXd squared_distances =
+      (plane.transpose() * ball).colwise().squaredNorm();
+  auto& order = workspace.order;
+  order.resize(workspace.indices.size());
+  std::iota(order.begin(), order.end(), Eigen::Index(0));
+  count = std::min(count, static_cast<int>(order.size()));
+  std::partial_sort(order.begin(),
+                    order.begin() + count,
+                    order.end(),
+                    [&](Eigen::Index a, Eigen::Index b) {
+                      return squared_distances[a] < squared_distances[b] ||
+                             (squared_distances[a] == squared_distances[b] && a < b);
+                    });
+  workspace.neighbors.resize(3, count);
+  for (int i = 0; i < count; ++i)
+    workspace.neighbors.col(i) = ball.col(order[static_cast<std::size_t>(i)]);
+}
+
 } // namespace
 
 struct PointNeighbors::Index {
@@ -215,16 +257,8 @@ fitPatch(const PointNeighbors& cloud,
   patch.quadric.fill(0.0);
   for (int growth = 1;; growth *= 2) {
     const int count = std::min(growth * options.num_neighbors, num_points);
-    cloud.find(point,
-               static_cast<std::size_t>(count),
-               workspace.indices,
-               workspace.squared_distances);
-    Matrix3Xd& neighbors = workspace.neighbors;
-    neighbors.resize(3, static_cast<Eigen::Index>(workspace.indices.size()));
-    for (Eigen::Index i = 0; i < neighbors.cols(); ++i)
-      neighbors.col(i) =
-          (cloud.points().col(workspace.indices[static_cast<std::size_t>(i)]) - point)
-              .cast<double>();
+    gatherNeighbors(cloud, point, count, workspace);
+    const Matrix3Xd& neighbors = workspace.neighbors;
     const PrincipalFrame frame = principalFrame(neighbors);
     const Matrix3Xd local = frame.axes.transpose() * neighbors;
     patch.axes = frame.axes;
@@ -232,9 +266,9 @@ fitPatch(const PointNeighbors& cloud,
     const bool is_thick = patch.radius < options.min_radius_to_noise * frame.thickness;
     const bool is_narrow = frame.aspect < wanted_aspect;
     const int next = 2 * growth;
-    const bool can_grow = next * options.num_neighbors <= num_points;
-    if (can_grow && ((is_thick && next <= max_growth_for_noise) ||
-                     (is_narrow && next <= max_growth_for_width)))
+    if (next * options.num_neighbors <= num_points &&
+        ((is_thick && next <= max_growth_for_noise) ||
+         (is_narrow && next <= max_growth_for_width)))
       continue;
     spacing = workspace.squared_distances.size() > 1
                   ? std::sqrt(double(workspace.squared_distances[1]))

@@ -46,6 +46,7 @@ private:
 struct PatchFitWorkspace {
   std::vector<std::uint32_t> indices;
   std::vector<float> squared_distances;
+  std::vector<Eigen::Index> order;
   Eigen::Matrix3Xd neighbors;
 };
 

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace bayesian_icp {
@@ -204,10 +205,12 @@ scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
   const double kappa_24 = kappa(clustered(24, 12));
   const double kappa_96 = kappa(clustered(96, 8));
   result.kappa_48 = kappa(J_48);
-  // Block extrapolation: what is missed at the borders of clusters shrinks with their
-  // surface, about by half from 48 to 12 and from 96 to 24.
-  result.kappa_inf = std::max(
-      {1.0, kappa_24, kappa_24 + kappa_12 - 0.5 * (kappa_96 + result.kappa_48)});
+  // Points at the border of a square cluster of side a miss a part of their neighbours
+  // that shrinks as 1 / a on each axis: sqrt(kappa) = sqrt(kappa_inf) (1 - b / a), and
+  // a is twice as large for 12 clusters as for 48, and for 24 as for 96.
+  const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
+                      0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
+  result.kappa_inf = std::max({1.0, kappa_24, root * root});
   result.covariance = 0.5 * result.kappa_inf * (J_48 / result.kappa_48 + independent);
   return result;
 }

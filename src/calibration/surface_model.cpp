@@ -259,8 +259,7 @@ offsetFrom(const SurfacePatch& patch, const Vector3d& point)
   SurfaceOffset offset;
   offset.distance = (local.z() - height) / length;
   offset.normal = patch.axes * Vector3d(-slope_x, -slope_y, 1.0) / length;
-  offset.in_plane =
-      (patch.axes.leftCols<2>().transpose() * (point - patch.centre)).norm();
+  offset.in_plane = local.head<2>().norm();
   return offset;
 }
 

@@ -121,10 +121,6 @@ class Usage(ToolTest):
                 result = run("a.pcd", "b.pcd", f"--{name}", value)
                 self.assert_refused(2, result, f"--{name}: ", complaint)
 
-    def test_presets_to_come_are_refused(self):
-        result = run("a.pcd", "b.pcd", "--preset", "calibrated")
-        self.assert_refused(2, result, "--preset", "calibrated", "not available in this version")
-
     def test_quiet_and_json_exclude_each_other(self):
         self.assert_refused(2, run("a.pcd", "b.pcd", "--quiet", "--json"), "--json", "--quiet")
 

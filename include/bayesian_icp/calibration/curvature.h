@@ -58,7 +58,9 @@ noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise);
 
 /** \brief What is left of the curvature after its noise is debited. */
 struct DebitedInformation {
-  /** keep_k = max(0, 1 - c tr(J^-1 N_k) / info_k), one a step. */
+  /** keep_k = max(0, 1 - d_k / info_k), one a step: d_k is c tr(J^-1 N_k), c of
+   * noiseThreshold(), where info_k is no more than that, falling to the noise's mean
+   * tr(J^-1 N_k) where it is three times that. */
   Vector6d keep = Vector6d::Zero();
   /** info_k: information of the data along each step before the debit. */
   Vector6d raw = Vector6d::Zero();

@@ -37,7 +37,7 @@ struct SurfacePatch {
 struct SurfaceOffset {
   /** Signed, across the surface, to first order in the surface's slope [m]. */
   double distance;
-  /** In the plane of x and y, from the patch's centre [m]. */
+  /** In the plane of x and y, from the patch's origin [m]. */
   double in_plane;
   /** Unit normal of the surface under the point. */
   Eigen::Vector3d normal;

@@ -22,7 +22,13 @@ namespace pcl {
  * and maximum correspondence distance that the object was given. With
  * setPreset(Preset::Exact) the sampler is one whose draws are right for the stated
  * measurement sigma, effective points, gate and prior; it takes its own search tree
- * unless a search of the user's own is installed.
+ * unless a search of the user's own is installed. setPreset(Preset::Calibrated) finds
+ * the scale from the clouds, and getSummary().data says how well they hold the pose in
+ * each direction. It measures distances to the surface of the target points that the
+ * object searches (all, those of the indices set on its estimation, or those of a ready
+ * tree); rejectors, reciprocity, an own estimation and the maximum correspondence
+ * distance are for ICP alone then, as each source point is judged in units of the
+ * noise.
  *
  * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
  * transformation, guess included; translation in the target frame, R = Rz(yaw)
@@ -131,10 +137,13 @@ public:
     return (options_);
   }
 
-  /** \brief Which posterior, and how it is sampled. A preset that this version does not
-   * have is an error, and no posterior is estimated until another one is set. */
+  /** \brief Which posterior, and how it is sampled. Options that a preset does not use
+   * have no effect with it: see bayesian_icp::Options. */
   void
-  setPreset(bayesian_icp::Preset preset);
+  setPreset(bayesian_icp::Preset preset)
+  {
+    options_.preset = preset;
+  }
 
   void
   setNumberOfChains(int num_chains)
@@ -241,8 +250,9 @@ public:
   }
 
   /** \brief Make the posterior mean the final transformation (and the output cloud), in
-   * place of ICP's result, where the status is Ok or NotMixed. A transformation
-   * estimation set by the user is given the last word: what it makes of the mean. */
+   * place of ICP's result, where the status is Ok, Doubtful or NotMixed. A
+   * transformation estimation set by the user is given the last word: what it makes of
+   * the mean. */
   void
   setUseMeanAsFinalTransformation(bool use_mean)
   {
@@ -305,8 +315,22 @@ private:
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
 
+  bayesian_icp::PosteriorEstimate
+  estimateByPreset(const PointCloudSourceConstPtr& source, const Vector6d& start);
+
   bool
   hasDefaultEstimation() const;
+
+  /** \brief Whether pairs are those of the nearest points, no more and no fewer. */
+  bool
+  hasPlainCorrespondences() const;
+
+  /** \brief The target points that the search tree finds. */
+  Eigen::Matrix3Xd
+  searchedTargetPoints() const;
+
+  void
+  reportStatus() const;
 
   /** \brief Whether the target tree is not a ready one of the user's, or of a selection
    * of the target: only then may another tree over the target stand in for it. */

@@ -91,19 +91,6 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getMeanTransfor
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setPreset(
-    bayesian_icp::Preset preset)
-{
-  options_.preset = preset;
-  if (preset == bayesian_icp::Preset::Calibrated)
-    PCL_ERROR("[pcl::%s::setPreset] The preset '%s' is not available in this version; "
-              "no posterior will be estimated.\n",
-              getClassName().c_str(),
-              bayesian_icp::toString(preset));
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
 double
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getFitnessScore(
     double max_range)
@@ -234,26 +221,49 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
               summary.message.c_str());
     return;
   }
+  estimate_ = estimateByPreset(source, bayesian_icp::poseOf(initial));
+  reportStatus();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bayesian_icp::PosteriorEstimate
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPreset(
+    const PointCloudSourceConstPtr& source, const Vector6d& start)
+{
   const auto points = bayesian_icp_detail::pointMatrix(*source);
-  const auto start = bayesian_icp::poseOf(initial);
   bayesian_icp::Options options = options_;
   options.exact.residual.max_distance = bayesian_icp_detail::smallerGate(
       options.exact.residual.max_distance, corr_dist_threshold_);
-  if (options.preset == bayesian_icp::Preset::Exact && hasDefaultEstimation() &&
-      correspondence_rejectors_.empty() && !use_reciprocal_correspondence_ &&
+  if (options.preset == bayesian_icp::Preset::Calibrated) {
+    if (!hasPlainCorrespondences())
+      PCL_WARN("[pcl::%s::computeTransformation] Rejectors, reciprocal pairs and "
+               "searches of the user's own are for ICP alone with preset calibrated, "
+               "which matches points to the target's surface.\n",
+               getClassName().c_str());
+    return (bayesian_icp::estimatePosterior(
+        points, searchedTargetPoints(), start, options, progress_callback_));
+  }
+  if (options.preset == bayesian_icp::Preset::Exact && hasPlainCorrespondences() &&
       isTreeOfWholeTarget())
-    estimate_ = bayesian_icp::estimatePosterior(
+    return (bayesian_icp::estimatePosterior(
         points,
         bayesian_icp::KdTree(
             bayesian_icp_detail::pointMatrix(*target_).template cast<float>(),
             options.chains.num_threads),
         start,
         options,
-        progress_callback_);
-  else
-    estimate_ = bayesian_icp::estimatePosterior(
-        points, *makeCorrespondenceSearch(source), start, options, progress_callback_);
-  if (summary.status == bayesian_icp::Status::NotMixed ||
+        progress_callback_));
+  return (bayesian_icp::estimatePosterior(
+      points, *makeCorrespondenceSearch(source), start, options, progress_callback_));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::reportStatus() const
+{
+  const auto& summary = estimate_.summary;
+  if (summary.status == bayesian_icp::Status::Doubtful ||
+      summary.status == bayesian_icp::Status::NotMixed ||
       summary.status == bayesian_icp::Status::SeveralModes ||
       summary.status == bayesian_icp::Status::Diverged)
     PCL_WARN("[pcl::%s::computeTransformation] Posterior: %s.\n",
@@ -277,6 +287,33 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::hasDefaultEstim
   return (bayesian_icp_detail::isDefaultTree(*tree_) &&
           (!use_reciprocal_correspondence_ ||
            bayesian_icp_detail::isDefaultTree(*tree_reciprocal_)));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
+    hasPlainCorrespondences() const
+{
+  return (hasDefaultEstimation() && correspondence_rejectors_.empty() &&
+          !use_reciprocal_correspondence_);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+Eigen::Matrix3Xd
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::searchedTargetPoints()
+    const
+{
+  using namespace bayesian_icp_detail;
+  const bool is_ready_tree = force_no_recompute_ && tree_->getInputCloud();
+  const auto& cloud = is_ready_tree ? *tree_->getInputCloud() : *target_;
+  const IndicesConstPtr selected =
+      is_ready_tree ? tree_->getIndices()
+                    : IndicesConstPtr(correspondence_estimation_->getIndicesTarget());
+  if (!selected || selected->empty())
+    return (pointMatrix(cloud));
+  PointCloud<PointTarget> selection;
+  copyPointCloud(cloud, *selected, selection);
+  return (pointMatrix(selection));
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -322,8 +359,7 @@ bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::moveToMean(
     const PointCloudSource& source)
 {
-  const auto status = estimate_.summary.status;
-  if (status != bayesian_icp::Status::Ok && status != bayesian_icp::Status::NotMixed)
+  if (!bayesian_icp::hasUsableMean(estimate_.summary.status))
     return (false);
   Matrix4 mean = getMeanTransformation();
   const auto& estimation = *transformation_estimation_;

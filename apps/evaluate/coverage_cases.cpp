@@ -1,0 +1,190 @@
+#include "coverage_cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+namespace bayesian_icp::evaluate {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+using simulator::SensorKind;
+using simulator::SensorOptions;
+using simulator::View;
+
+namespace {
+
+/** \brief Sensors and views of both scans, and the part of the target that gets lost.
+ */
+struct ScanPlan {
+  SensorOptions source_sensor;
+  SensorOptions target_sensor;
+  View source_view;
+  View target_view;
+  double lost_part = 0.0;
+};
+
+/** \brief A number that differs from case to case (64 bit FNV-1a), so that cases of one
+ * seed share no random numbers. */
+std::uint64_t
+streamOf(const std::string& scene, const std::string& condition)
+{
+  std::uint64_t hash = 14695981039346656037u;
+  std::string name = scene;
+  name.append("/").append(condition);
+  for (const char character : name) {
+    hash ^= static_cast<unsigned char>(character);
+    hash *= 1099511628211u;
+  }
+  return hash;
+}
+
+void
+halveResolution(SensorOptions& sensor)
+{
+  sensor.camera.width /= 2;
+  sensor.camera.height /= 2;
+  sensor.lidar.rings /= 2;
+  sensor.lidar.azimuth_step *= 2.0;
+}
+
+void
+correlateNoise(SensorOptions& sensor)
+{
+  sensor.noise_correlation = 0.7;
+  const bool is_camera = sensor.kind == SensorKind::DepthCamera;
+  sensor.quantisation =
+      is_camera ? simulator::Quantisation::Kinect : simulator::Quantisation::Step;
+  sensor.quantisation_step = 0.01;
+}
+
+void
+addOutliers(SensorOptions& sensor)
+{
+  sensor.outliers = 0.05;
+  // Uniform within +-spread, so with a standard deviation of 0.1 m.
+  sensor.outlier_spread = 0.1 * std::sqrt(3.0);
+}
+
+ScanPlan
+planScans(const CoverageSetup& setup, const std::string& condition, Random& random)
+{
+  ScanPlan plan{setup.sensor, setup.sensor, setup.view, setup.view};
+  if (condition == "moved")
+    plan.source_view = secondView(setup, 1.0, random);
+  else if (condition == "half")
+    halveResolution(plan.source_sensor);
+  else if (condition == "noise3") {
+    plan.source_sensor.noise *= 3.0;
+    plan.target_sensor.noise *= 3.0;
+  }
+  else if (condition == "correlated") {
+    correlateNoise(plan.source_sensor);
+    correlateNoise(plan.target_sensor);
+  }
+  else if (condition == "outliers")
+    addOutliers(plan.source_sensor);
+  else if (condition == "lost20" || condition == "lost50") {
+    plan.source_view = secondView(setup, 0.25, random);
+    plan.lost_part = condition == "lost20" ? 0.2 : 0.5;
+  }
+  else if (condition != "same")
+    throw std::invalid_argument("the coverage study has no condition '" + condition +
+                                "'");
+  return plan;
+}
+
+/** \brief The value that \p part of \p values exceed. */
+double
+upperQuantile(Eigen::VectorXd values, double part)
+{
+  const auto rank =
+      static_cast<Eigen::Index>(part * static_cast<double>(values.size()));
+  const auto begin = values.data();
+  std::nth_element(begin, begin + rank, begin + values.size(), std::greater<double>());
+  return values[rank];
+}
+
+/** \brief \p target without its points beyond the plane that has \p part of \p source
+ * beyond it; its normal is drawn from the plane of the first two axes of the sensor. */
+Matrix3Xd
+withoutLostPart(const Matrix3Xd& target,
+                const Matrix3Xd& source,
+                const Isometry3d& T_world_sensor,
+                double part,
+                Random& random)
+{
+  const double angle = 2.0 * 3.14159265358979323846 * random.uniform();
+  const Vector3d normal =
+      T_world_sensor.linear() * Vector3d(std::cos(angle), std::sin(angle), 0.0);
+  const double limit = upperQuantile(source.transpose() * normal, part);
+  Matrix3Xd kept(3, target.cols());
+  Eigen::Index num_kept = 0;
+  for (Eigen::Index i = 0; i < target.cols(); ++i)
+    if (normal.dot(target.col(i)) < limit)
+      kept.col(num_kept++) = target.col(i);
+  return kept.leftCols(num_kept);
+}
+
+/** \brief Draw the true pose and move the source, which comes in the target frame, by
+ * its inverse. */
+void
+moveSource(Random& random, CoverageCase& drawn)
+{
+  const Vector6d deviation = drawn.prior_sd.cwiseProduct(random.normal6());
+  Vector6d turn = deviation;
+  turn.head<3>().setZero();
+  const Eigen::Matrix3d rotation = rotationOf(turn);
+  const Vector3d shift = deviation.head<3>();
+  const Vector3d centroid = drawn.source.rowwise().mean();
+  // The centroid of the moved source, which the prior speaks of, is this one.
+  const Vector3d moved_centroid = centroid - shift;
+  drawn.source.colwise() -= centroid;
+  drawn.source = (rotation.transpose() * drawn.source).eval();
+  drawn.source.colwise() += moved_centroid;
+  drawn.truth.linear() = rotation;
+  drawn.truth.translation() = centroid - rotation * moved_centroid;
+}
+
+} // namespace
+
+const std::vector<std::string>&
+coverageConditions()
+{
+  static const std::vector<std::string> names = {
+      "same", "moved", "half", "noise3", "correlated", "outliers", "lost20", "lost50"};
+  return names;
+}
+
+CoverageCase
+makeCoverageCase(const std::string& scene,
+                 const std::string& condition,
+                 std::uint64_t seed)
+{
+  const CoverageSetup setup = coverageSetup(scene);
+  Random random(seed, streamOf(scene, condition));
+  const ScanPlan plan = planScans(setup, condition, random);
+  const std::uint64_t scan_seed = random.index(std::size_t{1} << 62);
+  const simulator::Scene solids = simulator::makeScene(setup.simulated_scene);
+  const Isometry3d target_pose = sensorPose(plan.target_sensor.kind, plan.target_view);
+  const Isometry3d source_pose = sensorPose(plan.source_sensor.kind, plan.source_view);
+
+  CoverageCase made;
+  made.scene = scene;
+  made.condition = condition;
+  made.seed = seed;
+  made.prior_sd = setup.prior_sd;
+  made.target = target_pose *
+                scanScene(solids, plan.target_sensor, target_pose, scan_seed, 0).points;
+  made.source = source_pose *
+                scanScene(solids, plan.source_sensor, source_pose, scan_seed, 1).points;
+  if (plan.lost_part > 0.0)
+    made.target =
+        withoutLostPart(made.target, made.source, target_pose, plan.lost_part, random);
+  moveSource(random, made);
+  return made;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,174 @@
+#include "coverage_command.h"
+
+#include "coverage_cases.h"
+#include "coverage_options.h"
+#include "coverage_plots.h"
+#include "coverage_real.h"
+#include "coverage_study.h"
+#include "coverage_table.h"
+
+#include <io/cloud_file.h>
+#include <io/errors.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+constexpr std::size_t num_quick_scenes = 2;
+
+/** What is there to choose from, and how it is made. */
+struct Offer {
+  Names scenes;
+  Names conditions;
+  CoverageCaseMaker make_case;
+};
+
+Offer
+simulatedOffer()
+{
+  Offer offer;
+  offer.scenes = tunedScenes();
+  for (const std::string& scene : newScenes())
+    offer.scenes.push_back(scene);
+  offer.conditions = coverageConditions();
+  offer.make_case = [](const CoverageCaseName& name) {
+    return makeCoverageCase(name.scene, name.condition, name.seed);
+  };
+  return offer;
+}
+
+Offer
+realOffer(const std::string& folder)
+{
+  const auto pairs = std::make_shared<const RealPairs>(folder);
+  Offer offer;
+  offer.scenes = pairs->names();
+  offer.conditions = {"real"};
+  offer.make_case = [pairs](const CoverageCaseName& name) {
+    return pairs->makeCase(name.scene, name.seed);
+  };
+  return offer;
+}
+
+/** The names asked for, all of \p known if none are.
+ * \throws io::UsageError of one that is not known */
+Names
+chosen(const Names& asked, const Names& known, const std::string& option)
+{
+  for (const std::string& name : asked)
+    if (std::count(known.begin(), known.end(), name) == 0) {
+      std::string all;
+      for (const std::string& other : known)
+        all += ' ' + other;
+      throw io::UsageError("--" + option + ": there is no " + io::quoted(name) +
+                           ", but" + all);
+    }
+  return asked.empty() ? known : asked;
+}
+
+/** The scenes asked for, `tuned` and `new` replaced by their scenes. */
+Names
+expanded(const CoverageOptions& options)
+{
+  Names scenes;
+  for (const std::string& name : options.scenes) {
+    const bool is_set =
+        options.real_folder.empty() && (name == "tuned" || name == "new");
+    const Names set = !is_set         ? Names{name}
+                      : name == "new" ? newScenes()
+                                      : tunedScenes();
+    scenes.insert(scenes.end(), set.begin(), set.end());
+  }
+  return scenes;
+}
+
+CoverageStudy
+studyOf(const CoverageOptions& options)
+{
+  const Offer offer =
+      options.real_folder.empty() ? simulatedOffer() : realOffer(options.real_folder);
+  Names scenes = chosen(expanded(options), offer.scenes, "scenes");
+  Names conditions = chosen(options.conditions, offer.conditions, "conditions");
+  if (options.is_quick && options.scenes.empty())
+    scenes.resize(std::min(scenes.size(), num_quick_scenes));
+  if (options.is_quick && options.conditions.empty())
+    conditions.resize(1);
+  CoverageStudy study;
+  study.make_case = offer.make_case;
+  study.num_threads = options.num_threads;
+  Names known;
+  for (const CoverageMethod& method : coverageMethods())
+    known.push_back(method.name);
+  const Names methods = chosen(options.methods, known, "methods");
+  for (const CoverageMethod& method : coverageMethods())
+    if (std::count(methods.begin(), methods.end(), method.name) > 0)
+      study.methods.push_back(method);
+  for (const std::string& scene : scenes)
+    for (const std::string& condition : conditions)
+      for (int i = 0; i < options.num_seeds; ++i)
+        study.cases.push_back(
+            {scene, condition, options.first_seed + static_cast<std::uint64_t>(i)});
+  return study;
+}
+
+void
+reportProgress(const CoverageProgress& progress)
+{
+  char line[160];
+  std::snprintf(line,
+                sizeof line,
+                "%zu of %zu cases, about %.0f s left (%s, %s, seed %llu)",
+                progress.num_done,
+                progress.num_cases,
+                progress.seconds_left,
+                progress.last_case.scene.c_str(),
+                progress.last_case.condition.c_str(),
+                static_cast<unsigned long long>(progress.last_case.seed));
+  std::cerr << line << std::endl;
+}
+
+/** The rows of the study, in its order. */
+std::vector<CoverageRun>
+runsOf(const CoverageStudy& study, const CoverageFile& results)
+{
+  std::vector<CoverageRun> runs;
+  for (const CoverageCaseName& name : study.cases)
+    for (const CoverageMethod& method : study.methods)
+      if (const CoverageRun* run =
+              results.find({name.scene, name.condition, name.seed, method.name}))
+        runs.push_back(*run);
+  return runs;
+}
+
+} // namespace
+
+int
+runCoverageCommand(int argc, const char* const* argv)
+{
+  const CoverageOptions options = parseCoverageOptions(argc, argv);
+  if (options.show_help) {
+    std::cout << coverageHelp();
+    return 0;
+  }
+  io::silencePcl();
+  if (!options.plot_folder.empty())
+    requireGnuplot();
+  CoverageStudy study = studyOf(options);
+  study.report = reportProgress;
+  CoverageFile results(options.result_file);
+  runCoverageStudy(study, results);
+  const auto runs = runsOf(study, results);
+  printCoverageTable(runs, std::cout);
+  if (!options.plot_folder.empty())
+    plotCoverage(runs, options.plot_folder);
+  return 0;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,15 @@
+/** \file
+ * \brief The sub-command `coverage`: posteriors of every method against the truth.
+ */
+#pragma once
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Run the sub-command.
+ * \param[in] argc,argv the command line from the sub-command's name on
+ * \return the exit code 0
+ * \throws io::UsageError, io::FileError, boost::program_options::error */
+int
+runCoverageCommand(int argc, const char* const* argv);
+
+} // namespace bayesian_icp::evaluate

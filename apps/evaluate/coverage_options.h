@@ -1,0 +1,40 @@
+/** \file
+ * \brief Options of the sub-command `coverage`.
+ */
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief What is run, and where it is kept. */
+struct CoverageOptions {
+  bool show_help = false;
+  /** Names as given; empty: all there are. */
+  std::vector<std::string> scenes;
+  std::vector<std::string> conditions;
+  std::vector<std::string> methods;
+  int num_seeds = 20;
+  std::uint64_t first_seed = 1;
+  std::string result_file;
+  /** Folder of real pairs with a manifest.json; empty: simulated scenes. */
+  std::string real_folder;
+  /** Empty: no plots. */
+  std::string plot_folder;
+  int num_threads = 1;
+  /** Few scenes and one condition where none are given. */
+  bool is_quick = false;
+};
+
+/** \throws io::UsageError or boost::program_options::error with a message for the user
+ */
+CoverageOptions
+parseCoverageOptions(int argc, const char* const* argv);
+
+/** \brief What --help prints. */
+std::string
+coverageHelp();
+
+} // namespace bayesian_icp::evaluate

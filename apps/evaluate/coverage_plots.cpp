@@ -1,0 +1,234 @@
+#include "coverage_plots.h"
+
+#include "coverage_summary.h"
+#include "coverage_table.h"
+
+#include <io/errors.h>
+#include <io/numbers.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr int num_bins = 10;
+constexpr std::array<const char*, 6> coordinates = {"vx", "vy", "vz", "wx", "wy", "wz"};
+
+using Runs = std::vector<CoverageRun>;
+
+/** A string of gnuplot's. */
+std::string
+quotedForGnuplot(const std::string& text)
+{
+  std::string quoted = "'";
+  for (const char character : text)
+    quoted += character == '\'' ? std::string("''") : std::string(1, character);
+  return quoted + "'";
+}
+
+/** Lines that write one picture in both formats. */
+std::string
+pictures(const std::string& file, const std::string& size, const std::string& plot)
+{
+  std::string lines;
+  for (const auto& [terminal, ending] :
+       {std::pair<std::string, std::string>{"svg", ".svg"}, {"pngcairo", ".png"}})
+    lines += "set terminal " + terminal + " noenhanced size " + size +
+             " font 'sans,11' background rgb 'white'\nset output " +
+             quotedForGnuplot(file + ending) + '\n' + plot + "unset output\n";
+  return lines;
+}
+
+Runs
+validOf(const Runs& runs)
+{
+  Runs valid;
+  std::copy_if(runs.begin(),
+               runs.end(),
+               std::back_inserter(valid),
+               [](const auto& run) { return run.score.is_valid; });
+  return valid;
+}
+
+/** Empirical distribution function of the smallest region that has the truth. */
+std::string
+coverageData(const Runs& runs)
+{
+  std::vector<double> regions;
+  for (const CoverageRun& run : runs)
+    regions.push_back(regionOf(run.score.nees));
+  std::sort(regions.begin(), regions.end());
+  std::string lines = "0 0\n";
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    lines +=
+        io::textOf(regions[i]) + ' ' +
+        io::textOf(static_cast<double>(i + 1) / static_cast<double>(regions.size())) +
+        '\n';
+  return lines + "1 1\n";
+}
+
+/** Lines "middle of the bin, density of each coordinate". */
+std::string
+pitData(const Runs& runs)
+{
+  Eigen::Matrix<double, num_bins, 6> counts;
+  counts.setZero();
+  for (const CoverageRun& run : runs)
+    for (int k = 0; k < 6; ++k)
+      counts(std::min(num_bins - 1, static_cast<int>(num_bins * run.score.pit[k])),
+             k) += 1.0;
+  std::string lines;
+  for (int bin = 0; bin < num_bins; ++bin) {
+    lines += io::textOf((bin + 0.5) / num_bins);
+    for (int k = 0; k < 6; ++k)
+      lines += ' ' +
+               io::textOf(counts(bin, k) * num_bins / static_cast<double>(runs.size()));
+    lines += '\n';
+  }
+  return lines;
+}
+
+using Methods = std::vector<std::pair<std::string, Runs>>;
+
+template <typename Data>
+std::string
+blocksOf(const std::string& prefix, const Methods& methods, const Data& data)
+{
+  std::string blocks;
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    blocks += '$' + prefix + std::to_string(i) + " << EOD\n" + data(methods[i].second) +
+              "EOD\n";
+  return blocks;
+}
+
+std::string
+coverageScript(const Methods& methods, const std::string& folder)
+{
+  std::string plot = "plot x notitle with lines linecolor 'gray'";
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    plot += ", $coverage" + std::to_string(i) +
+            " using 1:2 with steps linewidth 2 title " +
+            quotedForGnuplot(methods[i].first);
+  return blocksOf("coverage", methods, coverageData) +
+         "reset\nset key outside right\nset grid\nset xrange [0:1]\nset yrange [0:1]\n"
+         "set size ratio -1\n"
+         "set xlabel 'probability of the region'\n"
+         "set ylabel 'share of truths within it'\n" +
+         pictures(folder + "/coverage", "900, 600", plot + "\n");
+}
+
+std::string
+pitScript(const Methods& methods, const std::string& folder)
+{
+  const std::string rows = std::to_string(methods.size());
+  std::string plot = "set multiplot layout " + rows + ", 6\n";
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    for (std::size_t k = 0; k < coordinates.size(); ++k)
+      plot += "set title " + quotedForGnuplot(methods[i].first + ' ' + coordinates[k]) +
+              "\nplot $pit" + std::to_string(i) + " using 1:" + std::to_string(k + 2) +
+              " with boxes, 1 linecolor 'gray'\n";
+  return blocksOf("pit", methods, pitData) +
+         "reset\nunset key\nset style fill solid 0.6 noborder\nset boxwidth 0.09\n"
+         "set xrange [0:1]\nset yrange [0:*]\nset xtics 0.5\n" +
+         pictures(folder + "/pit",
+                  "1200, " + std::to_string(180 * methods.size()),
+                  plot + "unset multiplot\n");
+}
+
+/** Lines "index of the cell, ANEES"; the same cells for every method. */
+std::string
+aneesData(const Runs& runs, const std::vector<std::string>& cells)
+{
+  std::vector<Runs> of_cell(cells.size());
+  for (const CoverageRun& run : runs) {
+    const auto cell = std::find(
+        cells.begin(), cells.end(), run.name.scene + ' ' + run.name.condition);
+    of_cell[static_cast<std::size_t>(cell - cells.begin())].push_back(run);
+  }
+  std::string lines;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    lines += std::to_string(i) + ' ' + io::textOf(summaryOf(of_cell[i]).anees) + '\n';
+  return lines;
+}
+
+std::string
+aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
+{
+  std::vector<std::string> cells;
+  for (const CoverageRun& run : runs) {
+    const std::string cell = run.name.scene + ' ' + run.name.condition;
+    if (std::find(cells.begin(), cells.end(), cell) == cells.end())
+      cells.push_back(cell);
+  }
+  std::string ticks, plot = "plot 1 notitle with lines linecolor 'gray'";
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    ticks += (i > 0 ? ", " : "") + quotedForGnuplot(cells[i]) + ' ' + std::to_string(i);
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    plot += ", $anees" + std::to_string(i) + " using 1:2 with points pointtype " +
+            std::to_string(i + 4) + " title " + quotedForGnuplot(methods[i].first);
+  const auto data = [&cells](const Runs& of_method) {
+    return aneesData(of_method, cells);
+  };
+  return blocksOf("anees", methods, data) +
+         "reset\nset key outside right\nset grid\nset logscale y\n"
+         "set ylabel 'mean NEES / 6'\nset xrange [-0.5:" +
+         std::to_string(cells.size()) + " - 0.5]\nset xtics rotate by -60 (" + ticks +
+         ")\n" +
+         pictures(folder + "/anees",
+                  std::to_string(std::max<std::size_t>(900, 300 + 18 * cells.size())) +
+                      ", 600",
+                  plot + "\n");
+}
+
+/** \throws io::FileError if gnuplot does not draw it */
+void
+runGnuplot(const std::string& script, const std::string& folder)
+{
+  // A gnuplot that ends early must not end us.
+  const auto handler = std::signal(SIGPIPE, SIG_IGN);
+  FILE* pipe = popen("gnuplot", "w");
+  bool is_good = pipe != nullptr;
+  if (is_good) {
+    is_good = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
+    is_good = pclose(pipe) == 0 && is_good;
+  }
+  std::signal(SIGPIPE, handler);
+  if (!is_good)
+    throw io::FileError(folder, "gnuplot could not draw the plots");
+}
+
+} // namespace
+
+void
+requireGnuplot()
+{
+  if (std::system("gnuplot --version > /dev/null 2>&1") != 0)
+    throw io::FileError("gnuplot",
+                        "is not there, but --plots needs it (package gnuplot-nox)");
+}
+
+void
+plotCoverage(const Runs& runs, const std::string& folder)
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw io::FileError(folder, "cannot be made: " + error.message());
+  Methods methods;
+  for (const auto& [name, of_method] : runsByMethod(runs))
+    if (const Runs valid = validOf(of_method); !valid.empty())
+      methods.emplace_back(name, valid);
+  if (methods.empty())
+    throw io::FileError(folder, "no plots: there is no valid run");
+  runGnuplot("set encoding utf8\n" + coverageScript(methods, folder) +
+                 pitScript(methods, folder) + aneesScript(runs, methods, folder),
+             folder);
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,66 @@
+/** \file
+ * \brief Real pairs of scans as cases of the coverage study.
+ */
+#pragma once
+
+#include "coverage_case.h"
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Standard deviations of a pair, of each axis [m, rad]. */
+struct RealScale {
+  double prior_sd_translation = 0.0;
+  double prior_sd_rotation = 0.0;
+  /** Accuracy of the ground truth. */
+  double truth_sd_translation = 0.0;
+  double truth_sd_rotation = 0.0;
+};
+
+/** \brief The pairs of a folder; a pair is read when it is first needed. */
+class RealPairs {
+public:
+  /** \brief Read FOLDER/manifest.json.
+   * \throws io::FileError */
+  explicit RealPairs(const std::string& folder);
+
+  /** \brief In the order of the manifest. */
+  std::vector<std::string>
+  names() const;
+
+  /** \brief A case whose source is a random part of the pair's, 2000 points at most,
+   * displaced by a pose drawn from the prior. May be called by several threads.
+   * \throws io::FileError if the pair's files cannot be read */
+  CoverageCase
+  makeCase(const std::string& name, std::uint64_t seed) const;
+
+private:
+  /** Names of files are relative to the folder. */
+  struct Entry {
+    std::string name, source, target, ground_truth;
+    RealScale scale;
+  };
+
+  /** 3 x n, finite, the source where the ground truth puts it, target frame [m]. */
+  struct Clouds {
+    Eigen::Matrix3Xd source_in_target, target;
+  };
+
+  const Entry&
+  entryOf(const std::string& name) const;
+
+  std::shared_ptr<const Clouds>
+  cloudsOf(const Entry& entry) const;
+
+  std::string folder_;
+  std::vector<Entry> entries_;
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, std::shared_ptr<const Clouds>> clouds_;
+};
+
+} // namespace bayesian_icp::evaluate

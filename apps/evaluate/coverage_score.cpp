@@ -1,0 +1,207 @@
+#include "coverage_score.h"
+
+#include "draw_statistics.h"
+
+#include <bayesian_icp/calibration/twist.h>
+#include <bayesian_icp/random.h>
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+#include <optional>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+/** Streams of random numbers that no method uses. */
+constexpr std::uint64_t gaussian_stream = 0x636f766572;
+constexpr std::uint64_t truth_stream = gaussian_stream + 1;
+
+constexpr Eigen::Index num_gaussian_draws = 2000;
+/** All pairs of so many draws give the energy score's second term. */
+constexpr Eigen::Index num_paired_draws = 400;
+constexpr Eigen::Index min_draws = 8;
+
+/** The posterior about MethodResult::mean, as twists. */
+struct TwistPosterior {
+  Moments moments;
+  /** Draws of the method, one a row; none if it is a Gaussian. */
+  PoseMatrix draws;
+  Vector6d truth;
+  /** Standard deviations of the truth itself. */
+  Vector6d truth_sd;
+};
+
+double
+normalProbability(double x)
+{
+  return 0.5 * std::erfc(-x / std::sqrt(2.0));
+}
+
+TwistPosterior
+posteriorOf(const CoverageCase& problem, const MethodResult& result)
+{
+  TwistPosterior posterior;
+  posterior.truth = twistBetween(result.mean, problem.truth, result.centre);
+  posterior.truth_sd << Eigen::Vector3d::Constant(problem.truth_sd_translation),
+      Eigen::Vector3d::Constant(problem.truth_sd_rotation);
+  posterior.draws.resize(result.draws.rows(), 6);
+  for (Eigen::Index i = 0; i < result.draws.rows(); ++i)
+    posterior.draws.row(i) = twistBetween(result.mean,
+                                          isometryOf(result.draws.row(i).transpose()),
+                                          result.centre)
+                                 .transpose();
+  if (result.draws.rows() == 0)
+    posterior.moments.covariance = result.covariance;
+  else
+    posterior.moments = momentsOf(posterior.draws);
+  posterior.moments.covariance.diagonal() += posterior.truth_sd.cwiseAbs2();
+  return posterior;
+}
+
+Vector6d
+pitOf(const TwistPosterior& posterior)
+{
+  Vector6d pit;
+  for (int k = 0; k < 6; ++k) {
+    const double truth = posterior.truth[k], sd = posterior.truth_sd[k];
+    if (posterior.draws.rows() == 0) {
+      pit[k] = normalProbability((truth - posterior.moments.mean[k]) /
+                                 std::sqrt(posterior.moments.covariance(k, k)));
+      continue;
+    }
+    double sum = 0.0;
+    for (const double x : posterior.draws.col(k))
+      sum += sd > 0.0 ? normalProbability((truth - x) / sd)
+                      : (x < truth ? 1.0 : 0.0) + (x == truth ? 0.5 : 0.0);
+    pit[k] = sum / static_cast<double>(posterior.draws.rows());
+  }
+  return pit;
+}
+
+/** Draws that include the truth's own accuracy. */
+PoseMatrix
+scoredDraws(const TwistPosterior& posterior, const Matrix6d& factor, std::uint64_t seed)
+{
+  if (posterior.draws.rows() == 0) {
+    Random random(seed, gaussian_stream);
+    PoseMatrix draws(num_gaussian_draws, 6);
+    for (Eigen::Index i = 0; i < draws.rows(); ++i)
+      draws.row(i) = (posterior.moments.mean + factor * random.normal6()).transpose();
+    return draws;
+  }
+  PoseMatrix draws = posterior.draws;
+  Random random(seed, truth_stream);
+  if (posterior.truth_sd.maxCoeff() > 0.0)
+    for (Eigen::Index i = 0; i < draws.rows(); ++i)
+      draws.row(i) += posterior.truth_sd.cwiseProduct(random.normal6()).transpose();
+  return draws;
+}
+
+/** \param[in] scaled_draws,truth in units of the prior's standard deviations */
+double
+energyScore(const PoseMatrix& scaled_draws, const Vector6d& truth)
+{
+  const Eigen::Index size = scaled_draws.rows();
+  const double to_truth =
+      (scaled_draws.rowwise() - truth.transpose()).rowwise().norm().mean();
+  const Eigen::Index num_paired = std::min(size, num_paired_draws);
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < num_paired; ++i)
+    for (Eigen::Index j = 0; j < i; ++j)
+      sum += (scaled_draws.row(i * size / num_paired) -
+              scaled_draws.row(j * size / num_paired))
+                 .norm();
+  const auto num_pairs = static_cast<double>(num_paired * (num_paired - 1) / 2);
+  return to_truth - 0.5 * sum / num_pairs;
+}
+
+/** L with covariance = L L^T; empty if there is none. */
+std::optional<Matrix6d>
+factorOf(const Matrix6d& covariance)
+{
+  // In units of its own standard deviations it is as well conditioned as can be.
+  const Vector6d sd = covariance.diagonal().cwiseSqrt();
+  const Matrix6d correlation =
+      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  const Eigen::LLT<Matrix6d> cholesky(correlation);
+  if (!correlation.allFinite() || cholesky.info() != Eigen::Success)
+    return std::nullopt;
+  return sd.asDiagonal() * Matrix6d(cholesky.matrixL());
+}
+
+void
+addGaussianScores(const CoverageCase& problem,
+                  const TwistPosterior& posterior,
+                  const Matrix6d& factor,
+                  CoverageScore& score)
+{
+  const Vector6d deviation = posterior.truth - posterior.moments.mean;
+  const Vector6d sd = posterior.moments.covariance.diagonal().cwiseSqrt();
+  score.nees = factor.triangularView<Eigen::Lower>().solve(deviation).squaredNorm();
+  score.relative_sd = sd.cwiseQuotient(problem.prior_sd);
+  score.z = deviation.cwiseQuotient(sd);
+  const double log_determinant =
+      factor.diagonal().cwiseQuotient(problem.prior_sd).array().log().sum();
+  score.log_score =
+      -0.5 * score.nees - 3.0 * std::log(2.0 * std::acos(-1.0)) - log_determinant;
+}
+
+void
+addErrors(const CoverageCase& problem,
+          const MethodResult& result,
+          const Vector6d& mean_twist,
+          CoverageScore& score)
+{
+  const Eigen::Isometry3d mean = movedBy(mean_twist, result.centre, result.mean);
+  const Eigen::Vector3d centroid = problem.source.rowwise().mean();
+  score.translation_error = (mean * centroid - problem.truth * centroid).norm();
+  score.rotation_error =
+      logSO3(problem.truth.linear() * mean.linear().transpose()).norm();
+}
+
+void
+addNote(const std::string& note, std::string& notes)
+{
+  notes += (notes.empty() ? "" : ";") + note;
+}
+
+} // namespace
+
+bool
+CoverageScore::isFlagged() const
+{
+  return notes.compare(0, 5, "flag:") == 0 || notes.find(";flag:") != std::string::npos;
+}
+
+CoverageScore
+coverageScoreOf(const CoverageCase& problem, const MethodResult& result)
+{
+  CoverageScore score;
+  score.seconds = result.seconds;
+  score.num_queries = result.num_queries;
+  score.notes = result.notes;
+  if (!result.is_valid)
+    return score;
+  if (result.draws.rows() > 0 && result.draws.rows() < min_draws) {
+    addNote("too few draws", score.notes);
+    return score;
+  }
+  const TwistPosterior posterior = posteriorOf(problem, result);
+  const auto factor = factorOf(posterior.moments.covariance);
+  if (!factor || !posterior.truth.allFinite() || !posterior.moments.mean.allFinite()) {
+    addNote("not a posterior", score.notes);
+    return score;
+  }
+  score.is_valid = true;
+  addGaussianScores(problem, posterior, *factor, score);
+  score.pit = pitOf(posterior);
+  const auto scale = problem.prior_sd.cwiseInverse().asDiagonal();
+  score.energy_score = energyScore(
+      scoredDraws(posterior, *factor, problem.seed) * scale, scale * posterior.truth);
+  addErrors(problem, result, posterior.moments.mean, score);
+  return score;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,56 @@
+/** \file
+ * \brief What the runs of one method say together.
+ */
+#pragma once
+
+#include "coverage_file.h"
+
+#include <array>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Probabilities whose regions are looked at. */
+constexpr std::array<double, 4> coverage_levels = {0.50, 0.68, 0.90, 0.95};
+
+/** \brief A share and its 95 % confidence interval (Wilson's); NaN of nothing. */
+struct Share {
+  double value;
+  double low;
+  double high;
+};
+
+/** \brief The share \p num_hits of \p num_trials. */
+Share
+shareOf(std::size_t num_hits, std::size_t num_trials);
+
+/** \brief Probability that a chi-square variable with 6 degrees of freedom is smaller:
+ * of the smallest region about the mean of a Gaussian posterior that has the truth. */
+double
+regionOf(double nees);
+
+/** \brief Shares, means and medians are over the valid runs; NaN without any. */
+struct CoverageSummary {
+  std::size_t num_runs = 0;
+  std::size_t num_valid = 0;
+  /** Mean of nees / 6; 1 if the posteriors are right. */
+  double anees;
+  /** Shares of runs with the truth within the region of each of coverage_levels. */
+  std::array<Share, coverage_levels.size()> coverage;
+  double mean_log_score;
+  double mean_energy_score;
+  /** Medians [m, rad]. */
+  double translation_error;
+  double rotation_error;
+  /** Share of flagged runs, of all and of those outside the 95 % region. */
+  Share flagged;
+  Share flagged_outside;
+  double median_seconds;
+  /** Negative if not counted. */
+  double median_queries;
+};
+
+CoverageSummary
+summaryOf(const std::vector<CoverageRun>& runs);
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,21 @@
+/** \file
+ * \brief A coverage study as a text table.
+ */
+#pragma once
+
+#include "coverage_file.h"
+
+#include <iosfwd>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief A block of one line a method for each scene and condition, for each scene,
+ * for each condition and for all; in the order in which \p runs name them first. */
+void
+printCoverageTable(const std::vector<CoverageRun>& runs, std::ostream& stream);
+
+/** \brief The runs of each method, in order of appearance. */
+std::vector<std::pair<std::string, std::vector<CoverageRun>>>
+runsByMethod(const std::vector<CoverageRun>& runs);
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,54 @@
+#include "option_values.h"
+
+#include <boost/program_options/parsers.hpp>
+#include <boost/program_options/positional_options.hpp>
+
+#include <io/errors.h>
+
+#include <sstream>
+
+namespace bayesian_icp::evaluate {
+
+namespace po = boost::program_options;
+
+po::variables_map
+readCommandLine(int argc,
+                const char* const* argv,
+                const po::options_description& options)
+{
+  namespace style = po::command_line_style;
+  po::variables_map given;
+  po::store(po::command_line_parser(argc, argv)
+                .options(options)
+                .positional(po::positional_options_description())
+                .style(style::unix_style & ~style::allow_guessing)
+                .run(),
+            given);
+  return given;
+}
+
+std::vector<std::string>
+split(const std::string& text, char separator)
+{
+  std::vector<std::string> items;
+  std::istringstream stream(text);
+  for (std::string item; std::getline(stream, item, separator);)
+    items.push_back(item);
+  return items;
+}
+
+int
+integerWithin(const po::variables_map& given,
+              const std::string& name,
+              int least,
+              int most)
+{
+  const int value = given[name].as<int>();
+  if (value < least || value > most)
+    throw io::UsageError("--" + name + " is " + std::to_string(value) +
+                         ", but must be in [" + std::to_string(least) + ", " +
+                         std::to_string(most) + "]");
+  return value;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,22 @@
+/** \file
+ * \brief From the calibrated estimate to the report for users.
+ */
+#pragma once
+
+#include <bayesian_icp/calibration/calibrated_estimate.h>
+#include <bayesian_icp/data_report.h>
+
+#include <cstddef>
+
+namespace bayesian_icp {
+
+/** \brief The report of \p estimate; directions are ordered by their posterior standard
+ * deviation.
+ * \param[in] num_source_points source points that were used, positive
+ * \param[in] target_noise SurfaceModel::medianSigma() [m] */
+BAYESIAN_ICP_EXPORT DataReport
+dataReportOf(const CalibratedEstimate& estimate,
+             std::size_t num_source_points,
+             double target_noise);
+
+} // namespace bayesian_icp

@@ -1,0 +1,55 @@
+/** \file
+ * \brief Derivatives of one pair's residual in twists about a centre.
+ */
+#pragma once
+
+#include <bayesian_icp/baselines/hessian_covariance.h>
+
+namespace bayesian_icp {
+
+using Matrix36d = Eigen::Matrix<double, 3, 6>;
+using Matrix63d = Eigen::Matrix<double, 6, 3>;
+
+inline Eigen::Matrix3d
+crossMatrix(const Eigen::Vector3d& v)
+{
+  Eigen::Matrix3d cross;
+  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return cross;
+}
+
+/** \brief A = [I, -[arm]x]: how a point moves with the twist (v, w). */
+inline Matrix36d
+motionOf(const Eigen::Vector3d& arm)
+{
+  Matrix36d motion;
+  motion << Eigen::Matrix3d::Identity(), -crossMatrix(arm);
+  return motion;
+}
+
+/** \brief One pair. With N = I, or n n^T if there is a normal, its energy is
+ * 0.5 (p - q)^T N (p - q). */
+struct MatchedPair {
+  MatchedPair(const MatchedPoints& matches,
+              Eigen::Index i,
+              const Eigen::Vector3d& centre)
+  : arm(matches.moved.col(i) - centre)
+  , motion(motionOf(arm))
+  , projector(Eigen::Matrix3d::Identity())
+  {
+    if (matches.hasNormals())
+      projector = matches.normals.col(i) * matches.normals.col(i).transpose();
+    force = projector * (matches.moved.col(i) - matches.target.col(i));
+  }
+
+  /** p - centre. */
+  Eigen::Vector3d arm;
+  /** A. */
+  Matrix36d motion;
+  /** N. */
+  Eigen::Matrix3d projector;
+  /** f = N (p - q). */
+  Eigen::Vector3d force;
+};
+
+} // namespace bayesian_icp

@@ -1,0 +1,153 @@
+#include "calibrated_pipeline.h"
+
+#include "pipeline_parts.h"
+#include "random_subset.h"
+
+#include <bayesian_icp/calibration/calibrated_draws.h>
+#include <bayesian_icp/calibration/calibrated_estimate.h>
+#include <bayesian_icp/calibration/calibrated_report.h>
+
+#include <utility>
+
+namespace bayesian_icp {
+
+namespace {
+
+std::string
+textOfCount(Eigen::Index num_points)
+{
+  return std::to_string(num_points) + " finite points, but preset calibrated needs " +
+         std::to_string(min_calibrated_points);
+}
+
+/** What is wrong with the arguments; the status is NotRun if nothing is. */
+PosteriorEstimate
+checkInput(const Eigen::Matrix3Xd& source_points,
+           const Eigen::Matrix3Xd& target_points,
+           const Vector6d& initial_pose,
+           const Options& options)
+{
+  PosteriorEstimate checked = checkArguments(source_points, initial_pose, options);
+  if (checked.summary.status != Status::NotRun)
+    return checked;
+  if (source_points.cols() < min_calibrated_points)
+    return failure(Status::InvalidInput,
+                   "the source has " + textOfCount(source_points.cols()));
+  const Eigen::Index num_finite =
+      (target_points.array().isFinite().cast<int>().colwise().sum() == 3).count();
+  if (num_finite < min_calibrated_points)
+    return failure(Status::InvalidInput, "the target has " + textOfCount(num_finite));
+  return checked;
+}
+
+/** Tells that something is under way of which the length is not known. */
+bool
+isCancelled(const ProgressCallback& progress)
+{
+  return progress && !progress({0, 0, 0, 0});
+}
+
+/** Why distances to the target's surface mean nothing; empty if they do. */
+std::string
+complaintAbout(const SurfaceModel& model)
+{
+  if (!(model.usableFraction() > 0.0))
+    return "the target has no usable surface: its points are too noisy, too sparse or "
+           "too tangled for distances to a surface";
+  if (!(model.medianSigma() > 0.0))
+    return "the target's points lie on their surface exactly: without noise there is "
+           "no scale";
+  return std::string();
+}
+
+/** Why there is nothing to draw from; empty if there is. */
+std::string
+complaintAbout(const CalibratedEstimate& estimate, Eigen::Index num_source_points)
+{
+  if (estimate.scores.num_active < min_calibrated_points)
+    return "only " + std::to_string(estimate.scores.num_active) + " of " +
+           std::to_string(num_source_points) +
+           " source points lie on a usable surface of the target at the best pose";
+  if (!estimate.mode.matrix().allFinite() || !estimate.covariance.allFinite() ||
+      !estimate.mean.allFinite())
+    return "the scores of the source points do not give a finite covariance (clouds "
+           "without noise have no scale)";
+  return std::string();
+}
+
+PosteriorEstimate
+withDraws(ChainSet chain_set)
+{
+  PosteriorEstimate result;
+  result.summary = summarize(chain_set);
+  result.samples = pooledDraws(chain_set.chains);
+  result.chains = std::move(chain_set.chains);
+  return result;
+}
+
+/** Lowers an Ok where there are flags, and puts them into words. */
+void
+judgeData(Summary& summary)
+{
+  const std::vector<std::string> flags = describeFlags(summary.data);
+  if (flags.empty())
+    return;
+  const bool is_doubtful = summary.status == Status::Ok;
+  if (is_doubtful)
+    summary.status = Status::Doubtful;
+  for (std::size_t i = 0; i < flags.size(); ++i)
+    summary.message += (i > 0 ? "; " : is_doubtful ? ", but " : "; also ") + flags[i];
+}
+
+PosteriorEstimate
+estimateAndDraw(const SurfaceScorer& scorer,
+                const Prior& prior,
+                const Options& options,
+                const ProgressCallback& progress)
+{
+  const Eigen::Index num_points = scorer.sourcePoints().cols();
+  EstimateOptions estimate_options;
+  estimate_options.num_mode_points = options.calibrated.num_mode_points;
+  const CalibratedEstimate estimate =
+      estimateCalibrated(scorer, prior, estimate_options);
+  const std::string complaint = complaintAbout(estimate, num_points);
+  if (!complaint.empty())
+    return failure(Status::TooFewCorrespondences, complaint);
+
+  PosteriorEstimate result =
+      withDraws(sampleCalibrated(scorer, prior, estimate, options.chains, progress));
+  result.summary.data = dataReportOf(
+      estimate, static_cast<std::size_t>(num_points), scorer.model().medianSigma());
+  judgeData(result.summary);
+  return result;
+}
+
+} // namespace
+
+PosteriorEstimate
+estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
+                            const Eigen::Matrix3Xd& target_points,
+                            const Vector6d& initial_pose,
+                            const Options& options,
+                            const ProgressCallback& progress)
+{
+  PosteriorEstimate checked =
+      checkInput(source_points, target_points, initial_pose, options);
+  if (checked.summary.status != Status::NotRun)
+    return checked;
+  if (isCancelled(progress))
+    return failure(Status::Cancelled, "cancelled before the first draw");
+  const SurfaceModel model(
+      target_points, SurfaceModelOptions(), options.chains.num_threads);
+  const std::string no_surface = complaintAbout(model);
+  if (!no_surface.empty())
+    return failure(Status::TooFewCorrespondences, no_surface);
+  const SurfaceScorer scorer(randomSubset(source_points,
+                                          options.calibrated.max_source_points,
+                                          options.chains.seed),
+                             model);
+  const Prior prior = makePrior(options.prior, initial_pose, source_points);
+  return estimateAndDraw(scorer, prior, options, progress);
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,152 @@
+#include <bayesian_icp/data_report.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstdio>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** Share of the mean squared displacement from which a motion is a translation. The
+ * rest then moves points by less than a quarter of it. */
+constexpr double min_translation_share = 0.95;
+/** Share of the motion along the axis from which a rotation is a screw. */
+constexpr double min_screw_share = 0.05;
+
+template <typename... Values>
+std::string
+formatted(const char* format, Values... values)
+{
+  char text[256];
+  std::snprintf(text, sizeof(text), format, values...);
+  return text;
+}
+
+/** Without a sign where it would show as -0.00. */
+double
+rounded(double value, double unit)
+{
+  const double multiple = std::round(value / unit);
+  return multiple == 0.0 ? 0.0 : multiple * unit;
+}
+
+/** "(0.98, 0.10, 0.10)" */
+std::string
+textOfDirection(const Eigen::Vector3d& direction)
+{
+  constexpr double unit = 0.01;
+  return formatted("(%.2f, %.2f, %.2f)",
+                   rounded(direction.x(), unit),
+                   rounded(direction.y(), unit),
+                   rounded(direction.z(), unit));
+}
+
+/** "(0.100, 0.200, 0.050) m" */
+std::string
+textOfPoint(const Eigen::Vector3d& point)
+{
+  constexpr double unit = 0.001;
+  return formatted("(%.3f, %.3f, %.3f) m",
+                   rounded(point.x(), unit),
+                   rounded(point.y(), unit),
+                   rounded(point.z(), unit));
+}
+
+/** The one of two opposite directions whose first large component is positive. */
+Eigen::Vector3d
+canonicalDirection(const Eigen::Vector3d& vector)
+{
+  Eigen::Vector3d direction = vector.normalized();
+  const double large = 0.5 * direction.cwiseAbs().maxCoeff();
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(direction[k]) >= large) {
+      if (direction[k] < 0.0)
+        direction = -direction;
+      break;
+    }
+  return direction;
+}
+
+std::string
+misfitText(const DataReport& report)
+{
+  std::string text = "the surfaces disagree by more than the noise: ";
+  const bool is_scale_large = !(report.residual_scale <= max_residual_scale);
+  const bool is_correlation_large =
+      !(report.correlation_factor <= max_correlation_factor);
+  if (is_scale_large)
+    text += formatted("residuals of %.1f times the target's noise (at most %.0f)",
+                      report.residual_scale,
+                      max_residual_scale);
+  if (is_scale_large && is_correlation_large)
+    text += ", ";
+  if (is_correlation_large)
+    text += formatted("a correlation factor of %.1f (at most %.0f)",
+                      report.correlation_factor,
+                      max_correlation_factor);
+  return text;
+}
+
+} // namespace
+
+const char*
+toString(Observability observability)
+{
+  switch (observability) {
+  case Observability::Observed:
+    return "observed";
+  case Observability::Weak:
+    return "weak";
+  case Observability::PriorOnly:
+    return "prior_only";
+  }
+  return "unknown";
+}
+
+std::string
+describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre)
+{
+  const Eigen::Vector3d v = twist.head<3>(), w = twist.tail<3>();
+  if (twist.isZero(0.0))
+    return "no motion";
+  if (w.isZero(0.0) || v.squaredNorm() >= min_translation_share)
+    return "translation along " + textOfDirection(canonicalDirection(v));
+  const double pitch = v.dot(w) / w.squaredNorm();
+  const Eigen::Vector3d point = centre + w.cross(v) / w.squaredNorm();
+  const std::string axis =
+      textOfDirection(canonicalDirection(w)) + " through " + textOfPoint(point);
+  const double share_along_axis = pitch * pitch * w.squaredNorm();
+  if (share_along_axis < min_screw_share)
+    return "rotation about " + axis;
+  return "screw about " + axis + formatted(" with a pitch of %.3f m/rad", pitch);
+}
+
+std::vector<std::string>
+describeFlags(const DataReport& report)
+{
+  std::vector<std::string> texts;
+  if (report.flags.wrong_basin)
+    texts.push_back(
+        formatted("two starts ended %.1f standard deviations apart (at most "
+                  "%.0f), so that the pose may be a wrong one",
+                  report.basin_distance,
+                  max_basin_distance));
+  if (report.flags.low_support)
+    texts.push_back(formatted(
+        "only %.0f %% of the source points lie on the target's surface (at least "
+        "%.0f %%)",
+        100.0 * report.active_fraction,
+        100.0 * min_active_fraction));
+  if (report.flags.few_patches)
+    texts.push_back(formatted(
+        "the pose is held by about %.0f independent patches of surface (at least %.0f)",
+        report.effective_patches,
+        min_effective_patches));
+  if (report.flags.misfit)
+    texts.push_back(misfitText(report));
+  return texts;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,40 @@
+#include "pipeline_parts.h"
+
+namespace bayesian_icp {
+
+PosteriorEstimate
+failure(Status status, const std::string& message)
+{
+  PosteriorEstimate estimate;
+  estimate.summary.status = status;
+  estimate.summary.message = message;
+  return estimate;
+}
+
+PosteriorEstimate
+checkArguments(const Eigen::Matrix3Xd& source_points,
+               const Vector6d& initial_pose,
+               const Options& options)
+{
+  const std::string complaint = options.validate();
+  if (!complaint.empty())
+    return failure(Status::InvalidOptions, complaint);
+  if (!initial_pose.allFinite())
+    return failure(Status::InvalidInput, "the initial guess is not finite");
+  if (!source_points.allFinite())
+    return failure(Status::InvalidInput, "the source has non-finite points");
+  return PosteriorEstimate();
+}
+
+Prior
+makePrior(const PriorOptions& options,
+          const Vector6d& initial_pose,
+          const Eigen::Matrix3Xd& source_points)
+{
+  const Vector6d& mean = options.mean.allFinite() ? options.mean : initial_pose;
+  if (options.frame == PriorFrame::Origin)
+    return Prior(mean, options.variance);
+  return Prior(mean, options.variance, source_points.rowwise().mean());
+}
+
+} // namespace bayesian_icp

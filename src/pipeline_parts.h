@@ -1,0 +1,30 @@
+/** \file
+ * \brief What the pipelines of all presets share.
+ */
+#pragma once
+
+#include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/prior.h>
+
+#include <string>
+
+namespace bayesian_icp {
+
+/** \brief An estimate without draws, whose status says why. */
+PosteriorEstimate
+failure(Status status, const std::string& message);
+
+/** \brief What is wrong with the options, the guess or the source; the status is NotRun
+ * if nothing is. */
+PosteriorEstimate
+checkArguments(const Eigen::Matrix3Xd& source_points,
+               const Vector6d& initial_pose,
+               const Options& options);
+
+/** \brief The prior about \p initial_pose, or its own mean if it has one. */
+Prior
+makePrior(const PriorOptions& options,
+          const Vector6d& initial_pose,
+          const Eigen::Matrix3Xd& source_points);
+
+} // namespace bayesian_icp

@@ -1,0 +1,193 @@
+"""Preset calibrated: what it reports, its options, and options that it refuses."""
+
+import json
+import re
+import unittest
+
+import cloud_files
+from cli_tool import DATA, ToolTest, run, strict_json
+
+PRESET = ["--preset=calibrated", "--prior-frame=source-centroid"]
+
+
+def scans(name):
+    return [DATA / name / "source.pcd", DATA / name / "target.pcd"]
+
+
+class CalibratedScans(ToolTest):
+    def test_posterior_can_be_trusted_and_holds_the_truth(self):
+        result = run(*scans("mug"), *PRESET, "--json")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        document = strict_json(result.stdout)
+        self.assertEqual(document["status"]["name"], "ok")
+        text = (DATA / "mug" / "T_target_source.txt").read_text()
+        truth = [list(map(float, line.split())) for line in text.splitlines() if line[0] != "#"]
+        for k in range(3):
+            coordinate = document["posterior"]["coordinates"][k]
+            error = abs(coordinate["mean"] - truth[k][3])
+            self.assertLess(error, 4 * coordinate["standard_deviation"])
+            self.assertLess(coordinate["standard_deviation"], 0.002)
+
+    def test_a_table_top_slides_on_the_table(self):
+        """In its plane a bare plate is held by the prior alone: two translations and the turn
+        about the normal are the last three directions."""
+        result = run(*scans("table_top"), *PRESET, "--json")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        directions = strict_json(result.stdout)["data"]["directions"]
+        self.assertEqual(len(directions), 6)
+        deviations = [direction["standard_deviation_m"] for direction in directions]
+        self.assertEqual(deviations, sorted(deviations))
+        self.assertLess(deviations[2], 0.002)
+        worst = directions[-1]
+        self.assertEqual(worst["observability"], "prior_only")
+        ratio = worst["standard_deviation_m"] / worst["prior_standard_deviation_m"]
+        self.assertGreater(ratio, 0.8)
+
+    def test_same_draws_on_any_number_of_threads(self):
+        runs = [self.run_to_files(*scans("mug"), *PRESET, "--threads", n)[0] for n in (1, 2)]
+        self.assertEqual(runs[0], runs[1])
+
+
+class DataSection(ToolTest):
+    KEYS = {
+        "noise_scale_m",
+        "noise_scale_in_units_of_the_target",
+        "effective_patches",
+        "correlation_factor",
+        "active_fraction",
+        "basin_distance_in_standard_deviations",
+        "flags",
+        "flag_messages",
+        "centre_m",
+        "directions",
+        "directions_note",
+    }
+
+    def test_table_and_json_agree(self):
+        result = run(*scans("can"), *PRESET)
+        data = strict_json(run(*scans("can"), *PRESET, "--json").stdout)["data"]
+        self.assertEqual(set(data), self.KEYS)
+        pattern = r"^ +(\S+) +(\S+) +(\S+)  (data|weak|prior) +(\w+ (?:along|about) .*)$"
+        rows = re.findall(pattern, result.stdout, re.MULTILINE)
+        self.assertEqual(len(rows), 6, result.stdout)
+        holders = {"observed": "data", "weak": "weak", "prior_only": "prior"}
+        for row, direction in zip(rows, data["directions"]):
+            deviation, angle, prior, holder, words = row
+            metres = direction["standard_deviation_m"]
+            self.assertAlmostEqual(float(deviation), 1e3 * metres, delta=0.6e-3)
+            self.assertAlmostEqual(
+                float(prior), 1e3 * direction["prior_standard_deviation_m"], delta=0.06
+            )
+            self.assertEqual(holder, holders[direction["observability"]])
+            self.assertEqual(words, direction["description"])
+            turn = sum(w * w for w in direction["twist"][3:]) ** 0.5
+            if words.startswith("translation"):
+                self.assertEqual(angle, "-")
+            else:
+                self.assertAlmostEqual(float(angle), 1e3 * metres * turn, delta=0.6e-3)
+        self.assertIn(f"Noise:   {1e3 * data['noise_scale_m']:.3f}"[:-1], result.stdout)
+        self.assertIn(f"about {data['effective_patches']:.0f} independent", result.stdout)
+        self.assertIn(f"Support: {100 * data['active_fraction']:.0f} %", result.stdout)
+
+    def test_other_presets_have_none(self):
+        _, document = self.run_to_files(*self.small_pair(), "--preset=paper", "--samples=60")
+        self.assertIsNone(document["data"])
+
+    def test_flags_are_doubt(self):
+        """Nine tenths of the source are where the target was not seen."""
+        _, target = scans("mug")
+        _, points = cloud_files.read_pcd(scans("mug")[0])
+        source = [tuple(map(self.number, (p["x"], p["y"], p["z"]))) for p in points]
+        elsewhere = [(x + 1, y, z) for x, y, z in source]
+        file = self.file("source.pcd", cloud_files.pcd_bytes(source[::9] + elsewhere))
+        result = run(file, target, *PRESET, "--json")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"^pcl_bayesian_icp: doubtful: .*, but only \d+ % of .*\n$")
+        document = strict_json(result.stdout)
+        self.assertEqual(document["status"]["name"], "doubtful")
+        self.assertTrue(document["data"]["flags"]["low_support"])
+        self.assertEqual(len(document["data"]["flag_messages"]), 1)
+        table = run(file, target, *PRESET).stdout
+        self.assertIn("Flags:   low support\n", table)
+
+    @staticmethod
+    def number(data):
+        return cloud_files.struct.unpack("<f", data)[0]
+
+
+class CalibratedOptions(ToolTest):
+    def test_options_without_effect_are_refused(self):
+        for word in (
+            "sigma=0.01",
+            "effective-points=100",
+            "batch-size=10",
+            "batch-sampling=shuffled-epochs",
+            "step-size=0.1",
+            "lambda-rms=0.1",
+            "initial-spread=0.1",
+            "residual=point-to-plane",
+            "kernel=huber",
+            "metropolis=always",
+            "max-source-points=100",
+        ):
+            with self.subTest(option=word):
+                result = run("a.pcd", "b.pcd", "--preset=calibrated", f"--{word}")
+                name = word.split("=")[0]
+                self.assert_refused(2, result, f"--{name}: has no effect with preset calibrated")
+        for name in ("calibrated-points", "mode-points"):
+            result = run("a.pcd", "b.pcd", "--preset=exact", f"--{name}=100")
+            self.assert_refused(2, result, f"--{name}: has no effect with preset exact")
+
+    def test_bad_values(self):
+        for words, *reason in (
+            (["--prior-variance=inf"], "--prior-variance: prior.variance[x] is inf", "finite"),
+            (["--calibrated-points=29"], "--calibrated-points: ", " is 29", "at least 30"),
+            (["--mode-points=0"], "--mode-points: ", " is 0", "at least 30"),
+        ):
+            self.assert_refused(2, run("a.pcd", "b.pcd", *PRESET, *words), *reason)
+
+    def test_options_arrive_and_are_obeyed(self):
+        pair = scans("mug")
+        plain, document = self.run_to_files(*pair, *PRESET)
+        defaults = {"max_source_points": 2000, "num_mode_points": 500}
+        self.assertEqual(document["options"]["calibrated"], defaults)
+        for word, key, value in (
+            ("calibrated-points=1000", "max_source_points", 1000),
+            ("mode-points=200", "num_mode_points", 200),
+        ):
+            samples, document = self.run_to_files(*pair, *PRESET, f"--{word}")
+            self.assertEqual(document["options"]["calibrated"], {**defaults, key: value})
+            self.assertNotEqual(samples, plain, word)
+        for words in ("--seed=2", "--prior-variance=0.01", "--chains=3", "--samples=1000"):
+            samples, _ = self.run_to_files(*pair, *PRESET, words)
+            self.assertNotEqual(samples, plain, words)
+
+    def test_a_run_is_repeated_from_its_posterior_json(self):
+        pair = scans("mug")
+        given = ["--calibrated-points=900", "--samples=300", "--seed=5"]
+        expected, document = self.run_to_files(*pair, *PRESET, *given)
+        config = self.file("config.json", json.dumps(document))
+        samples, repeated = self.run_to_files(*pair, "--config", config)
+        self.assertEqual(samples, expected)
+        self.assertEqual(repeated["options"], document["options"])
+
+    def test_settings_of_a_file_without_effect_are_noted(self):
+        settings = {"posterior": {"measurement_sigma_m": 0.01}, "exact": {"kernel": "huber"}}
+        config = self.file("config.json", json.dumps(settings))
+        result = run(*scans("mug"), "--config", config, *PRESET)
+        self.assert_ran(result)
+        note = "note: posterior.measurement_sigma_m, exact.kernel: no effect with preset calibrated"
+        self.assertIn(note, result.stderr)
+
+    def test_a_target_without_a_surface_is_a_status(self):
+        points = [(0.1, 0.2, 0.3)] * 100
+        file = self.file("target.pcd", cloud_files.pcd_bytes(points))
+        result = run(scans("mug")[0], file, *PRESET, "--json")
+        self.assertEqual(result.returncode, 1)
+        document = strict_json(result.stdout)
+        self.assertEqual(document["status"]["name"], "too_few_correspondences")
+        self.assertIsNone(document["data"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,102 @@
+// The sub-command `coverage`, run as a user would.
+#include "command_helpers.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class CoverageCommand : public testing::Test {
+protected:
+  void
+  SetUp() override
+  {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        fs::temp_directory_path() /
+        ("coverage_command_" + std::string(test->name()) + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+
+  void
+  TearDown() override
+  {
+    fs::remove_all(folder_);
+  }
+
+  CommandResult
+  run(const std::string& arguments, const std::string& environment = "") const
+  {
+    return runShell("cd '" + folder_.string() + "' && " + environment +
+                    " '" BAYESIAN_ICP_EVALUATE "' coverage " + arguments);
+  }
+
+  fs::path folder_;
+};
+
+} // namespace
+
+TEST_F(CoverageCommand, RunsOnceAndDrawsThePlots)
+{
+  const std::string arguments = "--quick --methods prior --output results/a.csv";
+  const CommandResult first = run(arguments);
+  EXPECT_EQ(first.exit_code, 0) << first.output;
+  EXPECT_NE(first.output.find("6 of 6 cases"), std::string::npos) << first.output;
+  const std::string rows = contentOf(folder_ / "results/a.csv");
+  if (runShell("gnuplot --version").exit_code != 0)
+    GTEST_SKIP() << "no gnuplot";
+  const CommandResult second = run(arguments + " --plots \"plo'ts\"");
+  EXPECT_EQ(second.exit_code, 0) << second.output;
+  EXPECT_EQ(second.output.find(" cases"), std::string::npos) << second.output;
+  EXPECT_EQ(contentOf(folder_ / "results/a.csv"), rows);
+  for (const char* name : {"coverage", "pit", "anees"}) {
+    const fs::path plot = folder_ / "plo'ts" / name;
+    EXPECT_EQ(contentOf(plot.string() + ".png").substr(1, 3), "PNG");
+    EXPECT_NE(contentOf(plot.string() + ".svg").find("</svg>"), std::string::npos);
+  }
+}
+
+TEST_F(CoverageCommand, BadOptionsExitWithTwo)
+{
+  for (const char* arguments : {"--scenes nowhere",
+                                "--conditions sunny",
+                                "--methods guessing",
+                                "--seeds 0",
+                                "--seeds x",
+                                "--first-seed -1",
+                                "--threads 1000",
+                                "--quic",
+                                "word",
+                                "--output ''",
+                                "--real . --conditions same"}) {
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments << ": " << result.output;
+    EXPECT_TRUE(fs::is_empty(folder_)) << arguments;
+  }
+}
+
+TEST_F(CoverageCommand, BadFilesExitWithThree)
+{
+  std::ofstream(folder_ / "other.csv") << "x,y\n";
+  for (const char* arguments :
+       {"--quick --methods prior --output other.csv", "--real missing"}) {
+    const CommandResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 3) << arguments << ": " << result.output;
+  }
+}
+
+TEST_F(CoverageCommand, SaysThatGnuplotIsMissing)
+{
+  const CommandResult result =
+      run("--quick --methods prior --plots plots", "PATH=/nowhere");
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_NE(result.output.find("gnuplot"), std::string::npos) << result.output;
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
