@@ -85,8 +85,10 @@ whitenedComponent(const ChainSet& set, const CalibratedEstimate& e, int k)
 ChainSet
 sample(const StandIn& problem, const ChainOptions& options = ChainOptions())
 {
-  return sampleCalibrated(
-      [&] { return problem.score(); }, problem.prior, problem.estimate, options);
+  return sampleCalibrated([&](const CalibratedEstimate&) { return problem.score(); },
+                          problem.prior,
+                          problem.estimate,
+                          options);
 }
 
 /** Standard normal components: mean and second moments within 4.5 Monte Carlo errors,
@@ -257,7 +259,7 @@ TEST(CalibratedDraws, FollowTheShapeOfTheScores)
   // deviation's worth of the likelihood.
   const Vector6d best = -e.curvature.ldlt().solve(e.scores.total);
   const double sd = 1.0 / std::sqrt(e.information(0, 0));
-  const auto make_score = [&] {
+  const auto make_score = [&](const CalibratedEstimate&) {
     return [&, linear = problem.score()](const Eigen::Isometry3d& pose,
                                          const std::vector<std::size_t>& indices,
                                          Vector6d& total) {
@@ -292,7 +294,7 @@ TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
   };
   enum Fault { Outward, NotANumber, NoPatch };
   for (const Fault fault : {Outward, NotANumber, NoPatch}) {
-    const auto make_score = [&] {
+    const auto make_score = [&](const CalibratedEstimate&) {
       return [&, linear = problem.score()](const Eigen::Isometry3d& pose,
                                            const std::vector<std::size_t>& indices,
                                            Vector6d& total) {
@@ -348,7 +350,7 @@ TEST(CalibratedDraws, ReportProgressAndCanBeCancelled)
   options.num_burn_in = 17;
   options.thinning = 3;
   const auto run = [&](const ProgressCallback& progress) {
-    return sampleCalibrated([&] { return problem.score(); },
+    return sampleCalibrated([&](const CalibratedEstimate&) { return problem.score(); },
                             problem.prior,
                             problem.estimate,
                             options,

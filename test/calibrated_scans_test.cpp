@@ -80,7 +80,7 @@ TEST(CalibratedScans, DrawsMixWithinTheQueriesAllowed)
     SCOPED_TRACE(scene);
     const Case c(scene, 0.06);
     std::atomic<long> num_queries{0};
-    const MakeBatchScore make_score = [&] {
+    const MakeBatchScore make_score = [&](const CalibratedEstimate&) {
       return [&, hints = PatchHints()](const Eigen::Isometry3d& pose,
                                        const std::vector<std::size_t>& indices,
                                        Vector6d& total) mutable {

@@ -4,7 +4,11 @@
 
 #include <bayesian_icp/langevin.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -13,114 +17,135 @@ namespace {
 /** Of the plan's random numbers; chains have streams 0, 1, ... */
 constexpr std::uint64_t plan_stream = std::numeric_limits<std::uint64_t>::max();
 
-/** One run. */
+/** What is drawn at one mode. */
+struct ModeRun {
+  ModeRun(const CalibratedEstimate& estimate, const Prior& prior, int draws)
+  : model(estimate, prior)
+  , num_draws(draws)
+  {}
+
+  WeightedScoreModel model;
+  int num_draws;
+  DrawPlan plan;
+  /** Draws of each chain, one a column. */
+  std::vector<Matrix6Xd> positions;
+};
+
+/** One run over one mode or several. */
 class CalibratedRun {
 public:
   CalibratedRun(const MakeBatchScore& make_score,
-                const Prior& prior,
-                const CalibratedEstimate& estimate,
                 const ChainOptions& options,
                 const ProgressCallback& progress)
   : make_score_(make_score)
-  , model_(estimate, prior)
   , options_(options)
   , run_(progress)
-  , positions_(static_cast<std::size_t>(options.num_chains))
   {}
+
+  void
+  addMode(const CalibratedEstimate& estimate, const Prior& prior, int num_draws)
+  {
+    modes_.push_back(std::make_unique<ModeRun>(estimate, prior, num_draws));
+    modes_.back()->positions.resize(static_cast<std::size_t>(options_.num_chains));
+  }
 
   ChainSet
   run()
   {
+    const int num_chains = options_.num_chains * static_cast<int>(modes_.size());
+    chains_.resize(static_cast<std::size_t>(num_chains));
+    planAll();
+    forEachChain(num_chains, numThreadsFor(options_, true), run_, [&](int i) {
+      sampleChain(i);
+    });
     ChainSet result;
-    result.chains.resize(positions_.size());
-    if (model_.coordinates.gaussian().factor().allFinite())
-      sample(result);
-    else
-      for (Chain& chain : result.chains)
-        chain.diverged = true;
-    spreadAsEstimated(model_.coordinates, positions_);
-    for (std::size_t i = 0; i < positions_.size(); ++i)
-      result.chains[i].draws = posesOf(model_.coordinates, positions_[i]);
+    auto chain = chains_.begin();
+    for (const auto& mode : modes_) {
+      spreadAsEstimated(mode->model.coordinates, mode->positions);
+      for (const Matrix6Xd& positions : mode->positions)
+        (chain++)->draws = posesOf(mode->model.coordinates, positions);
+    }
+    result.chains = std::move(chains_);
     result.cancelled = run_.cancelled();
     return result;
   }
 
 private:
   void
-  sample(ChainSet& result)
+  planAll()
   {
-    Random random(options_.seed, plan_stream);
-    WeightedScore score(model_, make_score_());
-    const DrawPlan plan = planDraws(score, model_, options_, random);
     long total_steps = 0;
-    for (int i = 0; i < options_.num_chains; ++i)
-      total_steps += numSteps(plan, i);
+    for (std::size_t m = 0; m < modes_.size(); ++m) {
+      ModeRun& mode = *modes_[m];
+      if (!mode.model.coordinates.gaussian().factor().allFinite())
+        continue;
+      Random random(options_.seed, plan_stream - m);
+      WeightedScore score(mode.model, make_score_(mode.model.estimate));
+      mode.plan = planDraws(score, mode.model, options_, random);
+      for (int i = 0; i < options_.num_chains; ++i)
+        total_steps += numSteps(mode, i);
+    }
     run_.addSteps(total_steps);
-    forEachChain(options_.num_chains, numThreadsFor(options_, true), run_, [&](int i) {
-      sampleChain(plan, i, result.chains[static_cast<std::size_t>(i)]);
-    });
+  }
+
+  int
+  numDraws(const ModeRun& mode, int chain) const
+  {
+    ChainOptions options = options_;
+    options.num_draws = mode.num_draws;
+    return options.numDrawsOf(chain);
   }
 
   long
-  numSteps(const DrawPlan& plan, int chain) const
+  numSteps(const ModeRun& mode, int chain) const
   {
-    return plan.steps.num_burn_in +
-           static_cast<long>(plan.steps.thinning) * options_.numDrawsOf(chain);
+    return mode.plan.steps.num_burn_in +
+           static_cast<long>(mode.plan.steps.thinning) * numDraws(mode, chain);
   }
 
   void
-  sampleChain(const DrawPlan& plan, int chain_index, Chain& chain)
+  sampleChain(int index)
   {
-    Random random(options_.seed, static_cast<std::uint64_t>(chain_index));
-    WeightedScore score(model_, make_score_());
-    score.setShapeGain(plan.shape_gain);
-    LangevinChain langevin(
-        plan.steps, model_.coordinates.gaussian().draw(random), score, random);
-    Matrix6Xd& kept = positions_[static_cast<std::size_t>(chain_index)];
-    kept.resize(6, options_.numDrawsOf(chain_index));
+    ModeRun& mode = *modes_[static_cast<std::size_t>(index / options_.num_chains)];
+    const int index_in_mode = index % options_.num_chains;
+    Chain& chain = chains_[static_cast<std::size_t>(index)];
+    const Gaussian& gaussian = mode.model.coordinates.gaussian();
+    chain.diverged = !gaussian.factor().allFinite();
+    if (chain.diverged)
+      return;
+    Random random(options_.seed, static_cast<std::uint64_t>(index));
+    WeightedScore score(mode.model, make_score_(mode.model.estimate));
+    score.setShapeGain(mode.plan.shape_gain);
+    const StepPlan& steps = mode.plan.steps;
+    LangevinChain langevin(steps, gaussian.draw(random), score, random);
+    Matrix6Xd& kept = mode.positions[static_cast<std::size_t>(index_in_mode)];
+    kept.resize(6, numDraws(mode, index_in_mode));
     Eigen::Index num_kept = 0;
-    const long num_steps = numSteps(plan, chain_index);
+    const long num_steps = numSteps(mode, index_in_mode);
     for (long step = 1; step <= num_steps && !run_.stopped(); ++step) {
       langevin.step();
       chain.diverged = !langevin.position().allFinite();
       if (chain.diverged)
         break;
-      const long sampled = step - plan.steps.num_burn_in;
-      if (sampled > 0 && sampled % plan.steps.thinning == 0)
+      const long sampled = step - steps.num_burn_in;
+      if (sampled > 0 && sampled % steps.thinning == 0)
         kept.col(num_kept++) = langevin.position();
-      run_.reportStep(chain_index, step);
+      run_.reportStep(index, step);
     }
     kept.conservativeResize(6, num_kept);
   }
 
   const MakeBatchScore& make_score_;
-  WeightedScoreModel model_;
   const ChainOptions& options_;
   RunState run_;
-  /** Draws of each chain, one a column. */
-  std::vector<Matrix6Xd> positions_;
+  std::vector<std::unique_ptr<ModeRun>> modes_;
+  std::vector<Chain> chains_;
 };
 
-} // namespace
-
-ChainSet
-sampleCalibrated(const MakeBatchScore& make_score,
-                 const Prior& prior,
-                 const CalibratedEstimate& estimate,
-                 const ChainOptions& options,
-                 const ProgressCallback& progress)
+MakeBatchScore
+scoresOf(const SurfaceScorer& scorer)
 {
-  return CalibratedRun(make_score, prior, estimate, options, progress).run();
-}
-
-ChainSet
-sampleCalibrated(const SurfaceScorer& scorer,
-                 const Prior& prior,
-                 const CalibratedEstimate& estimate,
-                 const ChainOptions& options,
-                 const ProgressCallback& progress)
-{
-  const MakeBatchScore make_score = [&] {
+  return [&](const CalibratedEstimate& estimate) {
     return [&, hints = PatchHints()](const Eigen::Isometry3d& T_target_source,
                                      const std::vector<std::size_t>& indices,
                                      Vector6d& total) mutable {
@@ -132,7 +157,75 @@ sampleCalibrated(const SurfaceScorer& scorer,
                                total);
     };
   };
-  return sampleCalibrated(make_score, prior, estimate, options, progress);
+}
+
+/** exp(log_weight), normalised. */
+std::vector<double>
+sharesOf(const std::vector<CalibratedMode>& modes)
+{
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const auto& mode : modes)
+    largest = std::max(largest, mode.log_weight);
+  std::vector<double> shares;
+  double sum = 0.0;
+  for (const auto& mode : modes) {
+    shares.push_back(std::exp(mode.log_weight - largest));
+    sum += shares.back();
+  }
+  for (double& share : shares)
+    share /= sum;
+  return shares;
+}
+
+} // namespace
+
+ChainSet
+sampleCalibrated(const MakeBatchScore& make_score,
+                 const Prior& prior,
+                 const CalibratedEstimate& estimate,
+                 const ChainOptions& options,
+                 const ProgressCallback& progress)
+{
+  CalibratedRun run(make_score, options, progress);
+  run.addMode(estimate, prior, options.num_draws);
+  return run.run();
+}
+
+ChainSet
+sampleCalibrated(const SurfaceScorer& scorer,
+                 const Prior& prior,
+                 const CalibratedEstimate& estimate,
+                 const ChainOptions& options,
+                 const ProgressCallback& progress)
+{
+  return sampleCalibrated(scoresOf(scorer), prior, estimate, options, progress);
+}
+
+ChainSet
+sampleCalibrated(const SurfaceScorer& scorer,
+                 const Prior& prior,
+                 const std::vector<CalibratedMode>& modes,
+                 const ChainOptions& options,
+                 const ProgressCallback& progress)
+{
+  const MakeBatchScore make_score = scoresOf(scorer);
+  CalibratedRun run(make_score, options, progress);
+  const std::vector<double> shares = sharesOf(modes);
+  std::vector<ChainMode> sampled;
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    const auto num_draws = static_cast<int>(std::lround(shares[m] * options.num_draws));
+    if (num_draws < options.num_chains)
+      continue;
+    ChainMode mode;
+    for (int i = 0; i < options.num_chains; ++i)
+      mode.members.push_back(static_cast<int>(sampled.size()) * options.num_chains + i);
+    mode.log_evidence = modes[m].log_weight;
+    sampled.push_back(mode);
+    run.addMode(modes[m].estimate, prior, num_draws);
+  }
+  ChainSet result = run.run();
+  result.modes = sampled;
+  return result;
 }
 
 } // namespace bayesian_icp

@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp {
 
@@ -126,6 +127,50 @@ Isometry3d
 ProductCoordinates::pose(const Vector6d& z) const
 {
   return movedBy(priorOnlyTwist(z), centre_, movedBy(held_ * z, centre_, mode_));
+}
+
+Vector6d
+ProductCoordinates::heldPart(const Isometry3d& pose) const
+{
+  constexpr int num_scanned = 60, max_rounds = 20;
+  const Matrix6d to_z = (prior_only_ + held_).inverse();
+  const auto restOf = [&](const Vector6d& a) -> Vector6d {
+    return to_z *
+           twistBetween(mode_, movedBy(-prior_only_ * a, centre_, pose), centre_);
+  };
+  Vector6d a = Vector6d::Zero();
+  if (num_prior_only_ == 1 && prior_only_.col(0).tail<3>().norm() > 0.0) {
+    // Once around: far from the mode the rounds below may not converge.
+    constexpr double pi = 3.14159265358979323846;
+    const double half_turn = pi / prior_only_.col(0).tail<3>().norm();
+    double least = std::numeric_limits<double>::infinity(), best = 0.0;
+    for (int i = -num_scanned; i <= num_scanned; ++i) {
+      a[0] = half_turn * i / num_scanned;
+      const Vector6d rest = restOf(a);
+      const double energy = rest.dot((information_ * rest)) +
+                            rest[0] * rest[0] * gaussian_.precision()(0, 0);
+      if (energy < least) {
+        least = energy;
+        best = a[0];
+      }
+    }
+    a[0] = best;
+  }
+  for (int round = 0; round < max_rounds && num_prior_only_ > 0; ++round) {
+    const Vector6d rest = restOf(a);
+    a.head(num_prior_only_) += rest.head(num_prior_only_);
+    if (rest.head(num_prior_only_).norm() < 1e-10)
+      break;
+  }
+  Vector6d rest = restOf(a);
+  rest.head(num_prior_only_).setZero();
+  return rest;
+}
+
+double
+ProductCoordinates::logVolume() const
+{
+  return std::log(std::abs((prior_only_ + held_).determinant()));
 }
 
 Vector6d

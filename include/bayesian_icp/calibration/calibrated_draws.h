@@ -19,9 +19,17 @@ using BatchScore = std::function<int(const Eigen::Isometry3d& T_target_source,
                                      const std::vector<std::size_t>& indices,
                                      Vector6d& total)>;
 
-/** \brief Makes the score of one chain: it may keep buffers, but its answers must
- * depend on its arguments alone. */
-using MakeBatchScore = std::function<BatchScore()>;
+/** \brief Makes the score of one chain at a mode: it may keep buffers, but its answers
+ * must depend on its arguments alone. */
+using MakeBatchScore = std::function<BatchScore(const CalibratedEstimate&)>;
+
+/** \brief One of several modes. */
+struct CalibratedMode {
+  CalibratedEstimate estimate;
+  /** Logarithm of its share of the posterior, up to a constant common to all modes;
+   * good to a factor of a few. */
+  double log_weight = 0.0;
+};
 
 /** \brief Draw by stochastic gradient Langevin dynamics over mini-batches of the source
  * (the guarded pre-weighted score of docs/calibration.md).
@@ -38,7 +46,19 @@ sampleCalibrated(const SurfaceScorer& scorer,
                  const ChainOptions& options,
                  const ProgressCallback& progress = ProgressCallback());
 
-/** \brief The same for any score. */
+/** \brief The same over several modes.
+ *
+ * Every mode has options.num_chains chains, one mode after another in the result and
+ * named in ChainSet::modes, and a part of options.num_draws by its weight. A mode that
+ * would get less than one draw a chain gets none and is left out. */
+BAYESIAN_ICP_EXPORT ChainSet
+sampleCalibrated(const SurfaceScorer& scorer,
+                 const Prior& prior,
+                 const std::vector<CalibratedMode>& modes,
+                 const ChainOptions& options,
+                 const ProgressCallback& progress = ProgressCallback());
+
+/** \brief As for one mode, with any score. */
 BAYESIAN_ICP_EXPORT ChainSet
 sampleCalibrated(const MakeBatchScore& make_score,
                  const Prior& prior,

@@ -14,8 +14,8 @@ namespace bayesian_icp {
  *
  * The likelihood depends on b only, so that it stays the same however far a wide prior
  * lets a go: along an axis of symmetry, along an edge. Whole turns of V0 a are dropped,
- * as the prior's angles do: a turn of a screw would shift b. To second order in b its energy
- * is 1/2 (b - b^)^T Lambda_b (b - b^); the prior is exact everywhere. */
+ * as the prior's angles do: a turn of a screw would shift b. To second order in b its
+ * energy is 1/2 (b - b^)^T Lambda_b (b - b^); the prior is exact everywhere. */
 class BAYESIAN_ICP_EXPORT ProductCoordinates {
 public:
   explicit ProductCoordinates(const CalibratedEstimate& estimate);
@@ -29,6 +29,11 @@ public:
 
   Eigen::Isometry3d
   pose(const Vector6d& z) const;
+
+  /** \brief The b, with a zero, of the pose that is left of \p pose when the motion
+   * held by the prior only that brings it nearest to the mode is taken off. */
+  Vector6d
+  heldPart(const Eigen::Isometry3d& pose) const;
 
   /** \brief The twist T VK b from the mode: where scores count for z. */
   Vector6d
@@ -57,6 +62,10 @@ public:
   /** \brief Gradient of -log prior at pose(z) with respect to z, exact. */
   Vector6d
   priorGradient(const Vector6d& z, const Prior& prior) const;
+
+  /** \brief log |det [V0 VK]|: what turns densities of z into those of twists. */
+  double
+  logVolume() const;
 
   /** \brief The posterior if the prior were Gaussian, too. */
   const Gaussian&

@@ -1,0 +1,184 @@
+#include "mode_weights.h"
+
+#include <bayesian_icp/calibration/calibrated_modes.h>
+#include <bayesian_icp/calibration/product_coordinates.h>
+#include <bayesian_icp/calibration/robust_mode.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+
+namespace {
+
+/** A prior is wide from these standard deviations on: [rad], and in parts of the
+ * source's extent. */
+constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
+
+/** Starts reach this far, in standard deviations. */
+constexpr double reach = 2.5;
+
+/** A start sees this part of the source's root mean square radius. */
+constexpr double sight = 0.25;
+
+/** Where starts have ended is of no interest if their cost is above the best one's by
+ * more than this part, or if they are within these Mahalanobis distances^2 of a mode:
+ * on a few points, and after an estimate. */
+constexpr double cost_margin = 0.35;
+constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
+
+/** Diagonal of the bounding box. */
+double
+extentOf(const Eigen::Matrix3Xd& points)
+{
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
+std::array<bool, 6>
+wideCoordinates(const SurfaceScorer& scorer, const Prior& prior)
+{
+  const double extent = extentOf(scorer.sourcePoints());
+  std::array<bool, 6> wide;
+  for (int k = 0; k < 6; ++k)
+    wide[static_cast<std::size_t>(k)] =
+        std::sqrt(prior.variance()[k]) >
+        (k < 3 ? wide_part_of_extent * extent : wide_angle);
+  return wide;
+}
+
+/** Deviations from the prior's mean: a Latin hypercube in the wide coordinates, draws
+ * in the others. */
+Matrix6Xd
+startDeviations(const std::array<bool, 6>& wide,
+                const Prior& prior,
+                int num_starts,
+                Random& random)
+{
+  constexpr double pi = 3.14159265358979323846;
+  Matrix6Xd deviations(6, num_starts);
+  for (int k = 0; k < 6; ++k) {
+    const double sd = std::sqrt(prior.variance()[k]);
+    std::vector<Index> strata(static_cast<std::size_t>(num_starts));
+    std::iota(strata.begin(), strata.end(), Index(0));
+    for (std::size_t i = strata.size(); i > 1; --i)
+      std::swap(strata[i - 1], strata[random.index(i)]);
+    const double range = k < 3 ? reach * sd : std::min(pi, reach * sd);
+    for (Index i = 0; i < num_starts; ++i) {
+      const double share = (static_cast<double>(strata[static_cast<std::size_t>(i)]) +
+                            random.uniform()) /
+                           num_starts;
+      deviations(k, i) = wide[static_cast<std::size_t>(k)] ? (2.0 * share - 1.0) * range
+                                                           : sd * random.normal();
+    }
+  }
+  return deviations;
+}
+
+/** The pose of a deviation (as in Prior::deviation()) from the prior's mean. */
+Isometry3d
+poseAt(const Vector6d& deviation, const Prior& prior)
+{
+  Vector6d pose = prior.mean() + deviation;
+  const Eigen::Vector3d reference = isometryOf(prior.mean()) * prior.referencePoint();
+  pose.head<3>() =
+      reference + deviation.head<3>() - rotationOf(pose) * prior.referencePoint();
+  return isometryOf(pose);
+}
+
+bool
+isKnown(const Isometry3d& pose,
+        const std::vector<ProductCoordinates>& known,
+        double squared_distance)
+{
+  return std::any_of(known.begin(), known.end(), [&](const auto& coordinates) {
+    return 2.0 * coordinates.linearEnergy(coordinates.heldPart(pose)) <
+           squared_distance;
+  });
+}
+
+/** Where starts end, least cost first. */
+std::vector<RobustFit>
+followStarts(const SurfaceScorer& subset,
+             const Prior& prior,
+             const std::array<bool, 6>& wide,
+             const ModeSearchOptions& options)
+{
+  const double noise = subset.model().medianSigma();
+  const Matrix6d metric = displacementMetric(subset, Isometry3d::Identity());
+  const double radius = std::sqrt(0.5 * metric.bottomRightCorner<3, 3>().trace());
+  RobustFitOptions fit;
+  fit.start_scale =
+      std::min(sight * radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
+      noise;
+  fit.max_steps = 20;
+  fit.tolerance = 0.1 * noise;
+  Random random(options.seed, std::numeric_limits<std::uint64_t>::max() / 2);
+  const Matrix6Xd starts = startDeviations(wide, prior, options.num_starts, random);
+  std::vector<RobustFit> ends;
+  for (Index i = 0; i < starts.cols(); ++i)
+    ends.push_back(fitRobustly(subset, prior, poseAt(starts.col(i), prior), fit));
+  std::stable_sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) {
+    return a.cost < b.cost;
+  });
+  return ends;
+}
+
+} // namespace
+
+bool
+mayHaveSeveralModes(const SurfaceScorer& scorer, const Prior& prior)
+{
+  const auto wide = wideCoordinates(scorer, prior);
+  return std::any_of(wide.begin(), wide.end(), [](bool is_wide) { return is_wide; });
+}
+
+ModeSearch
+findModes(const SurfaceScorer& scorer,
+          const Prior& prior,
+          const CalibratedEstimate& first,
+          const ModeSearchOptions& options)
+{
+  const Index num_points =
+      std::min<Index>(options.num_points, scorer.sourcePoints().cols());
+  const SurfaceScorer subset(scorer.sourcePoints().leftCols(num_points),
+                             scorer.model());
+  const std::vector<RobustFit> ends =
+      followStarts(subset, prior, wideCoordinates(scorer, prior), options);
+  ModeSearch search;
+  search.modes.push_back({first, 0.0});
+  std::vector<ProductCoordinates> known = {ProductCoordinates(first)};
+  PatchHints hints;
+  SurfaceScores scores;
+  subset.evaluate(
+      first.mode, first.centre, std::numeric_limits<double>::infinity(), hints, scores);
+  search.num_queries += num_points;
+  double best_cost = meanCappedResidual(scores);
+  for (const RobustFit& end : ends) {
+    best_cost = std::min(best_cost, end.cost);
+    search.num_queries += num_points * end.num_evaluations;
+  }
+  for (const RobustFit& end : ends) {
+    if (end.cost > (1.0 + cost_margin) * best_cost ||
+        static_cast<int>(known.size()) >= options.max_modes)
+      break;
+    if (isKnown(end.pose, known, min_squared_distance))
+      continue;
+    const CalibratedEstimate estimate =
+        estimateCalibrated(scorer, prior, options.estimate, &end.pose);
+    search.num_queries += estimate.num_queries;
+    if (isKnown(estimate.mode, known, min_squared_distance_of_modes))
+      continue;
+    known.emplace_back(estimate);
+    search.modes.push_back({estimate, 0.0});
+  }
+  weighModes(scorer, prior, search.modes);
+  return search;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,22 @@
+/** \file
+ * \brief How much of the posterior each of several modes has.
+ */
+#pragma once
+
+#include <bayesian_icp/calibration/calibrated_draws.h>
+
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief Set log_weight of modes of one registration and sort them by it.
+ *
+ * It is the Gaussian's integral times the prior, less the energy of the residuals above
+ * that of the best mode, as far as this is above its own noise: E max(0, 1 - 4 V /
+ * E^2), V the variance of E over clusters of points. */
+void
+weighModes(const SurfaceScorer& scorer,
+           const Prior& prior,
+           std::vector<CalibratedMode>& modes);
+
+} // namespace bayesian_icp
