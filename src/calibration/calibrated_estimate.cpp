@@ -25,9 +25,13 @@ constexpr int max_mode_steps = 8;
  * this factor. */
 constexpr double icp_to_prior_scale = 0.25;
 
-/** Standard deviation of the first secants' steps is at least that of the target's
- * noise. */
+/** Neighbouring points repeat each other: weight against the prior of the Gaussian with
+ * which the first secants are planned. */
 constexpr double points_to_prior = 0.2;
+
+/** Least displacement of a secant's steps, in the target's noise: more of it flattens
+ * Tukey's score, less makes the secants noisy. */
+constexpr double min_step_to_noise = 0.5;
 
 /** Directions with less information, in units of the prior's, are held by the prior
  * only. */
@@ -170,8 +174,11 @@ estimateCalibrated(const SurfaceScorer& scorer,
   Secants secants;
   DebitedInformation debited;
   for (int round = 0; round < options.num_rounds; ++round) {
-    const SecantPlan plan = {
-        e.covariance, e.displacement_metric, e.prior.precision, noise, J.covariance};
+    const SecantPlan plan = {e.covariance,
+                             e.displacement_metric,
+                             e.prior.precision,
+                             min_step_to_noise * noise,
+                             J.covariance};
     secants = measureSecants(scorer, e.mode, e.scores, tau, plan);
     num_evaluations += secants.num_evaluations;
     e.score_covariance = J.covariance;

@@ -18,6 +18,10 @@ namespace {
 /** Seed of the partitions: they belong to the method, not to the run. */
 constexpr std::uint64_t partition_seed = 1;
 
+/** What six parameters cost in degrees of freedom: six were fitted, and the inverse of
+ * an estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
+constexpr double lost_degrees_of_freedom = 13.0;
+
 /** Leaves of one randomised kd-split. */
 class Partition {
 public:
@@ -211,7 +215,11 @@ scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
   const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
                       0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
   result.kappa_inf = std::max({1.0, kappa_24, root * root});
-  result.covariance = 0.5 * result.kappa_inf * (J_48 / result.kappa_48 + independent);
+  // Independent points that the correlated ones amount to.
+  const double nu = static_cast<double>(points.scores.cols()) / result.kappa_inf;
+  const double correction = nu / std::max(1.0, nu - lost_degrees_of_freedom);
+  result.covariance =
+      0.5 * correction * result.kappa_inf * (J_48 / result.kappa_48 + independent);
   return result;
 }
 

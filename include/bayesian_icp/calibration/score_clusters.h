@@ -56,7 +56,8 @@ struct ScoreCovariance {
 };
 
 /** \brief Estimate J: half the shape of 48 clusters, half that of independent points,
- * both of the size of clusters that are independent.
+ * both of the size of clusters that are independent, and larger by nu / (nu - 13) for
+ * the nu = n / kappa_inf independent points from which it was estimated.
  * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
 BAYESIAN_ICP_EXPORT ScoreCovariance
 scoreCovariance(const PointScores& points, const Matrix6d& fit_precision);
