@@ -7,12 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace bayesian_icp {
 
 using Eigen::Matrix3d;
-using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
@@ -33,6 +31,9 @@ constexpr double min_aspect = 0.2;
  * centre, and surfaces would look flatter than they are. */
 constexpr double ball_to_neighborhood = 1.5;
 
+/** Of the search tree: the fastest for some tens of neighbours. */
+constexpr std::size_t max_leaf_size = 16;
+
 constexpr int num_quadric_terms = 6;
 constexpr int num_quartic_terms = 15;
 /** Points below which the quartic is no test of the quadric. */
@@ -40,17 +41,6 @@ constexpr Eigen::Index min_points = 21;
 
 using QuarticTerms = Eigen::Matrix<double, num_quartic_terms, 1>;
 using QuarticMatrix = Eigen::Matrix<double, num_quartic_terms, num_quartic_terms>;
-
-/** 1, x, y, x^2, x y, y^2, ... y^4. */
-QuarticTerms
-quarticTerms(double x, double y)
-{
-  const double xx = x * x, xy = x * y, yy = y * y;
-  QuarticTerms terms;
-  terms << 1.0, x, y, xx, xy, yy, xx * x, xx * y, x * yy, yy * y, xx * xx, xx * xy,
-      xx * yy, xy * yy, yy * yy;
-  return terms;
-}
 
 /** Principal axes of a neighbourhood. */
 struct PrincipalFrame {
@@ -63,12 +53,14 @@ struct PrincipalFrame {
 };
 
 PrincipalFrame
-principalFrame(const Matrix3Xd& points)
+principalFrame(const PointRows& points)
 {
-  const Vector3d mean = points.rowwise().mean();
-  const Matrix3Xd centred = points.colwise() - mean;
-  const Matrix3d covariance =
-      centred * centred.transpose() / static_cast<double>(points.cols());
+  const PointRows centred = points.rowwise() - points.colwise().mean();
+  Matrix3d covariance;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j)
+      covariance(i, j) = covariance(j, i) = centred.col(i).dot(centred.col(j));
+  covariance /= static_cast<double>(points.rows());
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
   solver.computeDirect(covariance);
   PrincipalFrame frame;
@@ -80,23 +72,59 @@ principalFrame(const Matrix3Xd& points)
   return frame;
 }
 
-/** Moments of the regression of heights on quartic terms of the plane, which is scaled
- * to the unit disc. */
-struct Regression {
-  QuarticMatrix normal_matrix = QuarticMatrix::Zero();
-  QuarticTerms moments = QuarticTerms::Zero();
-  double squared_heights = 0.0;
+/** Place of x^a y^b, a + b = degree, among 1, x, y, x^2, x y, y^2, ... */
+constexpr int
+placeOfTerm(int degree, int power_of_y)
+{
+  return degree * (degree + 1) / 2 + power_of_y;
+}
 
-  Regression(const Matrix3Xd& local, double radius)
+/** Normal equations of the regression of heights on quartic terms of the plane, which
+ * is scaled to the unit disc. */
+struct Regression {
+  QuarticMatrix normal_matrix;
+  QuarticTerms moments;
+  double squared_heights;
+
+  Regression(const PointRows& local, double radius)
   {
-    for (Eigen::Index i = 0; i < local.cols(); ++i) {
-      const QuarticTerms terms =
-          quarticTerms(local(0, i) / radius, local(1, i) / radius);
-      normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(terms);
-      moments += local(2, i) * terms;
-      squared_heights += local(2, i) * local(2, i);
+    const ProductTerms terms =
+        productTerms(local.col(0) / radius, local.col(1) / radius);
+    moments = terms.leftCols<num_quartic_terms>().transpose() * local.col(2);
+    squared_heights = local.col(2).squaredNorm();
+    fillNormalMatrix(terms.colwise().sum());
+  }
+
+private:
+  static constexpr int max_degree = 4;
+  static constexpr int num_product_terms = placeOfTerm(2 * max_degree + 1, 0);
+  /** One point a row. */
+  using ProductTerms = Eigen::Matrix<double, Eigen::Dynamic, num_product_terms>;
+
+  /** Products of two quartic terms: those up to the eighth degree. */
+  static ProductTerms
+  productTerms(const Eigen::VectorXd& x, const Eigen::VectorXd& y)
+  {
+    ProductTerms terms(x.size(), num_product_terms);
+    terms.col(0).setOnes();
+    for (int degree = 1; degree <= 2 * max_degree; ++degree) {
+      const int place = placeOfTerm(degree, 0), lower = placeOfTerm(degree - 1, 0);
+      for (int k = 0; k < degree; ++k)
+        terms.col(place + k) = x.cwiseProduct(terms.col(lower + k));
+      terms.col(place + degree) = y.cwiseProduct(terms.col(place - 1));
     }
-    normal_matrix = QuarticMatrix(normal_matrix.selfadjointView<Eigen::Lower>());
+    return terms;
+  }
+
+  void
+  fillNormalMatrix(const Eigen::Matrix<double, 1, num_product_terms>& sums)
+  {
+    for (int p = 0; p <= max_degree; ++p)
+      for (int q = 0; q <= max_degree; ++q)
+        for (int j = 0; j <= p; ++j)
+          for (int k = 0; k <= q; ++k)
+            normal_matrix(placeOfTerm(p, j), placeOfTerm(q, k)) =
+                sums[placeOfTerm(p + q, j + k)];
   }
 };
 
@@ -118,12 +146,12 @@ misfit(const Regression& regression, double quadric_rss, Eigen::Index num_points
 
 /** Set quadric, sigma and is_usable from the neighbours in the patch's frame. */
 void
-fitQuadric(const Matrix3Xd& local,
+fitQuadric(const PointRows& local,
            double aspect,
            const SurfaceModelOptions& options,
            SurfacePatch& patch)
 {
-  const Eigen::Index num_points = local.cols();
+  const Eigen::Index num_points = local.rows();
   const Regression regression(local, patch.radius);
   using QuadricMatrix = Eigen::Matrix<double, num_quadric_terms, num_quadric_terms>;
   const QuadricMatrix matrix =
@@ -139,7 +167,7 @@ fitQuadric(const Matrix3Xd& local,
                    solution[4] * r * r,
                    solution[5] * r * r};
   patch.sigma = std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
-  const double centroid_offset = local.topRows<2>().rowwise().mean().norm();
+  const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
   patch.is_usable = solution.allFinite() && aspect >= min_aspect &&
                     misfit(regression, rss, num_points) < options.max_misfit &&
                     centroid_offset < options.max_centroid_offset * patch.radius &&
@@ -158,28 +186,25 @@ gatherNeighbors(const PointNeighbors& cloud,
              static_cast<std::size_t>(ball_to_neighborhood * count),
              workspace.indices,
              workspace.squared_distances);
-  Matrix3Xd ball(3, static_cast<Eigen::Index>(workspace.indices.size()));
-  for (Eigen::Index i = 0; i < ball.cols(); ++i)
-    ball.col(i) =
+  PointRows ball(static_cast<Eigen::Index>(workspace.indices.size()), 3);
+  for (Eigen::Index i = 0; i < ball.rows(); ++i)
+    ball.row(i) =
         (cloud.points().col(workspace.indices[static_cast<std::size_t>(i)]) - point)
-            .cast<double>();
-  const Eigen::Matrix<double, 3, 2> plane = principalFrame(ball).axes.leftCols<2>();
-  const Eigen::VectorXd squared_distances =
-      (plane.transpose() * ball).colwise().squaredNorm();
-  auto& order = workspace.order;
-  order.resize(workspace.indices.size());
-  std::iota(order.begin(), order.end(), Eigen::Index(0));
-  count = std::min(count, static_cast<int>(order.size()));
-  std::partial_sort(order.begin(),
-                    order.begin() + count,
-                    order.end(),
-                    [&](Eigen::Index a, Eigen::Index b) {
-                      return squared_distances[a] < squared_distances[b] ||
-                             (squared_distances[a] == squared_distances[b] && a < b);
-                    });
-  workspace.neighbors.resize(3, count);
-  for (int i = 0; i < count; ++i)
-    workspace.neighbors.col(i) = ball.col(order[static_cast<std::size_t>(i)]);
+            .cast<double>()
+            .transpose();
+  const Matrix3d axes = principalFrame(ball).axes;
+  const Eigen::ArrayXd distances = ball.lazyProduct(axes.col(0)).array().square() +
+                                   ball.lazyProduct(axes.col(1)).array().square();
+  auto& ordered = workspace.ordered;
+  ordered.assign(distances.data(), distances.data() + distances.size());
+  count = std::min(count, static_cast<int>(ordered.size()));
+  std::nth_element(ordered.begin(), ordered.begin() + count - 1, ordered.end());
+  const double furthest = ordered[static_cast<std::size_t>(count - 1)];
+  workspace.neighbors.resize(count, 3);
+  int next = 0;
+  for (Eigen::Index i = 0; i < ball.rows() && next < count; ++i)
+    if (distances[i] <= furthest)
+      workspace.neighbors.row(next++) = ball.row(i);
 }
 
 } // namespace
@@ -210,7 +235,7 @@ struct PointNeighbors::Index {
 
   explicit Index(const Eigen::Matrix3Xf& points)
   : adaptor{points}
-  , tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(10))
+  , tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(max_leaf_size))
   {
     tree.buildIndex();
   }
@@ -258,11 +283,11 @@ fitPatch(const PointNeighbors& cloud,
   for (int growth = 1;; growth *= 2) {
     const int count = std::min(growth * options.num_neighbors, num_points);
     gatherNeighbors(cloud, point, count, workspace);
-    const Matrix3Xd& neighbors = workspace.neighbors;
+    const PointRows& neighbors = workspace.neighbors;
     const PrincipalFrame frame = principalFrame(neighbors);
-    const Matrix3Xd local = frame.axes.transpose() * neighbors;
+    const PointRows local = neighbors.lazyProduct(frame.axes);
     patch.axes = frame.axes;
-    patch.radius = std::sqrt(local.topRows<2>().colwise().squaredNorm().maxCoeff());
+    patch.radius = std::sqrt(local.leftCols<2>().rowwise().squaredNorm().maxCoeff());
     const bool is_thick = patch.radius < options.min_radius_to_noise * frame.thickness;
     const bool is_narrow = frame.aspect < wanted_aspect;
     const int next = 2 * growth;
@@ -275,7 +300,7 @@ fitPatch(const PointNeighbors& cloud,
                   : 0.0;
     patch.sigma = frame.thickness;
     patch.is_usable = false;
-    if (neighbors.cols() >= min_points && patch.radius > 0.0)
+    if (neighbors.rows() >= min_points && patch.radius > 0.0)
       fitQuadric(local, frame.aspect, options, patch);
     return patch;
   }

@@ -42,16 +42,20 @@ private:
   std::unique_ptr<const Index> index_;
 };
 
+/** \brief One point a row: loops over points are vectorised. */
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
 /** \brief Buffers of one thread. */
 struct PatchFitWorkspace {
   std::vector<std::uint32_t> indices;
   std::vector<float> squared_distances;
-  std::vector<Eigen::Index> order;
-  Eigen::Matrix3Xd neighbors;
+  std::vector<double> ordered;
+  PointRows neighbors;
 };
 
 /** \brief Least-squares quadric of the neighbourhood of \p point. The neighbourhood
  * grows while it is no wider than its noise or as narrow as a scan line.
+ * \param[out] workspace indices: the points around it, nearest first
  * \param[out] spacing distance to the nearest other point [m]
  * \return the patch; its sigma is that of this neighbourhood alone */
 SurfacePatch
