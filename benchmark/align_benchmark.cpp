@@ -1,5 +1,6 @@
-// align() of the class with preset `exact` (ICP and posterior) against PCL's ICP and
-// GICP, all with their defaults and from the same guess, in real time.
+// align() of the class with presets `exact` and `calibrated` (ICP and posterior)
+// against PCL's ICP and GICP, all with their defaults and from the same guess, in real
+// time.
 //
 //   align_benchmark source.pcd target.pcd [T_init.txt] [Google Benchmark options]
 #include "benchmark_clouds.h"
@@ -44,21 +45,32 @@ align(benchmark::State& state,
 using BayesianIcp = pcl::BayesianIterativeClosestPoint<Point, Point>;
 
 void
-addBayesian(const Input& input, const std::string& scale, double sigma, double n)
+addBayesian(const Input& input,
+            const std::string& name,
+            const std::function<void(BayesianIcp&)>& prepare)
 {
   for (const int num_threads : {1, 2})
     benchmark::RegisterBenchmark(
-        ("exact/" + scale + "/threads:" + std::to_string(num_threads)).c_str(),
+        (name + "/threads:" + std::to_string(num_threads)).c_str(),
         [=](benchmark::State& state) {
           align<BayesianIcp>(state, input, [=](BayesianIcp& icp) {
-            icp.setPreset(bayesian_icp::Preset::Exact);
-            icp.setMeasurementSigma(sigma);
-            icp.setEffectivePoints(n);
+            prepare(icp);
             icp.setNumberOfThreads(static_cast<unsigned int>(num_threads));
           });
         })
         ->UseRealTime()
+        ->MeasureProcessCPUTime()
         ->Unit(benchmark::kMillisecond);
+}
+
+void
+addExact(const Input& input, const std::string& scale, double sigma, double n)
+{
+  addBayesian(input, "exact/" + scale, [=](BayesianIcp& icp) {
+    icp.setPreset(bayesian_icp::Preset::Exact);
+    icp.setMeasurementSigma(sigma);
+    icp.setEffectivePoints(n);
+  });
 }
 
 template <typename Registration>
@@ -71,6 +83,7 @@ addPcl(const char* name, const Input& input)
                                      state, input, [](Registration&) {});
                                })
       ->UseRealTime()
+      ->MeasureProcessCPUTime()
       ->Unit(benchmark::kMillisecond);
 }
 
@@ -95,8 +108,11 @@ main(int argc, char** argv)
               input.target->size());
   addPcl<pcl::IterativeClosestPoint<Point, Point>>("pcl_icp", input);
   addPcl<pcl::GeneralizedIterativeClosestPoint<Point, Point>>("pcl_gicp", input);
-  addBayesian(input, "sigma:1,N:6000", 1.0, 6000.0);
-  addBayesian(input, "sigma:0.0015,N:100", 0.0015, 100.0);
+  addBayesian(input, "calibrated", [](BayesianIcp& icp) {
+    icp.setPreset(bayesian_icp::Preset::Calibrated);
+  });
+  addExact(input, "sigma:1,N:6000", 1.0, 6000.0);
+  addExact(input, "sigma:0.0015,N:100", 0.0015, 100.0);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }
