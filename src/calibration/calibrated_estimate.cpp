@@ -179,7 +179,7 @@ estimateCalibrated(const SurfaceScorer& scorer,
                              e.prior.precision,
                              min_step_to_noise * noise,
                              J.covariance};
-    secants = measureSecants(scorer, e.mode, e.scores, tau, plan);
+    secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
     num_evaluations += secants.num_evaluations;
     e.score_covariance = J.covariance;
     for (int pass = 0; pass < 2; ++pass) {

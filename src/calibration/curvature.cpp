@@ -27,6 +27,11 @@ constexpr int max_shortenings = 3;
 /** Steps shorter than this part of the least displacement are not tried. */
 constexpr double min_shortened = 0.2;
 
+/** A step that would change by less than this factor, and turn by less than this cosine
+ * where posterior standard deviations are one, is not measured again. */
+constexpr double max_change_of_length = 1.5;
+constexpr double min_cosine_of_turn = 0.95;
+
 /** A secant is clear if its information is so many times the noise threshold. */
 constexpr double clear_to_threshold = 2.0;
 
@@ -167,6 +172,51 @@ noiseDebit(double information, double noise, double threshold)
   return noise * (threshold + (1.0 - threshold) * std::clamp(above, 0.0, 1.0));
 }
 
+/** Length of the step along an axis. */
+double
+lengthOf(const Vector6d& axis, double standard_deviation, const SecantPlan& plan)
+{
+  const double longest =
+      max_step_to_prior_sd / std::sqrt(axis.dot(plan.prior_precision * axis));
+  return std::min(
+      longest,
+      std::max(plan.min_displacement, step_to_posterior_sd * standard_deviation));
+}
+
+/** Whether two steps are so much alike, up to sign, that one secant does for both.
+ * \param[in] information inverse covariance: a little of a long step along a tight
+ * direction matters, a little of a short one along a loose direction does not */
+bool
+isNearly(const Vector6d& step, const Vector6d& planned, const Matrix6d& information)
+{
+  const double length = std::sqrt(step.dot(information * step));
+  const double planned_length = std::sqrt(planned.dot(information * planned));
+  return std::abs(step.dot(information * planned)) >
+             min_cosine_of_turn * length * planned_length &&
+         std::max(length, planned_length) <
+             max_change_of_length * std::min(length, planned_length);
+}
+
+/** The longest secant of steps up to \p length that is clear; the longest of all if
+ * none is. */
+Secant
+clearSecant(SecantMaker& maker,
+            const Vector6d& axis,
+            double length,
+            int direction,
+            double min_displacement)
+{
+  const Secant widest = maker.along(length * axis, direction);
+  Secant secant = widest;
+  for (int i = 0; i < max_shortenings && !maker.isClear(secant); ++i) {
+    length *= step_shortening;
+    if (length < min_shortened * min_displacement)
+      break;
+    secant = maker.along(length * axis, direction);
+  }
+  return maker.isClear(secant) ? secant : widest;
+}
+
 } // namespace
 
 Secants
@@ -174,29 +224,21 @@ measureSecants(const SurfaceScorer& scorer,
                const Isometry3d& mode,
                const SurfaceScores& at_mode,
                double tau,
-               const SecantPlan& plan)
+               const SecantPlan& plan,
+               const Secants& previous)
 {
   const PrincipalAxes principal(plan.covariance, plan.displacement_metric);
   SecantMaker maker(scorer, mode, at_mode, tau, plan.score_covariance);
-  Secants secants;
+  const Matrix6d information = plan.covariance.inverse();
+  Secants secants = previous;
   for (int k = 0; k < 6; ++k) {
     const Vector6d axis = principal.axes.col(k);
-    const double longest =
-        max_step_to_prior_sd / std::sqrt(axis.dot(plan.prior_precision * axis));
-    double length =
-        std::min(longest,
-                 std::max(plan.min_displacement,
-                          step_to_posterior_sd * principal.standard_deviations[k]));
-    const Secant widest = maker.along(length * axis, k);
-    Secant secant = widest;
-    for (int i = 0; i < max_shortenings && !maker.isClear(secant); ++i) {
-      length *= step_shortening;
-      if (length < min_shortened * plan.min_displacement)
-        break;
-      secant = maker.along(length * axis, k);
-    }
-    if (!maker.isClear(secant))
-      secant = widest;
+    const double length = lengthOf(axis, principal.standard_deviations[k], plan);
+    const Vector6d step = length * axis;
+    if (isNearly(step, previous.planned.col(k), information))
+      continue;
+    const Secant secant = clearSecant(maker, axis, length, k, plan.min_displacement);
+    secants.planned.col(k) = step;
     secants.steps.col(k) = secant.step;
     secants.differences.col(k) = secant.difference;
     secants.noise[static_cast<std::size_t>(k)] = secant.noise;

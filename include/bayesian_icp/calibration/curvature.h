@@ -30,10 +30,12 @@ struct SecantPlan {
 struct Secants {
   /** Columns are the steps, tightest direction first [m, rad]. */
   Matrix6d steps = Matrix6d::Zero();
+  /** The steps before they were shortened. */
+  Matrix6d planned = Matrix6d::Zero();
   /** Half the difference of the scores at +step and -step. */
   Matrix6d differences = Matrix6d::Zero();
   /** Covariance of each difference, without what Gauss-Newton predicts of it. */
-  std::array<Matrix6d, 6> noise;
+  std::array<Matrix6d, 6> noise = {};
   /** H: symmetric, in the twists' coordinates. */
   Matrix6d curvature = Matrix6d::Zero();
   /** Evaluations of all points that were needed. */
@@ -42,13 +44,16 @@ struct Secants {
 
 /** \brief Measure the curvature about a mode.
  * \param[in] at_mode scores there
- * \param[in] tau scale of the residuals in Tukey's weight */
+ * \param[in] tau scale of the residuals in Tukey's weight
+ * \param[in] previous secants about the same mode, which are kept where the step would
+ *            be nearly the same */
 BAYESIAN_ICP_EXPORT Secants
 measureSecants(const SurfaceScorer& scorer,
                const Eigen::Isometry3d& mode,
                const SurfaceScores& at_mode,
                double tau,
-               const SecantPlan& plan);
+               const SecantPlan& plan,
+               const Secants& previous = Secants());
 
 /** \brief Factor c on the expected noise tr(J^-1 N) of a secant's information, which
  * noise alone exceeds with a probability of 1 in 1000 (Wilson and Hilferty's
