@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -30,6 +31,7 @@ public:
   , max_points_(max_points)
   , random_(random)
   , order_(static_cast<std::size_t>(positions.cols()))
+  , keys_(order_.size())
   , labels_(order_.size())
   {
     std::iota(order_.begin(), order_.end(), Index(0));
@@ -71,13 +73,15 @@ private:
     const double part = 0.4 + 0.2 * random_.uniform();
     const Index middle =
         begin + std::max<Index>(1, static_cast<Index>(part * double(end - begin)));
-    std::nth_element(order_.begin() + begin,
-                     order_.begin() + middle,
-                     order_.begin() + end,
-                     [&](Index a, Index b) {
-                       const double xa = rotated_(axis, a), xb = rotated_(axis, b);
-                       return xa < xb || (xa == xb && a < b);
-                     });
+    const auto size = static_cast<std::size_t>(end - begin);
+    for (std::size_t i = 0; i < size; ++i) {
+      const Index point = order_[static_cast<std::size_t>(begin) + i];
+      keys_[i] = {rotated_(axis, point), point};
+    }
+    std::nth_element(
+        keys_.begin(), keys_.begin() + (middle - begin), keys_.begin() + (end - begin));
+    for (std::size_t i = 0; i < size; ++i)
+      order_[static_cast<std::size_t>(begin) + i] = keys_[i].second;
     split(begin, middle);
     split(middle, end);
   }
@@ -100,6 +104,8 @@ private:
   Index max_points_;
   Random& random_;
   std::vector<Index> order_;
+  /** Coordinate and index of the points that are being split. */
+  std::vector<std::pair<double, Index>> keys_;
   std::vector<Index> labels_;
   Index num_leaves_ = 0;
 };
