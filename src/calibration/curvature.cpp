@@ -197,20 +197,20 @@ isNearly(const Vector6d& step, const Vector6d& planned, const Matrix6d& informat
              max_change_of_length * std::min(length, planned_length);
 }
 
-/** The longest secant of steps up to \p length that is clear; the longest of all if
- * none is. */
+/** The longest secant of steps from \p length down to \p shortest that is clear; the
+ * longest of all if none is. */
 Secant
 clearSecant(SecantMaker& maker,
             const Vector6d& axis,
             double length,
-            int direction,
-            double min_displacement)
+            double shortest,
+            int direction)
 {
   const Secant widest = maker.along(length * axis, direction);
   Secant secant = widest;
   for (int i = 0; i < max_shortenings && !maker.isClear(secant); ++i) {
     length *= step_shortening;
-    if (length < min_shortened * min_displacement)
+    if (length < shortest)
       break;
     secant = maker.along(length * axis, direction);
   }
@@ -237,7 +237,12 @@ measureSecants(const SurfaceScorer& scorer,
     const Vector6d step = length * axis;
     if (isNearly(step, previous.planned.col(k), information))
       continue;
-    const Secant secant = clearSecant(maker, axis, length, k, plan.min_displacement);
+    // Directions are in the order of their spread: those that the data do not hold come
+    // last in every round, and what was tried on them need not be tried again.
+    const double shortest = std::max(min_shortened * plan.min_displacement,
+                                     previous.unclear_displacement[k]);
+    const Secant secant = clearSecant(maker, axis, length, shortest, k);
+    secants.unclear_displacement[k] = maker.isClear(secant) ? 0.0 : length;
     secants.planned.col(k) = step;
     secants.steps.col(k) = secant.step;
     secants.differences.col(k) = secant.difference;

@@ -32,6 +32,9 @@ struct Secants {
   Matrix6d steps = Matrix6d::Zero();
   /** The steps before they were shortened. */
   Matrix6d planned = Matrix6d::Zero();
+  /** Where a secant is not above its noise, the root mean squared displacement of its
+   * step, and 0 elsewhere [m]. */
+  Vector6d unclear_displacement = Vector6d::Zero();
   /** Half the difference of the scores at +step and -step. */
   Matrix6d differences = Matrix6d::Zero();
   /** Covariance of each difference, without what Gauss-Newton predicts of it. */
