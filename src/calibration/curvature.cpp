@@ -35,10 +35,6 @@ constexpr double min_cosine_of_turn = 0.95;
 /** A secant is clear if its information is so many times the noise threshold. */
 constexpr double clear_to_threshold = 2.0;
 
-/** Where the information is so many times the noise threshold, only the noise's mean is
- * debited. */
-constexpr double full_to_threshold = 3.0;
-
 constexpr int num_noise_clusters = 48;
 constexpr int num_noise_partitions = 3;
 
@@ -161,17 +157,6 @@ struct PrincipalAxes {
   }
 };
 
-/** What a secant's noise of mean information \p noise is debited with: so much that
- * nothing is left up to the threshold, its mean where that is far exceeded, and in
- * between a line from the one to the other. */
-double
-noiseDebit(double information, double noise, double threshold)
-{
-  const double above =
-      (information / noise / threshold - 1.0) / (full_to_threshold - 1.0);
-  return noise * (threshold + (1.0 - threshold) * std::clamp(above, 0.0, 1.0));
-}
-
 /** Length of the step along an axis. */
 double
 lengthOf(const Vector6d& axis, double standard_deviation, const SecantPlan& plan)
@@ -254,55 +239,6 @@ measureSecants(const SurfaceScorer& scorer,
   secants.curvature =
       inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
   return secants;
-}
-
-double
-noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise)
-{
-  // 99.9 % quantile of a chi-square variate over its mean; z is the normal quantile.
-  constexpr double z = 3.09;
-  const auto L = score_covariance.llt();
-  const Matrix6d half = L.matrixL().solve(noise);
-  const Matrix6d whitened = L.matrixL().solve(half.transpose());
-  const double sum = whitened.trace(), sum_of_squares = whitened.squaredNorm();
-  const double nu =
-      sum_of_squares > 0.0 ? std::clamp(sum * sum / sum_of_squares, 1.0, 6.0) : 6.0;
-  const double q = 2.0 / (9.0 * nu);
-  const double root = 1.0 - q + z * std::sqrt(q);
-  return root * root * root;
-}
-
-DebitedInformation
-debitedInformation(const Secants& secants,
-                   const Matrix6d& score_covariance,
-                   const Matrix6d& prior_precision,
-                   double min_relative_information)
-{
-  const Eigen::LDLT<Matrix6d> J(score_covariance);
-  const Matrix6d HV = secants.curvature * secants.steps;
-  DebitedInformation result;
-  result.raw = (HV.transpose() * J.solve(HV)).diagonal();
-  for (int k = 0; k < 6; ++k) {
-    const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
-    const Vector6d step = secants.steps.col(k);
-    const double mean_noise = J.solve(noise).trace();
-    const double kept =
-        result.raw[k] - (mean_noise > 0.0
-                             ? noiseDebit(result.raw[k],
-                                          mean_noise,
-                                          noiseThreshold(score_covariance, noise))
-                             : 0.0);
-    const bool is_held = kept > 0.0 && kept >= min_relative_information *
-                                                   step.dot(prior_precision * step);
-    result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
-  }
-  result.transfer =
-      secants.steps * result.keep.cwiseSqrt().asDiagonal() * secants.steps.inverse();
-  const Matrix6d HT = secants.curvature * result.transfer;
-  result.information = HT.transpose() * J.solve(HT);
-  result.information =
-      (0.5 * (result.information + result.information.transpose())).eval();
-  return result;
 }
 
 } // namespace bayesian_icp
