@@ -29,7 +29,7 @@ thinnedSource(const CoverageCase& problem)
 
 /** The flags of DataReport, and how many directions the data say nothing about. */
 std::string
-notesOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
+notesOf(const CalibratedEstimate& estimate)
 {
   std::string notes;
   const auto flag = [&notes](bool is_raised, const char* name) {
@@ -39,7 +39,8 @@ notesOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
   const double basin_distance = std::sqrt(
       estimate.other_end.dot(estimate.covariance.ldlt().solve(estimate.other_end)));
   flag(basin_distance > 3.0, "wrong_basin");
-  flag(estimate.scores.num_active < 0.25 * static_cast<double>(num_points),
+  flag(estimate.scores.num_active <
+           0.25 * static_cast<double>(estimate.scores.residuals.size()),
        "low_support");
   flag(96.0 * estimate.kappa_48 / estimate.kappa_inf < 30.0, "few_patches");
   flag(estimate.residual_scale > 2.0 || estimate.kappa_inf > 10.0, "misfit");
@@ -47,14 +48,14 @@ notesOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
 }
 
 MethodResult
-resultOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
+resultOf(const CalibratedEstimate& estimate)
 {
   MethodResult result;
   result.is_valid = true;
   result.mean = movedBy(estimate.mean, estimate.centre, estimate.mode);
   result.covariance = estimate.covariance;
   result.centre = estimate.centre;
-  result.notes = notesOf(estimate, num_points);
+  result.notes = notesOf(estimate);
   result.num_queries = estimate.num_queries;
   return result;
 }
@@ -75,38 +76,38 @@ addDraws(const ChainSet& chains, MethodResult& result)
   result.num_queries = -1;
 }
 
-MethodResult
-runWith(const CoverageCase& problem, bool has_draws)
+} // namespace
+
+CalibratedEstimate
+calibratedEstimateOf(const CoverageCase& problem)
 {
   const SurfaceModel model(problem.target, SurfaceModelOptions(), 1);
   const SurfaceScorer scorer(thinnedSource(problem), model);
-  const Prior prior = priorOf(problem);
-  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
-  MethodResult result = resultOf(estimate, scorer.sourcePoints().cols());
-  if (has_draws) {
-    ChainOptions options;
-    options.seed = problem.seed;
-    options.num_threads = 1;
-#ifdef HAS_CALIBRATED_DRAWS
-    addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
-#endif
-    result.is_valid = result.draws.rows() > 0;
-  }
-  return result;
+  return estimateCalibrated(scorer, priorOf(problem));
 }
-
-} // namespace
 
 MethodResult
 runCalibrated(const CoverageCase& problem)
 {
-  return runWith(problem, false);
+  return resultOf(calibratedEstimateOf(problem));
 }
 
 MethodResult
 runCalibratedDraws(const CoverageCase& problem)
 {
-  return runWith(problem, true);
+  const SurfaceModel model(problem.target, SurfaceModelOptions(), 1);
+  const SurfaceScorer scorer(thinnedSource(problem), model);
+  const Prior prior = priorOf(problem);
+  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
+  MethodResult result = resultOf(estimate);
+#ifdef HAS_CALIBRATED_DRAWS
+  ChainOptions options;
+  options.seed = problem.seed;
+  options.num_threads = 1;
+  addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
+#endif
+  result.is_valid = result.draws.rows() > 0;
+  return result;
 }
 
 } // namespace bayesian_icp::evaluate
