@@ -34,7 +34,7 @@ constexpr double max_observed_share_of_prior = 0.7071;
 constexpr double max_share_of_prior = 0.99;
 /** \brief Flags are raised beyond these; why there: docs/calibration_flags.md. */
 constexpr double max_basin_distance = 3.0;
-constexpr double max_other_cost_ratio = 1.35;
+constexpr double max_other_cost_ratio = 1.2;
 constexpr double min_active_fraction = 0.55;
 constexpr double min_effective_patches = 30.0;
 constexpr double max_residual_scale = 2.0;
