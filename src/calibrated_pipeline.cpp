@@ -116,8 +116,8 @@ estimateAndDraw(const SurfaceScorer& scorer,
 
   PosteriorEstimate result =
       withDraws(sampleCalibrated(scorer, prior, estimate, options.chains, progress));
-  result.summary.data = dataReportOf(
-      estimate, static_cast<std::size_t>(num_points), scorer.model().medianSigma());
+  result.summary.data =
+      dataReportOf(estimate, static_cast<std::size_t>(num_points), scorer.model());
   judgeData(result.summary);
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -69,24 +70,14 @@ canonicalDirection(const Eigen::Vector3d& vector)
   return direction;
 }
 
-std::string
-misfitText(const DataReport& report)
+double
+leastShareOfPrior(const DataReport& report)
 {
-  std::string text = "the surfaces disagree by more than the noise: ";
-  const bool is_scale_large = !(report.residual_scale <= max_residual_scale);
-  const bool is_correlation_large =
-      !(report.correlation_factor <= max_correlation_factor);
-  if (is_scale_large)
-    text += formatted("residuals of %.1f times the target's noise (at most %.0f)",
-                      report.residual_scale,
-                      max_residual_scale);
-  if (is_scale_large && is_correlation_large)
-    text += ", ";
-  if (is_correlation_large)
-    text += formatted("a correlation factor of %.1f (at most %.0f)",
-                      report.correlation_factor,
-                      max_correlation_factor);
-  return text;
+  double least = 1.0;
+  for (const DataDirection& direction : report.directions)
+    least = std::min(least,
+                     direction.standard_deviation / direction.prior_standard_deviation);
+  return least;
 }
 
 } // namespace
@@ -103,6 +94,24 @@ toString(Observability observability)
     return "prior_only";
   }
   return "unknown";
+}
+
+DataFlags
+flagsOf(const DataReport& report)
+{
+  DataFlags flags;
+  flags.wrong_basin = !(report.basin_distance <= max_basin_distance ||
+                        report.other_cost_ratio > max_other_cost_ratio);
+  flags.low_support = !(report.active_fraction >= min_active_fraction);
+  flags.few_patches = !(report.effective_patches >= min_effective_patches);
+  flags.misfit = !(report.residual_scale <= max_residual_scale);
+  flags.no_information =
+      std::all_of(report.directions.begin(),
+                  report.directions.end(),
+                  [](const DataDirection& direction) {
+                    return direction.observability == Observability::PriorOnly;
+                  });
+  return flags;
 }
 
 std::string
@@ -130,9 +139,13 @@ describeFlags(const DataReport& report)
   if (report.flags.wrong_basin)
     texts.push_back(
         formatted("two starts ended %.1f standard deviations apart (at most "
-                  "%.0f), so that the pose may be a wrong one",
+                  "%.0f) and fit alike, with residuals in a ratio of %.2f "
+                  "(told apart from %.2f on), so that the pose may be a "
+                  "wrong one",
                   report.basin_distance,
-                  max_basin_distance));
+                  max_basin_distance,
+                  report.other_cost_ratio,
+                  max_other_cost_ratio));
   if (report.flags.low_support)
     texts.push_back(formatted(
         "only %.0f %% of the source points lie on the target's surface (at least "
@@ -145,7 +158,16 @@ describeFlags(const DataReport& report)
         report.effective_patches,
         min_effective_patches));
   if (report.flags.misfit)
-    texts.push_back(misfitText(report));
+    texts.push_back(formatted("the surfaces disagree by more than the noise: residuals "
+                              "of %.1f times the target's noise (at most %.0f)",
+                              report.residual_scale,
+                              max_residual_scale));
+  if (report.flags.no_information)
+    texts.push_back(formatted(
+        "the data hold none of the six motions: along each the posterior is at least "
+        "%.1f %% of the prior (at most %.0f %% for one of them)",
+        100.0 * leastShareOfPrior(report),
+        100.0 * max_share_of_prior));
   return texts;
 }
 

@@ -1,5 +1,6 @@
 // The report of a calibrated estimate: numbers, directions, flags and their thresholds.
 #include <bayesian_icp/calibration/calibrated_report.h>
+#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,20 @@ namespace {
 
 const Eigen::Vector3d centre(1.0, 2.0, 3.0);
 
+/** A flat sheet with noise. */
+const SurfaceModel&
+target()
+{
+  static const SurfaceModel model = [] {
+    Random random(5, 0);
+    Eigen::Matrix3Xd points(3, 400);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      points.col(i) << random.uniform(), random.uniform(), 0.002 * random.normal();
+    return SurfaceModel(points, SurfaceModelOptions(), 1);
+  }();
+  return model;
+}
+
 /** An estimate whose directions are the axes: a source of unit radius, a diagonal
  * prior, and what the data know of each. */
 CalibratedEstimate
@@ -24,11 +39,17 @@ diagonalEstimate()
   estimate.residual_scale = 1.5;
   estimate.scores.num_active = 90;
   estimate.keep << 1.0, 0.9, 0.4, 0.0, 1.0, 0.5;
-  estimate.relative_information << 99.0, 24.0, 3.0, 0.0, 399.0, 8.0;
+  Vector6d relative_information;
+  relative_information << 99.0, 24.0, 3.0, 0.0, 399.0, 8.0;
   estimate.prior.precision = Vector6d::Constant(4.0).asDiagonal();
-  const Vector6d information = 4.0 * estimate.relative_information;
+  const Vector6d information = 4.0 * relative_information;
   estimate.information = information.asDiagonal();
   estimate.covariance = (estimate.information + estimate.prior.precision).inverse();
+  // J = 1: the information before the debit is the curvature's square.
+  estimate.score_covariance.setIdentity();
+  for (int k = 0; k < 6; ++k)
+    if (estimate.keep[k] > 0.0)
+      estimate.curvature(k, k) = std::sqrt(information[k] / estimate.keep[k]);
   estimate.kappa_48 = 1.5;
   estimate.kappa_inf = 3.0;
   estimate.other_end[0] = 0.1;
@@ -37,14 +58,16 @@ diagonalEstimate()
 
 TEST(Report, ClosedFormOfADiagonalEstimate)
 {
-  const DataReport report = dataReportOf(diagonalEstimate(), 100, 0.002);
+  const DataReport report = dataReportOf(diagonalEstimate(), 100, target());
   EXPECT_TRUE(report.is_available);
   EXPECT_DOUBLE_EQ(report.residual_scale, 1.5);
-  EXPECT_DOUBLE_EQ(report.noise_scale, 0.003);
+  EXPECT_DOUBLE_EQ(report.noise_scale, 1.5 * target().medianSigma());
   EXPECT_DOUBLE_EQ(report.active_fraction, 0.9);
   EXPECT_DOUBLE_EQ(report.effective_patches, 48.0);
   EXPECT_DOUBLE_EQ(report.correlation_factor, 3.0);
-  EXPECT_NEAR(report.basin_distance, 0.1 * std::sqrt(400.0), 1e-12);
+  // Variance 1 / 400 m^2 of the posterior, and half the noise.
+  EXPECT_NEAR(
+      report.basin_distance, 0.1 / std::hypot(0.05, 0.5 * report.noise_scale), 1e-12);
   EXPECT_EQ(report.centre, centre);
 
   // Sorted by 1 / sqrt(4 (1 + relative information)).
@@ -59,11 +82,11 @@ TEST(Report, ClosedFormOfADiagonalEstimate)
   ASSERT_EQ(report.directions.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
     const DataDirection& direction = report.directions[i];
-    EXPECT_EQ(direction.twist, Vector6d(Vector6d::Unit(columns[i])));
+    EXPECT_NEAR(std::abs(direction.twist[columns[i]]), 1.0, 1e-12);
     EXPECT_NEAR(
         direction.standard_deviation, 0.5 / std::sqrt(1.0 + information[i]), 1e-12);
     EXPECT_NEAR(direction.prior_standard_deviation, 0.5, 1e-12);
-    EXPECT_EQ(direction.relative_information, information[i]);
+    EXPECT_NEAR(direction.relative_information, information[i], 1e-10);
     EXPECT_EQ(direction.observability, observability[i]) << i;
     EXPECT_EQ(direction.description, describeTwist(direction.twist, centre));
   }
@@ -81,37 +104,65 @@ TEST(Report, WhatHardlyNarrowsThePriorIsNotObserved)
   CalibratedEstimate estimate = diagonalEstimate();
   for (std::size_t i = 0; i < 4; ++i) {
     estimate.information(0, 0) = 4.0 * information[i];
+    estimate.curvature(0, 0) = std::sqrt(4.0 * information[i]);
     estimate.covariance(0, 0) = 0.25 / (1.0 + information[i]);
-    const DataReport report = dataReportOf(estimate, 100, 0.002);
-    const auto found =
-        std::find_if(report.directions.begin(),
-                     report.directions.end(),
-                     [](const DataDirection& d) { return d.twist[0] == 1.0; });
+    const DataReport report = dataReportOf(estimate, 100, target());
+    const auto found = std::find_if(
+        report.directions.begin(), report.directions.end(), [](const DataDirection& d) {
+          return std::abs(d.twist[0]) > 0.999;
+        });
     ASSERT_NE(found, report.directions.end());
     EXPECT_EQ(found->observability, expected[i]) << information[i];
   }
 }
 
-TEST(Report, DeviationsAlongObliqueDirectionsAreThoseOfTheirCoordinates)
+TEST(Report, DirectionsAreIndependentInPosteriorAndPrior)
 {
+  // Neither the information nor the prior nor the metric is diagonal; the data say
+  // nothing along two oblique twists.
+  Random random(9, 0);
+  Matrix6d A, B, C;
+  for (int k = 0; k < 6; ++k) {
+    A.col(k) = random.normal6();
+    B.col(k) = random.normal6();
+    C.col(k) = random.normal6();
+  }
   CalibratedEstimate estimate = diagonalEstimate();
-  estimate.directions(0, 1) = 1.0; // the second direction leans towards the first
-  const DataReport report = dataReportOf(estimate, 100, 0.002);
-  // Coordinates c of xi = V c: c_1 = xi_1, c_0 = xi_0 - xi_1.
-  const auto& covariance = estimate.covariance;
-  for (const DataDirection& direction : report.directions) {
-    const double prior_precision = 4.0 * direction.twist.squaredNorm();
-    EXPECT_NEAR(
-        direction.prior_standard_deviation, 1.0 / std::sqrt(prior_precision), 1e-12);
-    if (direction.twist == Vector6d(Vector6d::Unit(0))) {
-      EXPECT_NEAR(direction.standard_deviation,
-                  std::sqrt(covariance(0, 0) + covariance(1, 1)),
-                  1e-12);
+  estimate.prior.precision = B * B.transpose() + Matrix6d::Identity();
+  estimate.displacement_metric = C * C.transpose() + Matrix6d::Identity();
+  const Eigen::Matrix<double, 4, 6> rows = 10.0 * A.topRows<4>();
+  estimate.information = rows.transpose() * rows;
+  estimate.curvature = estimate.information;
+  estimate.score_covariance = estimate.information + 1e-9 * Matrix6d::Identity();
+  estimate.covariance = (estimate.information + estimate.prior.precision).inverse();
+  const DataReport report = dataReportOf(estimate, 100, target());
+  int num_free = 0;
+  for (const DataDirection& a : report.directions) {
+    EXPECT_NEAR(a.twist.dot(estimate.displacement_metric * a.twist), 1.0, 1e-10);
+    EXPECT_NEAR(a.standard_deviation / a.prior_standard_deviation,
+                1.0 / std::sqrt(1.0 + a.relative_information),
+                1e-10);
+    for (const DataDirection& b : report.directions) {
+      if (&a == &b)
+        continue;
+      const double scale = a.prior_standard_deviation * b.prior_standard_deviation;
+      EXPECT_NEAR(scale * a.twist.dot(estimate.prior.precision * b.twist), 0.0, 1e-8);
+      const double spread = a.standard_deviation * b.standard_deviation;
+      EXPECT_NEAR(spread * a.twist.dot(estimate.information * b.twist), 0.0, 1e-8);
     }
-    else if (direction.twist == Vector6d(Vector6d::Unit(0) + Vector6d::Unit(1))) {
-      EXPECT_NEAR(direction.standard_deviation, std::sqrt(covariance(1, 1)), 1e-12);
+    if (a.observability == Observability::PriorOnly) {
+      ++num_free;
+      EXPECT_NEAR((rows * a.twist).norm(), 0.0, 1e-6);
     }
   }
+  EXPECT_EQ(num_free, 2);
+}
+
+TEST(Report, StartsMayDifferFreelyWherePriorOnlyHolds)
+{
+  CalibratedEstimate estimate = diagonalEstimate();
+  estimate.other_end << 0.0, 0.0, 0.0, 50.0, 0.0, 0.0;
+  EXPECT_NEAR(dataReportOf(estimate, 100, target()).basin_distance, 0.0, 1e-6);
 }
 
 /** An estimate without flags. */
@@ -132,24 +183,27 @@ flagsAfter(const Change& change)
 {
   CalibratedEstimate estimate = goodEstimate();
   change(estimate);
-  return dataReportOf(estimate, 100, 0.002).flags;
+  return dataReportOf(estimate, 100, target()).flags;
 }
 
 TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
 {
   using E = CalibratedEstimate;
   EXPECT_FALSE(flagsAfter([](E&) {}).any());
-  // 20 standard deviations a metre along x.
+  // 20 standard deviations a metre along x; half the noise is 2 % of one.
   EXPECT_FALSE(flagsAfter([](E& e) { e.other_end[0] = 0.149; }).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.other_end[0] = 0.151; }).wrong_basin);
-  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active = 25; }).any());
-  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active = 24; }).low_support);
+  EXPECT_FALSE(flagsAfter([](E& e) {
+                 e.other_end[0] = 1.0;
+                 e.other_cost_ratio = max_other_cost_ratio + 0.01;
+               }).any());
+  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active = 55; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active = 54; }).low_support);
   EXPECT_FALSE(flagsAfter([](E& e) { e.kappa_inf = 3.83; }).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.kappa_inf = 3.85; }).few_patches);
   EXPECT_FALSE(flagsAfter([](E& e) { e.residual_scale = 1.99; }).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.residual_scale = 2.01; }).misfit);
-  EXPECT_FALSE(flagsAfter([](E& e) { e.kappa_48 = e.kappa_inf = 9.9; }).any());
-  EXPECT_TRUE(flagsAfter([](E& e) { e.kappa_48 = e.kappa_inf = 10.1; }).misfit);
+  EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
 }
 
 TEST(Report, WhatIsNotANumberIsFlagged)

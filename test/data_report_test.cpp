@@ -91,31 +91,28 @@ TEST(DescribeFlags, NameNumberAndThreshold)
 {
   EXPECT_TRUE(describeFlags(goodReport()).empty());
   DataReport report = goodReport();
-  report.flags = {true, true, true, true};
+  report.flags = {true, true, true, true, true};
+  report.directions.resize(6);
+  for (DataDirection& direction : report.directions) {
+    direction.standard_deviation = 0.995;
+    direction.prior_standard_deviation = 1.0;
+  }
+  report.other_cost_ratio = 1.02;
   report.basin_distance = 5.25;
   report.active_fraction = 0.09;
   report.effective_patches = 12.0;
   report.residual_scale = 2.6;
   report.correlation_factor = 14.0;
   const auto texts = describeFlags(report);
-  ASSERT_EQ(texts.size(), 4u);
-  const char* parts[4][2] = {{"5.2 ", "at most 3"},
-                             {"9 %", "25 %"},
+  ASSERT_EQ(texts.size(), 5u);
+  const char* parts[5][2] = {{"5.2 ", "at most 3"},
+                             {"9 %", "55 %"},
                              {"12 ", "at least 30"},
-                             {"2.6 ", "14.0 "}};
-  for (std::size_t i = 0; i < 4; ++i)
+                             {"2.6 ", "at most 2"},
+                             {"99.5 %", "99 %"}};
+  for (std::size_t i = 0; i < 5; ++i)
     for (const char* part : parts[i])
       EXPECT_NE(texts[i].find(part), std::string::npos) << texts[i];
-}
-
-TEST(DescribeFlags, MisfitTellsWhichOfItsTwoReasons)
-{
-  DataReport report = goodReport();
-  report.flags.misfit = true;
-  report.correlation_factor = 11.0;
-  const std::string text = describeFlags(report).at(0);
-  EXPECT_NE(text.find("11.0"), std::string::npos);
-  EXPECT_EQ(text.find("residuals"), std::string::npos);
 }
 
 } // namespace

@@ -4,10 +4,10 @@
 #include "random_part.h"
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
+#include <bayesian_icp/calibration/calibrated_report.h>
 
-#include <Eigen/Cholesky>
-
-#include <cmath>
+#include <algorithm>
+#include <cstdio>
 
 namespace bayesian_icp::evaluate {
 
@@ -27,39 +27,59 @@ thinnedSource(const CoverageCase& problem)
                         randomPart(problem.source.cols(), max_source_points, random));
 }
 
-/** The flags of DataReport, and how many directions the data say nothing about. */
 std::string
-notesOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
+numberNote(const char* name, double value)
+{
+  char text[64];
+  std::snprintf(text, sizeof(text), ";%s=%.3g", name, value);
+  return text;
+}
+
+/** The raised flags, how many directions the data say nothing about, and the
+ * numbers that the flags are made of. */
+std::string
+notesOf(const DataReport& report)
 {
   std::string notes;
   const auto flag = [&notes](bool is_raised, const char* name) {
     if (is_raised)
       notes += std::string("flag:") + name + ';';
   };
-  const double basin_distance = std::sqrt(
-      estimate.other_end.dot(estimate.covariance.ldlt().solve(estimate.other_end)));
-  flag(basin_distance > 3.0, "wrong_basin");
-  flag(estimate.scores.num_active < 0.25 * static_cast<double>(num_points),
-       "low_support");
-  flag(96.0 * estimate.kappa_48 / estimate.kappa_inf < 30.0, "few_patches");
-  flag(estimate.residual_scale > 2.0 || estimate.kappa_inf > 10.0, "misfit");
-  return notes + "prior_only=" + std::to_string((estimate.keep.array() == 0.0).count());
+  flag(report.flags.wrong_basin, "wrong_basin");
+  flag(report.flags.low_support, "low_support");
+  flag(report.flags.few_patches, "few_patches");
+  flag(report.flags.misfit, "misfit");
+  flag(report.flags.no_information, "no_information");
+  const auto num_free = std::count_if(
+      report.directions.begin(), report.directions.end(), [](const auto& direction) {
+        return direction.observability == Observability::PriorOnly;
+      });
+  return notes + "prior_only=" + std::to_string(num_free) +
+         numberNote("basin_distance", report.basin_distance) +
+         numberNote("active", report.active_fraction) +
+         numberNote("other_cost_ratio", report.other_cost_ratio) +
+         numberNote("patches", report.effective_patches) +
+         numberNote("residual_scale", report.residual_scale) +
+         numberNote("correlation", report.correlation_factor);
 }
 
 MethodResult
-resultOf(const CalibratedEstimate& estimate, Eigen::Index num_points)
+resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
 {
   MethodResult result;
   result.is_valid = true;
   result.mean = movedBy(estimate.mean, estimate.centre, estimate.mode);
   result.covariance = estimate.covariance;
   result.centre = estimate.centre;
-  result.notes = notesOf(estimate, num_points);
+  result.notes =
+      notesOf(dataReportOf(estimate,
+                           static_cast<std::size_t>(scorer.sourcePoints().cols()),
+                           scorer.model()));
   result.num_queries = estimate.num_queries;
   return result;
 }
 
-[[maybe_unused]] void
+void
 addDraws(const ChainSet& chains, MethodResult& result)
 {
   Eigen::Index num_draws = 0;
@@ -75,38 +95,50 @@ addDraws(const ChainSet& chains, MethodResult& result)
   result.num_queries = -1;
 }
 
-MethodResult
-runWith(const CoverageCase& problem, bool has_draws)
-{
-  const SurfaceModel model(problem.target, SurfaceModelOptions(), 1);
-  const SurfaceScorer scorer(thinnedSource(problem), model);
-  const Prior prior = priorOf(problem);
-  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
-  MethodResult result = resultOf(estimate, scorer.sourcePoints().cols());
-  if (has_draws) {
-    ChainOptions options;
-    options.seed = problem.seed;
-    options.num_threads = 1;
-#ifdef HAS_CALIBRATED_DRAWS
-    addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
-#endif
-    result.is_valid = result.draws.rows() > 0;
-  }
-  return result;
-}
+/** A case, ready to be estimated. */
+struct Registration {
+  explicit Registration(const CoverageCase& problem)
+  : model(problem.target, SurfaceModelOptions(), 1)
+  , scorer(thinnedSource(problem), model)
+  , prior(priorOf(problem))
+  {}
+
+  SurfaceModel model;
+  SurfaceScorer scorer;
+  Prior prior;
+};
 
 } // namespace
+
+CalibratedEstimate
+calibratedEstimateOf(const CoverageCase& problem)
+{
+  const Registration registration(problem);
+  return estimateCalibrated(registration.scorer, registration.prior);
+}
 
 MethodResult
 runCalibrated(const CoverageCase& problem)
 {
-  return runWith(problem, false);
+  const Registration registration(problem);
+  return resultOf(estimateCalibrated(registration.scorer, registration.prior),
+                  registration.scorer);
 }
 
 MethodResult
 runCalibratedDraws(const CoverageCase& problem)
 {
-  return runWith(problem, true);
+  const Registration registration(problem);
+  const SurfaceScorer& scorer = registration.scorer;
+  const Prior& prior = registration.prior;
+  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
+  MethodResult result = resultOf(estimate, scorer);
+  ChainOptions options;
+  options.seed = problem.seed;
+  options.num_threads = 1;
+  addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
+  result.is_valid = result.draws.rows() > 0;
+  return result;
 }
 
 } // namespace bayesian_icp::evaluate

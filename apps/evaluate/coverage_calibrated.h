@@ -5,7 +5,14 @@
 
 #include "coverage_case.h"
 
+#include <bayesian_icp/calibration/calibrated_estimate.h>
+
 namespace bayesian_icp::evaluate {
+
+/** \brief The estimate that the methods are made of, from at most 2000 source points.
+ */
+CalibratedEstimate
+calibratedEstimateOf(const CoverageCase& problem);
 
 /** \brief The calibrated Gaussian; notes are its flags and the number of directions
  * held by the prior only. */

@@ -6,6 +6,7 @@
 #include "coverage_real.h"
 #include "coverage_study.h"
 #include "coverage_table.h"
+#include "gnuplot.h"
 
 #include <io/cloud_file.h>
 #include <io/errors.h>

@@ -75,9 +75,7 @@ coverageMethods()
     for (CoverageMethod& baseline : baselineMethods())
       all.push_back(std::move(baseline));
     all.push_back({"calibrated", runCalibrated});
-#ifdef HAS_CALIBRATED_DRAWS
     all.push_back({"calibrated-draws", runCalibratedDraws});
-#endif
     return all;
   }();
   return methods;

@@ -10,10 +10,6 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \throws io::FileError if there is no gnuplot */
-void
-requireGnuplot();
-
 /** \brief Write, as SVG and PNG, into a folder: coverage (share of truths within the
  * region of each probability, a curve a method), pit (histograms of the six
  * coordinates, a row a method) and anees (mean NEES / 6 of each scene and condition).

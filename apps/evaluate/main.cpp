@@ -4,6 +4,7 @@
  */
 #include "coverage_command.h"
 #include "samplers_command.h"
+#include "sbc_command.h"
 
 #include <boost/program_options/errors.hpp>
 
@@ -31,6 +32,9 @@ const SubCommand sub_commands[] = {
     {"coverage",
      "posteriors of every method against the true pose, on simulated and real scans",
      bayesian_icp::evaluate::runCoverageCommand},
+    {"sbc",
+     "simulation-based calibration: ranks of true poses among draws of the samplers",
+     bayesian_icp::evaluate::runSbcCommand},
 };
 
 void

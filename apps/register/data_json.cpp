@@ -29,7 +29,8 @@ flagsJson(const DataFlags& flags)
   return {{"wrong_basin", flags.wrong_basin},
           {"low_support", flags.low_support},
           {"few_patches", flags.few_patches},
-          {"misfit", flags.misfit}};
+          {"misfit", flags.misfit},
+          {"no_information", flags.no_information}};
 }
 
 } // namespace
@@ -46,6 +47,7 @@ dataJson(const DataReport& report)
       {"correlation_factor", jsonOf(report.correlation_factor)},
       {"active_fraction", jsonOf(report.active_fraction)},
       {"basin_distance_in_standard_deviations", jsonOf(report.basin_distance)},
+      {"other_start_cost_ratio", jsonOf(report.other_cost_ratio)},
       {"flags", flagsJson(report.flags)},
       {"flag_messages", describeFlags(report)},
       {"centre_m", jsonOf(report.centre)},

@@ -51,6 +51,7 @@ flagsLine(const DataFlags& flags)
   add(flags.low_support, "low support");
   add(flags.few_patches, "few patches");
   add(flags.misfit, "misfit");
+  add(flags.no_information, "no information");
   return "Flags:   " + (line.empty() ? "none" : line) + '\n';
 }
 

@@ -23,37 +23,38 @@ enum class Observability {
   PriorOnly
 };
 
-/** \brief CalibratedEstimate::keep below which a direction is weak: its information is
- * then less than twice the threshold at which it would be left to the prior. */
-constexpr double min_observed_keep = 0.5;
+/** \brief Share of the information along a direction that is above its noise, below
+ * which the direction is weak. */
+constexpr double min_observed_share_above_noise = 0.5;
 /** \brief Ratio of posterior to prior standard deviation from which a direction is
  * weak: the data then say less about it than the prior does. */
 constexpr double max_observed_share_of_prior = 0.7071;
 /** \brief Ratio of posterior to prior standard deviation from which a direction is held
  * by the prior only, whatever little the data add. */
 constexpr double max_share_of_prior = 0.99;
-/** \brief Flags are raised beyond these; why there: docs/calibration.md. */
+/** \brief Flags are raised beyond these; why there: docs/calibration_flags.md. */
 constexpr double max_basin_distance = 3.0;
-constexpr double min_active_fraction = 0.25;
+constexpr double max_other_cost_ratio = 1.2;
+constexpr double min_active_fraction = 0.55;
 constexpr double min_effective_patches = 30.0;
 constexpr double max_residual_scale = 2.0;
-constexpr double max_correlation_factor = 10.0;
 
 /** \brief Short name: "observed", "weak", "prior_only". */
 BAYESIAN_ICP_EXPORT const char*
 toString(Observability observability);
 
-/** \brief One motion and how well it is known. */
+/** \brief One motion and how well it is known. The six of a report are independent of
+ * each other, both in the posterior and in the prior. */
 struct DataDirection {
   /** Left twist (v, w) about DataReport::centre, target frame, of unit root mean
    * squared displacement of the source's points [1, rad/m]. */
   Vector6d twist = Vector6d::Zero();
   /** Posterior and prior standard deviation along it, as root mean squared displacement
-   * of the source's points [m]. The prior's is that of this motion alone, without any
-   * other: the one that the posterior has where the data hold all others. */
+   * of the source's points [m]. */
   double standard_deviation = std::numeric_limits<double>::quiet_NaN();
   double prior_standard_deviation = std::numeric_limits<double>::quiet_NaN();
-  /** Information of the data along it, in units of the prior's. */
+  /** lambda: information of the data along it, in units of the prior's. The posterior's
+   * standard deviation is the prior's / sqrt(1 + lambda). */
   double relative_information = 0.0;
   Observability observability = Observability::Observed;
   /** In words: see describeTwist(). */
@@ -62,7 +63,9 @@ struct DataDirection {
 
 /** \brief Things that make a posterior doubtful. */
 struct DataFlags {
-  /** The two starts ended more than max_basin_distance standard deviations apart. */
+  /** The two starts ended more than max_basin_distance apart, and the worse of the two
+   * ends costs no more than max_other_cost_ratio times the better one: either may be
+   * right. */
   bool wrong_basin = false;
   /** Less than min_active_fraction of the source points lie on the target's surface. */
   bool low_support = false;
@@ -70,13 +73,15 @@ struct DataFlags {
    * Gaussian's quantiles. */
   bool few_patches = false;
   /** The surfaces disagree by more than the noise: residual_scale above
-   * max_residual_scale, or correlation_factor above max_correlation_factor. */
+   * max_residual_scale. */
   bool misfit = false;
+  /** All six directions are held by the prior only. */
+  bool no_information = false;
 
   bool
   any() const
   {
-    return wrong_basin || low_support || few_patches || misfit;
+    return wrong_basin || low_support || few_patches || misfit || no_information;
   }
 };
 
@@ -95,9 +100,13 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
   /** kappa_inf: by how much neighbouring points repeat each other. */
   double correlation_factor = std::numeric_limits<double>::quiet_NaN();
-  /** Distance between the ends of the two starts, in posterior standard deviations
-   * (Mahalanobis). */
+  /** Mahalanobis distance between the ends of the two starts, without what is held by
+   * the prior only. Its covariance is the posterior's, widened by half the noise, as
+   * starts do not converge further. */
   double basin_distance = std::numeric_limits<double>::quiet_NaN();
+  /** Mean capped residual at the worse of the two ends, in units of the better one's.
+   */
+  double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
   /** Centre of the twists: the moved source's centroid, target frame [m]. */
   Eigen::Vector3d centre =
       Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -105,6 +114,11 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   std::vector<DataDirection> directions;
   DataFlags flags;
 };
+
+/** \brief The flags of a report's numbers. A number that is not finite raises its flag.
+ */
+BAYESIAN_ICP_EXPORT DataFlags
+flagsOf(const DataReport& report);
 
 /** \brief A twist in words: "translation along (0.98, 0.10, 0.10)", "rotation about
  * (0.00, 0.00, 1.00) through (0.100, 0.200, 0.050) m", "screw about ... with a pitch of

@@ -126,8 +126,6 @@ finish(const Secants& secants, const DebitedInformation& debited, CalibratedEsti
   e.keep = debited.keep;
   for (int k = 0; k < 6; ++k) {
     const Vector6d step = secants.steps.col(k);
-    e.relative_information[k] =
-        e.keep[k] * debited.raw[k] / step.dot(e.prior.precision * step);
     e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
   }
   e.covariance = (e.information + e.prior.precision).inverse();
@@ -159,6 +157,7 @@ estimateCalibrated(const SurfaceScorer& scorer,
   e.residual_scale = mode.residual_scale;
   e.cost = mode.cost;
   e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
+  e.other_cost_ratio = ends.other.cost / ends.best.cost;
   PatchHints hints;
   scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
   e.prior = twistPrior(prior, e.mode, e.centre);

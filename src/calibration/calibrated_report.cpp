@@ -1,5 +1,7 @@
 #include <bayesian_icp/calibration/calibrated_report.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -12,44 +14,89 @@ namespace {
 /** Clusters of the score for kappa_inf = kappa_48: independent patches, at least. */
 constexpr double num_smallest_clusters = 96.0;
 
-Observability
-observabilityOf(double keep, double share_of_prior)
+/** Starts converge to a fraction of the noise only: ends within this part of it,
+ * as root mean squared displacement, are one place. */
+constexpr double start_to_noise = 0.5;
+
+using Axes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/** Variance of the posterior along \p twist in units of the prior's. */
+double
+shareOfPrior(const CalibratedEstimate& estimate, const Vector6d& twist)
 {
-  if (!(keep > 0.0) || !(share_of_prior < max_share_of_prior))
+  const double prior = twist.dot(estimate.prior.precision * twist);
+  return prior / (prior + twist.dot(estimate.information * twist));
+}
+
+/** Motions that are independent of each other both in the posterior and in the prior,
+ * those first of which the data say most in comparison with the prior. */
+Matrix6d
+independentAxes(const CalibratedEstimate& estimate)
+{
+  const Matrix6d posterior_precision = estimate.information + estimate.prior.precision;
+  Matrix6d axes = Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d>(
+                      estimate.prior.precision, posterior_precision)
+                      .eigenvectors();
+  // All motions within the space of those held by the prior only are as good: its
+  // principal axes are what a user can picture.
+  Eigen::Index first = 6;
+  while (first > 0 && !(shareOfPrior(estimate, axes.col(first - 1)) <
+                        max_share_of_prior * max_share_of_prior))
+    --first;
+  const Axes free = axes.rightCols(6 - first);
+  if (free.cols() > 1) {
+    const Eigen::MatrixXd spread =
+        free.transpose() * estimate.displacement_metric * free;
+    axes.rightCols(6 - first) =
+        free * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(spread).eigenvectors();
+  }
+  return axes;
+}
+
+/** Share of the information along \p twist that is above its noise. */
+double
+shareAboveNoise(const CalibratedEstimate& estimate, const Vector6d& twist)
+{
+  const Vector6d score = estimate.curvature * twist;
+  return twist.dot(estimate.information * twist) /
+         score.dot(estimate.score_covariance.ldlt().solve(score));
+}
+
+Observability
+observabilityOf(double above_noise, double share_of_prior)
+{
+  if (!(share_of_prior < max_share_of_prior))
     return Observability::PriorOnly;
-  const bool is_observed =
-      keep >= min_observed_keep && share_of_prior < max_observed_share_of_prior;
+  const bool is_observed = above_noise >= min_observed_share_above_noise &&
+                           share_of_prior < max_observed_share_of_prior;
   return is_observed ? Observability::Observed : Observability::Weak;
 }
 
-/** Standard deviations of the coordinates along the columns of \p directions. */
-Vector6d
-deviationsAlong(const Matrix6d& directions, const Matrix6d& covariance)
+DataDirection
+directionAlong(const Vector6d& axis, const CalibratedEstimate& estimate)
 {
-  const Matrix6d to_coordinates = directions.inverse();
-  return (to_coordinates * covariance * to_coordinates.transpose())
-      .diagonal()
-      .cwiseAbs()
-      .cwiseSqrt();
+  DataDirection direction;
+  direction.twist = axis / std::sqrt(axis.dot(estimate.displacement_metric * axis));
+  const Vector6d& twist = direction.twist;
+  const double prior = twist.dot(estimate.prior.precision * twist);
+  // Rounding may leave a little below zero of nothing.
+  const double data = std::max(0.0, twist.dot(estimate.information * twist));
+  direction.standard_deviation = 1.0 / std::sqrt(prior + data);
+  direction.prior_standard_deviation = 1.0 / std::sqrt(prior);
+  direction.relative_information = data / prior;
+  direction.observability = observabilityOf(shareAboveNoise(estimate, twist),
+                                            std::sqrt(shareOfPrior(estimate, twist)));
+  direction.description = describeTwist(twist, estimate.centre);
+  return direction;
 }
 
 std::vector<DataDirection>
 directionsOf(const CalibratedEstimate& estimate)
 {
-  const Vector6d deviations = deviationsAlong(estimate.directions, estimate.covariance);
-  std::vector<DataDirection> directions(6);
-  for (int k = 0; k < 6; ++k) {
-    DataDirection& direction = directions[static_cast<std::size_t>(k)];
-    direction.twist = estimate.directions.col(k);
-    direction.standard_deviation = deviations[k];
-    direction.prior_standard_deviation =
-        1.0 /
-        std::sqrt(direction.twist.dot(estimate.prior.precision * direction.twist));
-    direction.relative_information = estimate.relative_information[k];
-    direction.observability = observabilityOf(
-        estimate.keep[k], deviations[k] / direction.prior_standard_deviation);
-    direction.description = describeTwist(direction.twist, estimate.centre);
-  }
+  const Matrix6d axes = independentAxes(estimate);
+  std::vector<DataDirection> directions;
+  for (int k = 0; k < 6; ++k)
+    directions.push_back(directionAlong(axes.col(k), estimate));
   std::stable_sort(directions.begin(),
                    directions.end(),
                    [](const DataDirection& a, const DataDirection& b) {
@@ -58,16 +105,29 @@ directionsOf(const CalibratedEstimate& estimate)
   return directions;
 }
 
-DataFlags
-flagsOf(const DataReport& report)
+/** Mahalanobis distance of the two ends: they may differ by a part of the noise, and
+ * freely along what is held by the prior only. */
+double
+basinDistance(const CalibratedEstimate& estimate, const DataReport& report)
 {
-  DataFlags flags;
-  flags.wrong_basin = !(report.basin_distance <= max_basin_distance);
-  flags.low_support = !(report.active_fraction >= min_active_fraction);
-  flags.few_patches = !(report.effective_patches >= min_effective_patches);
-  flags.misfit = !(report.residual_scale <= max_residual_scale &&
-                   report.correlation_factor <= max_correlation_factor);
-  return flags;
+  const double tolerance = start_to_noise * report.noise_scale;
+  const Matrix6d spread =
+      estimate.covariance +
+      tolerance * tolerance * estimate.displacement_metric.inverse();
+  const Vector6d whitened = spread.ldlt().solve(estimate.other_end);
+  double squared = estimate.other_end.dot(whitened);
+  Axes free(6, 0);
+  for (const DataDirection& direction : report.directions)
+    if (direction.observability == Observability::PriorOnly) {
+      free.conservativeResize(6, free.cols() + 1);
+      free.rightCols<1>() = direction.twist;
+    }
+  if (free.cols() > 0) {
+    const Eigen::MatrixXd weight = free.transpose() * spread.ldlt().solve(free);
+    const Eigen::VectorXd part = free.transpose() * whitened;
+    squared -= part.dot(weight.ldlt().solve(part));
+  }
+  return squared < 0.0 ? 0.0 : std::sqrt(squared);
 }
 
 } // namespace
@@ -75,22 +135,21 @@ flagsOf(const DataReport& report)
 DataReport
 dataReportOf(const CalibratedEstimate& estimate,
              std::size_t num_source_points,
-             double target_noise)
+             const SurfaceModel& target)
 {
-  const Matrix6d posterior_precision = estimate.information + estimate.prior.precision;
   DataReport report;
   report.is_available = true;
   report.residual_scale = estimate.residual_scale;
-  report.noise_scale = estimate.residual_scale * target_noise;
+  report.noise_scale = estimate.residual_scale * target.medianSigma();
   report.effective_patches =
       num_smallest_clusters * estimate.kappa_48 / estimate.kappa_inf;
   report.active_fraction = static_cast<double>(estimate.scores.num_active) /
                            static_cast<double>(num_source_points);
   report.correlation_factor = estimate.kappa_inf;
-  report.basin_distance = std::sqrt(
-      std::abs(estimate.other_end.dot(posterior_precision * estimate.other_end)));
+  report.other_cost_ratio = estimate.other_cost_ratio;
   report.centre = estimate.centre;
   report.directions = directionsOf(estimate);
+  report.basin_distance = basinDistance(estimate, report);
   report.flags = flagsOf(report);
   return report;
 }

@@ -23,6 +23,9 @@ constexpr int max_growth_for_width = 16;
 constexpr double wanted_aspect = 0.35;
 /** Patches narrower than this ratio are not usable. */
 constexpr double min_aspect = 0.2;
+/** A quadric that misses its points by less than this part of the radius is good
+ * enough, however exact they are. */
+constexpr double negligible_misfit = 1e-3;
 
 /** Points are gathered in a ball and then chosen by their distance in the plane of the
  * surface: a ball prefers, at its rim, points whose noise brings them nearer to its
@@ -163,8 +166,9 @@ fitQuadric(const PointRows& local,
                    solution[5] * r * r};
   patch.sigma = std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
   const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
-  patch.is_usable = solution.allFinite() && aspect >= min_aspect &&
-                    misfit(regression, rss, num_points) < options.max_misfit &&
+  const bool is_quadric = patch.sigma < negligible_misfit * patch.radius ||
+                          misfit(regression, rss, num_points) < options.max_misfit;
+  patch.is_usable = solution.allFinite() && aspect >= min_aspect && is_quadric &&
                     centroid_offset < options.max_centroid_offset * patch.radius &&
                     patch.radius > options.min_radius_to_noise * patch.sigma;
 }

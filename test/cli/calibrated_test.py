@@ -56,6 +56,7 @@ class DataSection(ToolTest):
         "correlation_factor",
         "active_fraction",
         "basin_distance_in_standard_deviations",
+        "other_start_cost_ratio",
         "flags",
         "flag_messages",
         "centre_m",

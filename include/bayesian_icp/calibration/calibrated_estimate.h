@@ -31,8 +31,6 @@ struct CalibratedEstimate {
   /** Share of the information along each direction that is above its noise, in [0, 1];
    * 0: the direction is held by the prior only. */
   Vector6d keep = Vector6d::Zero();
-  /** Information of the data along each direction, in units of the prior's. */
-  Vector6d relative_information = Vector6d::Zero();
   /** T = V diag(sqrt(keep)) V^-1. */
   Matrix6d transfer = Matrix6d::Zero();
   /** Lambda = T^T H J^-1 H T. */
@@ -50,6 +48,9 @@ struct CalibratedEstimate {
   double cost = 0.0;
   /** Twist from the mode to the other start's end; zero if both ended in one place. */
   Vector6d other_end = Vector6d::Zero();
+  /** meanCappedResidual() at the other start's end, in units of that at the better one;
+   * at least 1. */
+  double other_cost_ratio = 1.0;
   /** Nearest-neighbour queries used. */
   long num_queries = 0;
 };

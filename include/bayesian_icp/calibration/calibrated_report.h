@@ -13,10 +13,10 @@ namespace bayesian_icp {
 /** \brief The report of \p estimate; directions are ordered by their posterior standard
  * deviation.
  * \param[in] num_source_points source points that were used, positive
- * \param[in] target_noise SurfaceModel::medianSigma() [m] */
+ * \param[in] target that the estimate is of */
 BAYESIAN_ICP_EXPORT DataReport
 dataReportOf(const CalibratedEstimate& estimate,
              std::size_t num_source_points,
-             double target_noise);
+             const SurfaceModel& target);
 
 } // namespace bayesian_icp

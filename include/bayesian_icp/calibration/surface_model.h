@@ -56,7 +56,8 @@ struct SurfaceModelOptions {
   int num_neighbors = 30;
   /** Smallest ratio of radius to noise of a usable patch. */
   double min_radius_to_noise = 3.0;
-  /** Largest F statistic of a quartic against the quadric. */
+  /** Largest F statistic of a quartic against the quadric, where this misses its points
+   * by more than a thousandth of the radius. */
   double max_misfit = 2.2;
   /** Largest distance of the neighbours' centroid from the point, in radii: beyond, the
    * point is at an edge. */

@@ -1,0 +1,42 @@
+/** \file
+ * \brief Simulation-based calibration: ranks of true poses among draws of their
+ * posteriors, uniform if the sampler is right (Talts et al. 2018).
+ */
+#pragma once
+
+#include <bayesian_icp/prior.h>
+
+#include <array>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Draws among which a truth is ranked, so that there are 100 ranks. */
+constexpr int num_ranked_draws = 99;
+constexpr int num_rank_bins = 10;
+/** \brief What the chi-square statistic of num_rank_bins equally probable bins exceeds
+ * with a probability of 0.1 %. */
+constexpr double max_rank_chi_square = 27.9;
+
+/** \brief Rank of each coordinate, 0 ... num_ranked_draws. */
+using Ranks = Eigen::Matrix<int, 6, 1>;
+
+/** \brief Runs in each bin. */
+using RankHistogram = std::array<int, num_rank_bins>;
+
+/** \brief Rank of the truth among num_ranked_draws of the draws, evenly chosen so that
+ * they are nearly independent. Coordinates are those of Prior::deviation(), angles
+ * wrapped.
+ * \param[in] draws one pose a row, at least num_ranked_draws, all finite */
+Ranks
+ranksOf(const Vector6d& true_pose, const PoseMatrix& draws, const Prior& prior);
+
+/** \brief How often coordinate \p k has the ranks of each bin. */
+RankHistogram
+rankHistogram(const std::vector<Ranks>& runs, int k);
+
+/** \brief Sum over the bins of (count - expected)^2 / expected; of at least one run. */
+double
+chiSquareOf(const RankHistogram& histogram);
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,25 @@
+/** \file
+ * \brief Ranks as a text table and as pictures.
+ */
+#pragma once
+
+#include "rank_study.h"
+
+#include <iosfwd>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief A line for each sampler: runs, chi-square statistic of each coordinate,
+ * verdict.
+ * \return whether every well-specified sampler has uniform ranks: all runs good and
+ *         every statistic below max_rank_chi_square */
+bool
+printRankTable(const RankStudy& study, const RankFile& results, std::ostream& stream);
+
+/** \brief Write rank histograms, a row a sampler, into a folder, as ranks.svg and
+ * ranks.png.
+ * \throws io::FileError */
+void
+plotRanks(const RankStudy& study, const RankFile& results, const std::string& folder);
+
+} // namespace bayesian_icp::evaluate
