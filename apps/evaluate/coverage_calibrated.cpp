@@ -3,7 +3,7 @@
 #include "coverage_methods.h"
 #include "random_part.h"
 
-#include <bayesian_icp/calibration/calibrated_draws.h>
+#include <bayesian_icp/calibration/calibrated_modes.h>
 
 #include <Eigen/Cholesky>
 
@@ -75,20 +75,30 @@ addDraws(const ChainSet& chains, MethodResult& result)
   result.num_queries = -1;
 }
 
+/** The modes of the pipeline: one where the prior is narrow. */
+std::vector<CalibratedMode>
+modesOf(const SurfaceScorer& scorer, const Prior& prior)
+{
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
+  if (!mayHaveSeveralModes(scorer, prior))
+    return {{first, 0.0}};
+  return significantModes(findModes(scorer, prior, first).modes);
+}
+
 MethodResult
 runWith(const CoverageCase& problem, bool has_draws)
 {
   const SurfaceModel model(problem.target, SurfaceModelOptions(), 1);
   const SurfaceScorer scorer(thinnedSource(problem), model);
   const Prior prior = priorOf(problem);
-  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
-  MethodResult result = resultOf(estimate, scorer.sourcePoints().cols());
+  const std::vector<CalibratedMode> modes = modesOf(scorer, prior);
+  MethodResult result = resultOf(modes.front().estimate, scorer.sourcePoints().cols());
   if (has_draws) {
     ChainOptions options;
     options.seed = problem.seed;
     options.num_threads = 1;
 #ifdef HAS_CALIBRATED_DRAWS
-    addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
+    addDraws(sampleCalibrated(scorer, prior, modes, options), result);
 #endif
     result.is_valid = result.draws.rows() > 0;
   }
