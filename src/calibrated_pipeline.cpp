@@ -5,9 +5,11 @@
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
 #include <bayesian_icp/calibration/calibrated_estimate.h>
+#include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
 
 #include <utility>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -99,6 +101,19 @@ judgeData(Summary& summary)
     summary.message += (i > 0 ? "; " : is_doubtful ? ", but " : "; also ") + flags[i];
 }
 
+/** One mode, or all that are found where the prior is wide; heaviest first. */
+std::vector<CalibratedMode>
+modesOf(const SurfaceScorer& scorer, const Prior& prior, const Options& options)
+{
+  ModeSearchOptions search;
+  search.seed = options.chains.seed;
+  search.estimate.num_mode_points = options.calibrated.num_mode_points;
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior, search.estimate);
+  if (!mayHaveSeveralModes(scorer, prior))
+    return {{first, 0.0}};
+  return significantModes(findModes(scorer, prior, first, search).modes);
+}
+
 PosteriorEstimate
 estimateAndDraw(const SurfaceScorer& scorer,
                 const Prior& prior,
@@ -106,18 +121,22 @@ estimateAndDraw(const SurfaceScorer& scorer,
                 const ProgressCallback& progress)
 {
   const Eigen::Index num_points = scorer.sourcePoints().cols();
-  EstimateOptions estimate_options;
-  estimate_options.num_mode_points = options.calibrated.num_mode_points;
-  const CalibratedEstimate estimate =
-      estimateCalibrated(scorer, prior, estimate_options);
-  const std::string complaint = complaintAbout(estimate, num_points);
+  const std::vector<CalibratedMode> modes = modesOf(scorer, prior, options);
+  const CalibratedEstimate& heaviest = modes.front().estimate;
+  const std::string complaint = complaintAbout(heaviest, num_points);
   if (!complaint.empty())
     return failure(Status::TooFewCorrespondences, complaint);
+  if (isCancelled(progress))
+    return failure(Status::Cancelled, "cancelled before the first draw");
 
-  PosteriorEstimate result =
-      withDraws(sampleCalibrated(scorer, prior, estimate, options.chains, progress));
+  PosteriorEstimate result = withDraws(
+      modes.size() > 1
+          ? sampleCalibrated(scorer, prior, modes, options.chains, progress)
+          : sampleCalibrated(scorer, prior, heaviest, options.chains, progress));
+  if (result.summary.status == Status::SeveralModes)
+    result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data =
-      dataReportOf(estimate, static_cast<std::size_t>(num_points), scorer.model());
+      dataReportOf(heaviest, static_cast<std::size_t>(num_points), scorer.model());
   judgeData(result.summary);
   return result;
 }

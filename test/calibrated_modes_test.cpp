@@ -1,7 +1,7 @@
 // Further modes of preset `calibrated`: a cube, whose sides look alike, scanned from
 // all sides.
 #include <bayesian_icp/calibration/calibrated_modes.h>
-#include <bayesian_icp/summary.h>
+#include <bayesian_icp/pipeline.h>
 
 #include <gtest/gtest.h>
 
@@ -141,6 +141,63 @@ TEST(CalibratedModes, ThereIsOneOfACanHoweverItTurns)
   const ModeSearch search = findModes(scorer, prior, estimateCalibrated(scorer, prior));
   EXPECT_EQ(search.modes.size(), 1u);
   EXPECT_FALSE(mayHaveSeveralModes(scorer, priorWith(0.19, scorer.centroid())));
+}
+
+PosteriorEstimate
+estimateFrom(const Clouds& clouds, double yaw_sd)
+{
+  Options options;
+  options.preset = Preset::Calibrated;
+  options.prior.variance = priorWith(yaw_sd, Eigen::Vector3d::Zero()).variance();
+  options.prior.frame = PriorFrame::SourceCentroid;
+  return estimatePosterior(clouds.source, clouds.target, Vector6d::Zero(), options);
+}
+
+TEST(CalibratedModes, OfACubeAreInTheSummary)
+{
+  const PosteriorEstimate estimate = estimateFrom(cloudsOf(onCube, 1.3), 1.0);
+  const Summary& summary = estimate.summary;
+  EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
+  EXPECT_NE(summary.message.find("is of the heaviest"), std::string::npos);
+  EXPECT_EQ(estimate.samples.rows(), summary.num_draws);
+  ASSERT_GE(summary.modes.size(), 2u);
+  double sum = 0.0, nearest_turn = 1e9;
+  for (const Mode& mode : summary.modes) {
+    EXPECT_GE(mode.weight, 0.02);
+    sum += mode.weight;
+    nearest_turn = std::min(nearest_turn, std::abs(wrapAngle(mode.mean[5] - 1.3)));
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  EXPECT_LT(nearest_turn, 0.05 * quarter_turn);
+  // The report's centre is where the source's centroid is in the first mode.
+  const Eigen::Vector3d centroid = cloudsOf(onCube, 1.3).source.rowwise().mean();
+  EXPECT_LT((isometryOf(summary.modes[0].mean) * centroid - summary.data.centre).norm(),
+            0.001);
+}
+
+TEST(CalibratedModes, TheYawOfACanIsThatOfThePrior)
+{
+  const Summary summary = estimateFrom(cloudsOf(onCan, 0.7), 1.0).summary;
+  EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+  EXPECT_TRUE(summary.modes.empty());
+  int num_prior_only = 0;
+  for (const DataDirection& direction : summary.data.directions)
+    if (direction.observability == Observability::PriorOnly) {
+      ++num_prior_only;
+      EXPECT_GT(std::abs(direction.twist.tail<3>().normalized().z()), 0.99);
+    }
+  EXPECT_EQ(num_prior_only, 1);
+}
+
+TEST(CalibratedModes, DrawsOfACanAreAroundItsAxisAsThePriorSays)
+{
+  const PosteriorEstimate estimate = estimateFrom(cloudsOf(onCan, 0.7), 1.0);
+  // Of a von Mises variate with kappa = 1: E cos = I1(1) / I0(1), and E cos 2 =
+  // I2(1) / I0(1) gives its variance.
+  constexpr double mean = 0.446390, sd = 0.595;
+  const double ess = estimate.summary.coordinates[5].bulk_ess;
+  EXPECT_NEAR(
+      estimate.samples.col(5).array().cos().mean(), mean, 4.0 * sd / std::sqrt(ess));
 }
 
 } // namespace

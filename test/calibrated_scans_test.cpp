@@ -2,7 +2,7 @@
 #include "simulation.h"
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
-#include <bayesian_icp/summary.h>
+#include <bayesian_icp/pipeline.h>
 
 #include <gtest/gtest.h>
 
@@ -116,6 +116,26 @@ TEST(CalibratedScans, TheYawOfACanKeepsAWidePrior)
   EXPECT_GT(summary.coordinates[5].standard_deviation, 0.8 * yaw_sd);
   EXPECT_LT(summary.coordinates[5].standard_deviation, 1.3 * yaw_sd);
   EXPECT_LT(c.distanceOfTruth(set), chi_square_999);
+}
+
+TEST(CalibratedScans, TheDefaultPriorMixes)
+{
+  for (const char* scene : {"can", "mug"}) {
+    SCOPED_TRACE(scene);
+    const simulator::ScanPair scans = Case::scan(scene);
+    Options options;
+    options.preset = Preset::Calibrated;
+    const Summary summary = estimatePosterior(scans.source.cast<double>(),
+                                              scans.target.cast<double>(),
+                                              Vector6d::Zero(),
+                                              options)
+                                .summary;
+    EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+    const Vector6d error = poseError(
+        poseOf(scans.T_target_source), summary.mean, CovarianceConvention::R3xSO3);
+    const Matrix6d covariance = summary.covariance(CovarianceConvention::R3xSO3);
+    EXPECT_LT(error.dot(covariance.ldlt().solve(error)), chi_square_999);
+  }
 }
 
 } // namespace

@@ -3,7 +3,7 @@
 #include "coverage_methods.h"
 #include "random_part.h"
 
-#include <bayesian_icp/calibration/calibrated_draws.h>
+#include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
 
 #include <algorithm>
@@ -131,12 +131,14 @@ runCalibratedDraws(const CoverageCase& problem)
   const Registration registration(problem);
   const SurfaceScorer& scorer = registration.scorer;
   const Prior& prior = registration.prior;
-  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
-  MethodResult result = resultOf(estimate, scorer);
+  std::vector<CalibratedMode> modes = {{estimateCalibrated(scorer, prior), 0.0}};
+  if (mayHaveSeveralModes(scorer, prior))
+    modes = significantModes(findModes(scorer, prior, modes.front().estimate).modes);
+  MethodResult result = resultOf(modes.front().estimate, scorer);
   ChainOptions options;
   options.seed = problem.seed;
   options.num_threads = 1;
-  addDraws(sampleCalibrated(scorer, prior, estimate, options), result);
+  addDraws(sampleCalibrated(scorer, prior, modes, options), result);
   result.is_valid = result.draws.rows() > 0;
   return result;
 }

@@ -85,7 +85,8 @@ struct DataFlags {
   }
 };
 
-/** \brief The report of preset `calibrated`. */
+/** \brief The report of preset `calibrated`; of the heaviest mode if there are several.
+ */
 struct BAYESIAN_ICP_EXPORT DataReport {
   /** False for the other presets: all else is then meaningless. */
   bool is_available = false;

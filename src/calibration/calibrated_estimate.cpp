@@ -44,11 +44,16 @@ struct Ends {
   long num_queries = 0;
 };
 
-/** Scale at which a start sees all of the target that the prior allows. */
+/** Scale at which a start sees all of the target that the prior allows, but no more
+ * than the source's root mean square radius: a small body would see nothing but a blur.
+ */
 double
-priorScale(const Prior& prior, const SurfaceModel& model)
+startScale(const Prior& prior, const SurfaceScorer& scorer)
 {
-  return std::sqrt(prior.variance().head<3>().maxCoeff()) / model.medianSigma();
+  const Matrix6d metric = displacementMetric(scorer, Isometry3d::Identity());
+  const double radius = std::sqrt(0.5 * metric.bottomRightCorner<3, 3>().trace());
+  return std::min(radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
+         scorer.model().medianSigma();
 }
 
 Ends
@@ -70,7 +75,7 @@ followStarts(const SurfaceScorer& scorer,
     return ends;
   }
   const Isometry3d prior_mean = isometryOf(prior.mean());
-  fit.start_scale = priorScale(prior, scorer.model());
+  fit.start_scale = startScale(prior, subset);
   ends.best = fitRobustly(subset, prior, prior_mean, fit);
   const RobustFit icp = fitPointToPoint(subset, prior, prior_mean);
   fit.start_scale *= icp_to_prior_scale;

@@ -33,6 +33,14 @@ constexpr double sight = 0.25;
 constexpr double cost_margin = 0.35;
 constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
 
+/** On the way between two modes that are one: steps at each place, and how far the
+ * surface may be from the straight way, in parts of its length. */
+constexpr int num_way_steps = 6;
+constexpr double max_aside = 0.15;
+
+/** Modes with a smaller share of the posterior are left out. */
+constexpr double min_share = 0.02;
+
 /** Diagonal of the bounding box. */
 double
 extentOf(const Eigen::Matrix3Xd& points)
@@ -100,6 +108,37 @@ isKnown(const Isometry3d& pose,
     return 2.0 * coordinates.linearEnergy(coordinates.heldPart(pose)) <
            squared_distance;
   });
+}
+
+/** Whether one can go from a mode to the other along motions that the prior alone
+ * holds, without leaving the surface. The axes of the two are not exact: far along,
+ * each is far from the other's. */
+bool
+areConnected(const SurfaceScorer& subset,
+             const Prior& prior,
+             const CalibratedEstimate& from,
+             const CalibratedEstimate& to,
+             double max_cost)
+{
+  if (from.keep.minCoeff() > 0.0 || to.keep.minCoeff() > 0.0)
+    return false;
+  const Vector6d way = twistBetween(from.mode, to.mode, from.centre);
+  const double noise = subset.model().medianSigma();
+  const double length = std::sqrt(way.dot(from.displacement_metric * way));
+  RobustFitOptions fit;
+  fit.max_steps = num_way_steps;
+  fit.tolerance = 0.1 * noise;
+  for (const double part : {0.25, 0.5, 0.75}) {
+    const Isometry3d start = movedBy(part * way, from.centre, from.mode);
+    // Of itself it stays where it was put.
+    const Prior here(poseOf(start.matrix()), prior.variance(), prior.referencePoint());
+    const RobustFit end = fitRobustly(subset, here, start, fit);
+    const Vector6d aside = twistBetween(start, end.pose, from.centre);
+    if (end.cost > max_cost || std::sqrt(aside.dot(from.displacement_metric * aside)) >
+                                   max_aside * length + noise)
+      return false;
+  }
+  return true;
 }
 
 /** Where starts end, least cost first. */
@@ -172,13 +211,34 @@ findModes(const SurfaceScorer& scorer,
     const CalibratedEstimate estimate =
         estimateCalibrated(scorer, prior, options.estimate, &end.pose);
     search.num_queries += estimate.num_queries;
-    if (isKnown(estimate.mode, known, min_squared_distance_of_modes))
+    if (isKnown(estimate.mode, known, min_squared_distance_of_modes) ||
+        std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
+          return areConnected(
+              subset, prior, mode.estimate, estimate, (1.0 + cost_margin) * best_cost);
+        }))
       continue;
     known.emplace_back(estimate);
     search.modes.push_back({estimate, 0.0});
   }
   weighModes(scorer, prior, search.modes);
   return search;
+}
+
+std::vector<CalibratedMode>
+significantModes(std::vector<CalibratedMode> modes)
+{
+  double sum = 0.0;
+  for (const auto& mode : modes)
+    sum += std::exp(mode.log_weight - modes.front().log_weight);
+  modes.erase(std::remove_if(modes.begin() + 1,
+                             modes.end(),
+                             [&](const auto& mode) {
+                               const double weight =
+                                   std::exp(mode.log_weight - modes.front().log_weight);
+                               return weight < min_share * sum;
+                             }),
+              modes.end());
+  return modes;
 }
 
 } // namespace bayesian_icp

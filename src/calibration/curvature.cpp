@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp {
 
@@ -19,6 +20,10 @@ namespace {
 /** Length of a step in posterior, and at most in prior, standard deviations. */
 constexpr double step_to_posterior_sd = 3.0;
 constexpr double max_step_to_prior_sd = 1.5;
+
+/** Longest steps: further away another side of the body, or its end, is met.
+ * [rad], and displacement in parts of the source's root mean square radius. */
+constexpr double max_step_angle = 0.3, max_step_to_radius = 0.6;
 
 /** A step whose secant is below its noise is shortened by this factor, so many times.
  */
@@ -44,6 +49,19 @@ struct Secant {
   Vector6d difference;
   Matrix6d noise;
 };
+
+/** Length of the longest step along \p axis, which is of unit displacement. */
+double
+longestStep(const Vector6d& axis, const SecantPlan& plan)
+{
+  const double radius =
+      std::sqrt(0.5 * plan.displacement_metric.bottomRightCorner<3, 3>().trace());
+  const double angle = axis.tail<3>().norm();
+  return std::min(
+      {max_step_to_prior_sd / std::sqrt(axis.dot(plan.prior_precision * axis)),
+       max_step_to_radius * radius,
+       angle > 0.0 ? max_step_angle / angle : std::numeric_limits<double>::infinity()});
+}
 
 /** Makes secants about one mode. */
 class SecantMaker {
@@ -161,10 +179,8 @@ struct PrincipalAxes {
 double
 lengthOf(const Vector6d& axis, double standard_deviation, const SecantPlan& plan)
 {
-  const double longest =
-      max_step_to_prior_sd / std::sqrt(axis.dot(plan.prior_precision * axis));
   return std::min(
-      longest,
+      longestStep(axis, plan),
       std::max(plan.min_displacement, step_to_posterior_sd * standard_deviation));
 }
 

@@ -46,4 +46,10 @@ findModes(const SurfaceScorer& scorer,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options = ModeSearchOptions());
 
+/** \brief Of modes, heaviest first, those that hold at least two per cent of the
+ * posterior. A weight is good to a factor of a few, so that lighter ones are not told
+ * from none. */
+BAYESIAN_ICP_EXPORT std::vector<CalibratedMode>
+significantModes(std::vector<CalibratedMode> modes);
+
 } // namespace bayesian_icp

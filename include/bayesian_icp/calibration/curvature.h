@@ -17,7 +17,8 @@ struct SecantPlan {
   Matrix6d covariance;
   /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
   Matrix6d displacement_metric;
-  /** No step is longer than 1.5 prior standard deviations. */
+  /** No step is longer than 1.5 prior standard deviations, 0.3 rad, or 0.6 of the
+   * source's root mean square radius. */
   Matrix6d prior_precision;
   /** Least root mean squared displacement of a step [m]: below, neighbouring patches
    * are not told apart. */
