@@ -67,7 +67,7 @@ chosen(const Names& asked, const Names& known, const std::string& option)
     if (std::count(known.begin(), known.end(), name) == 0) {
       std::string all;
       for (const std::string& other : known)
-        all += ' ' + other;
+        all.append(" ").append(other);
       throw io::UsageError("--" + option + ": there is no " + io::quoted(name) +
                            ", but" + all);
     }

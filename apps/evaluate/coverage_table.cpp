@@ -146,7 +146,9 @@ printCoverageTable(const Runs& runs, std::ostream& stream)
   printHeader(stream);
   for (const std::string& scene : scenes)
     for (const std::string& condition : conditions)
-      printBlock(scene + ", " + condition, select(runs, scene, condition), stream);
+      printBlock(std::string(scene).append(", ").append(condition),
+                 select(runs, scene, condition),
+                 stream);
   if (conditions.size() > 1)
     for (const std::string& scene : scenes)
       printBlock(scene + ", all conditions", select(runs, scene, ""), stream);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <sstream>
 #include <utility>
 
 namespace bayesian_icp::evaluate {
@@ -39,13 +40,14 @@ quotedForGnuplot(const std::string& text)
 std::string
 pictures(const std::string& file, const std::string& size, const std::string& plot)
 {
-  std::string lines;
+  std::ostringstream lines;
   for (const auto& [terminal, ending] :
        {std::pair<std::string, std::string>{"svg", ".svg"}, {"pngcairo", ".png"}})
-    lines += "set terminal " + terminal + " noenhanced size " + size +
-             " font 'sans,11' background rgb 'white'\nset output " +
-             quotedForGnuplot(file + ending) + '\n' + plot + "unset output\n";
-  return lines;
+    lines << "set terminal " << terminal << " noenhanced size " << size
+          << " font 'sans,11' background rgb 'white'\nset output "
+          << quotedForGnuplot(file + ending) << '\n'
+          << plot << "unset output\n";
+  return lines.str();
 }
 
 void

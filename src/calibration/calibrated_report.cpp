@@ -95,6 +95,7 @@ directionsOf(const CalibratedEstimate& estimate)
 {
   const Matrix6d axes = independentAxes(estimate);
   std::vector<DataDirection> directions;
+  directions.reserve(6);
   for (int k = 0; k < 6; ++k)
     directions.push_back(directionAlong(axes.col(k), estimate));
   std::stable_sort(directions.begin(),

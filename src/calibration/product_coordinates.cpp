@@ -99,7 +99,7 @@ Vector6d
 ProductCoordinates::priorOnlyTwist(const Vector6d& z) const
 {
   constexpr double turn = 6.283185307179586;
-  const Vector6d twist = prior_only_ * z;
+  Vector6d twist = prior_only_ * z;
   const double angle = twist.tail<3>().norm();
   const double num_turns = std::round(angle / turn);
   if (num_turns == 0.0)

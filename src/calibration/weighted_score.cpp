@@ -70,7 +70,7 @@ WeightedScore::totalScore(const Vector6d& z, const std::vector<std::size_t>& bat
 {
   const SurfaceScores& at_mode = model_.estimate.scores;
   const Vector6d xi = model_.coordinates.scoredTwist(z);
-  const Vector6d linear = at_mode.total + at_mode.information * xi;
+  Vector6d linear = at_mode.total + at_mode.information * xi;
   Vector6d difference;
   const int num_with_patch =
       score_(model_.coordinates.scoredPose(z), batch, difference);
