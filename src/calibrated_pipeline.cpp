@@ -1,12 +1,12 @@
 #include "calibrated_pipeline.h"
 
 #include "pipeline_parts.h"
-#include "random_subset.h"
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
 #include <bayesian_icp/calibration/calibrated_estimate.h>
 #include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
+#include <bayesian_icp/random.h>
 
 #include <utility>
 #include <vector>
@@ -14,6 +14,9 @@
 namespace bayesian_icp {
 
 namespace {
+
+/** Stream of the random choice of source points; those of chains count from 0. */
+constexpr std::uint64_t choice_stream = std::uint64_t(1) << 40;
 
 std::string
 textOfCount(Eigen::Index num_points)
@@ -77,16 +80,6 @@ complaintAbout(const CalibratedEstimate& estimate, Eigen::Index num_source_point
   return std::string();
 }
 
-PosteriorEstimate
-withDraws(ChainSet chain_set)
-{
-  PosteriorEstimate result;
-  result.summary = summarize(chain_set);
-  result.samples = pooledDraws(chain_set.chains);
-  result.chains = std::move(chain_set.chains);
-  return result;
-}
-
 /** Lowers an Ok where there are flags, and puts them into words. */
 void
 judgeData(Summary& summary)
@@ -101,19 +94,6 @@ judgeData(Summary& summary)
     summary.message += (i > 0 ? "; " : is_doubtful ? ", but " : "; also ") + flags[i];
 }
 
-/** One mode, or all that are found where the prior is wide; heaviest first. */
-std::vector<CalibratedMode>
-modesOf(const SurfaceScorer& scorer, const Prior& prior, const Options& options)
-{
-  ModeSearchOptions search;
-  search.seed = options.chains.seed;
-  search.estimate.num_mode_points = options.calibrated.num_mode_points;
-  const CalibratedEstimate first = estimateCalibrated(scorer, prior, search.estimate);
-  if (!mayHaveSeveralModes(scorer, prior))
-    return {{first, 0.0}};
-  return significantModes(findModes(scorer, prior, first, search).modes);
-}
-
 PosteriorEstimate
 estimateAndDraw(const SurfaceScorer& scorer,
                 const Prior& prior,
@@ -121,7 +101,10 @@ estimateAndDraw(const SurfaceScorer& scorer,
                 const ProgressCallback& progress)
 {
   const Eigen::Index num_points = scorer.sourcePoints().cols();
-  const std::vector<CalibratedMode> modes = modesOf(scorer, prior, options);
+  ModeSearchOptions search;
+  search.seed = options.chains.seed;
+  search.estimate.num_mode_points = options.calibrated.num_mode_points;
+  const std::vector<CalibratedMode> modes = calibratedModes(scorer, prior, search);
   const CalibratedEstimate& heaviest = modes.front().estimate;
   const std::string complaint = complaintAbout(heaviest, num_points);
   if (!complaint.empty())
@@ -129,7 +112,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
   if (isCancelled(progress))
     return failure(Status::Cancelled, "cancelled before the first draw");
 
-  PosteriorEstimate result = withDraws(
+  PosteriorEstimate result = estimateOf(
       modes.size() > 1
           ? sampleCalibrated(scorer, prior, modes, options.chains, progress)
           : sampleCalibrated(scorer, prior, heaviest, options.chains, progress));
@@ -161,10 +144,13 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
   const std::string no_surface = complaintAbout(model);
   if (!no_surface.empty())
     return failure(Status::TooFewCorrespondences, no_surface);
-  const SurfaceScorer scorer(randomSubset(source_points,
-                                          options.calibrated.max_source_points,
-                                          options.chains.seed),
-                             model);
+  Random random(options.chains.seed, choice_stream);
+  const SurfaceScorer scorer(
+      source_points(Eigen::all,
+                    randomChoice(source_points.cols(),
+                                 options.calibrated.max_source_points,
+                                 random)),
+      model);
   const Prior prior = makePrior(options.prior, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }

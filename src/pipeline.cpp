@@ -128,16 +128,15 @@ estimate(const Eigen::Matrix3Xd& source_points,
          const Options& options,
          const ProgressCallback& progress)
 {
-  PosteriorEstimate estimate = checkInput(source_points, search, initial_pose, options);
-  if (estimate.summary.status != Status::NotRun)
-    return estimate;
+  PosteriorEstimate checked = checkInput(source_points, search, initial_pose, options);
+  if (checked.summary.status != Status::NotRun)
+    return checked;
   const Prior prior = makePrior(options.prior, initial_pose, source_points);
   const Eigen::Vector3d limit = translationLimit(prior, initial_pose, source_points);
   const auto has_diverged = [&prior, &limit](const Vector6d& pose) {
     const Eigen::Vector3d translation = prior.deviation(pose).head<3>();
     return (translation.cwiseAbs().array() > limit.array()).any();
   };
-  ChainSet chain_set;
   if (options.preset == Preset::Exact) {
     const Eigen::Matrix3Xd sampled_points = thinned(
         source_points, static_cast<std::size_t>(options.exact.max_source_points));
@@ -146,15 +145,11 @@ estimate(const Eigen::Matrix3Xd& source_points,
                             prior,
                             options.likelihood.weight(),
                             options.exact.residual);
-    chain_set = sampleExact(energy, initial_pose, options, has_diverged, progress);
+    return estimateOf(
+        sampleExact(energy, initial_pose, options, has_diverged, progress));
   }
-  else
-    chain_set = samplePaper(
-        source_points, search, prior, initial_pose, options, has_diverged, progress);
-  estimate.summary = summarize(chain_set);
-  estimate.samples = pooledDraws(chain_set.chains);
-  estimate.chains = std::move(chain_set.chains);
-  return estimate;
+  return estimateOf(samplePaper(
+      source_points, search, prior, initial_pose, options, has_diverged, progress));
 }
 
 } // namespace

@@ -1,5 +1,7 @@
 #include "pipeline_parts.h"
 
+#include <utility>
+
 namespace bayesian_icp {
 
 PosteriorEstimate
@@ -9,6 +11,16 @@ failure(Status status, const std::string& message)
   estimate.summary.status = status;
   estimate.summary.message = message;
   return estimate;
+}
+
+PosteriorEstimate
+estimateOf(ChainSet chain_set)
+{
+  PosteriorEstimate result;
+  result.summary = summarize(chain_set);
+  result.samples = pooledDraws(chain_set.chains);
+  result.chains = std::move(chain_set.chains);
+  return result;
 }
 
 PosteriorEstimate

@@ -14,6 +14,10 @@ namespace bayesian_icp {
 PosteriorEstimate
 failure(Status status, const std::string& message);
 
+/** \brief The draws of a run and their summary. */
+PosteriorEstimate
+estimateOf(ChainSet chain_set);
+
 /** \brief What is wrong with the options, the guess or the source; the status is NotRun
  * if nothing is. */
 PosteriorEstimate

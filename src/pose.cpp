@@ -12,14 +12,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-Eigen::Matrix3d
-skew(const Eigen::Vector3d& v)
-{
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
-
 /** Coefficients (1 - cos a) / a^2 and (a - sin a) / a^3, with their series at a = 0. */
 std::array<double, 2>
 leftJacobianCoefficients(double angle)
@@ -38,7 +30,7 @@ Eigen::Matrix3d
 leftJacobianSO3(const Eigen::Vector3d& w)
 {
   const auto c = leftJacobianCoefficients(w.norm());
-  const Eigen::Matrix3d W = skew(w);
+  const Eigen::Matrix3d W = crossMatrix(w);
   return Eigen::Matrix3d::Identity() + c[0] * W + c[1] * W * W;
 }
 
@@ -137,9 +129,9 @@ rotationDerivativesOf(const Vector6d& pose)
   // about Rz Ry e_x.
   const Eigen::Matrix3d R = rotationOf(pose);
   const double cy = std::cos(pose[5]), sy = std::sin(pose[5]);
-  return {{skew(R.col(0)) * R,
-           skew(Eigen::Vector3d(-sy, cy, 0.0)) * R,
-           skew(Eigen::Vector3d::UnitZ()) * R}};
+  return {{crossMatrix(R.col(0)) * R,
+           crossMatrix(Eigen::Vector3d(-sy, cy, 0.0)) * R,
+           crossMatrix(Eigen::Vector3d::UnitZ()) * R}};
 }
 
 Eigen::Matrix4d
@@ -157,6 +149,14 @@ poseOf(const Eigen::Matrix4d& T_target_source)
   pose << T_target_source.topRightCorner<3, 1>(),
       anglesOf(nearestRotation(T_target_source.topLeftCorner<3, 3>()));
   return pose;
+}
+
+Eigen::Matrix3d
+crossMatrix(const Eigen::Vector3d& v)
+{
+  Eigen::Matrix3d cross;
+  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return cross;
 }
 
 Eigen::Matrix3d

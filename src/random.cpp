@@ -1,7 +1,10 @@
 #include <bayesian_icp/random.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -68,6 +71,18 @@ Random::normal6()
   for (int k = 0; k < 6; ++k)
     z[k] = normal();
   return z;
+}
+
+std::vector<Eigen::Index>
+randomChoice(Eigen::Index count, Eigen::Index size, Random& random)
+{
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), Eigen::Index(0));
+  const auto num_chosen = static_cast<std::size_t>(std::min(count, size));
+  for (std::size_t i = 0; i < num_chosen; ++i)
+    std::swap(order[i], order[i + random.index(order.size() - i)]);
+  order.resize(num_chosen);
+  return order;
 }
 
 } // namespace bayesian_icp

@@ -1,8 +1,8 @@
 // Preset `calibrated` from end to end: what it finds, and what it says when it cannot.
-#include "../src/random_subset.h"
 #include "test_support.h"
 
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace bayesian_icp {
 namespace {
@@ -221,21 +222,25 @@ TEST(Calibrated, CanBeCancelledBeforeTheEstimateAndWhileDrawing)
   }
 }
 
-TEST(RandomSubset, IsAChoiceWithoutRepetitionInRandomOrder)
+TEST(RandomChoice, IsWithoutRepetitionInRandomOrder)
 {
-  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 1000);
-  for (Eigen::Index i = 0; i < 1000; ++i)
-    points(0, i) = static_cast<double>(i);
-  const Eigen::Matrix3Xd subset = randomSubset(points, 400, 1);
-  ASSERT_EQ(subset.cols(), 400);
-  EXPECT_EQ(randomSubset(points, 400, 1), subset);
-  EXPECT_NE(randomSubset(points, 400, 2), subset);
+  const auto choose = [](Eigen::Index size, std::uint64_t seed) {
+    Random random(seed, 0);
+    return randomChoice(1000, size, random);
+  };
+  const std::vector<Eigen::Index> chosen = choose(400, 1);
+  ASSERT_EQ(chosen.size(), 400U);
+  EXPECT_EQ(choose(400, 1), chosen);
+  EXPECT_NE(choose(400, 2), chosen);
   // The mean of the first 100 has a standard deviation of 289 / 10.
-  EXPECT_NEAR(subset.row(0).head(100).mean(), 499.5, 4.0 * 28.9);
-  Eigen::RowVectorXd sorted = randomSubset(points, 5000, 1).row(0);
-  ASSERT_EQ(sorted.size(), 1000);
-  std::sort(sorted.data(), sorted.data() + 1000);
-  EXPECT_EQ(sorted, points.row(0));
+  const double mean =
+      std::accumulate(chosen.begin(), chosen.begin() + 100, 0.0) / 100.0;
+  EXPECT_NEAR(mean, 499.5, 4.0 * 28.9);
+  std::vector<Eigen::Index> sorted = choose(5000, 1);
+  ASSERT_EQ(sorted.size(), 1000U);
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    EXPECT_EQ(sorted[i], static_cast<Eigen::Index>(i));
 }
 
 } // namespace

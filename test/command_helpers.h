@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -44,3 +45,26 @@ contentOf(const std::filesystem::path& path)
   content << file.rdbuf();
   return content.str();
 }
+
+/** \brief Runs each test in an empty folder of its own. */
+class FolderTest : public testing::Test {
+protected:
+  void
+  SetUp() override
+  {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string(test->test_suite_name()) + "_" + test->name() + "_" +
+               std::to_string(getpid()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+
+  void
+  TearDown() override
+  {
+    std::filesystem::remove_all(folder_);
+  }
+
+  std::filesystem::path folder_;
+};

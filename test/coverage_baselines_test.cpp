@@ -196,12 +196,12 @@ TEST(BaselineProblem, RegistersAtMostItsShareOfTheSource)
   const CoverageCase c = waves(7, 5000);
   const BaselineProblem problem(c);
   ASSERT_EQ(problem.source().cols(), max_source_points);
-  std::vector<std::size_t> columns = problem.sourceColumns();
+  std::vector<Eigen::Index> columns = problem.sourceColumns();
   std::sort(columns.begin(), columns.end());
   EXPECT_TRUE(std::adjacent_find(columns.begin(), columns.end()) == columns.end());
   // The mean of 2000 of 5000 indices, uniform: sd 5000 sqrt(0.6 / (12 * 2000)) = 25.
   double mean = 0.0;
-  for (const std::size_t column : columns)
+  for (const Eigen::Index column : columns)
     mean += static_cast<double>(column) / max_source_points;
   EXPECT_NEAR(mean, 2499.5, 4.0 * 25.0);
   EXPECT_LT((problem.prior().referencePoint() - c.source.rowwise().mean()).norm(),
@@ -231,8 +231,8 @@ TEST(PclBaselines, FindTheExactPoseOfACopy)
   pose << 0.3, -0.2, 0.1, 0.02, -0.01, 0.03;
   const Isometry3d truth = isometryOf(pose);
   const Matrix3Xd source = truth.inverse() * target;
-  std::vector<std::size_t> columns;
-  for (std::size_t i = 0; i < 800; i += 2)
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index i = 0; i < 800; i += 2)
     columns.push_back(i);
   const Isometry3d guess =
       movedBy(2e-3 * Vector6d::Ones(), target.rowwise().mean(), truth);

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <string>
 
@@ -12,33 +10,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class CoverageCommand : public testing::Test {
+class CoverageCommand : public FolderTest {
 protected:
-  void
-  SetUp() override
-  {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::temp_directory_path() /
-        ("coverage_command_" + std::string(test->name()) + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
-  void
-  TearDown() override
-  {
-    fs::remove_all(folder_);
-  }
-
   CommandResult
   run(const std::string& arguments, const std::string& environment = "") const
   {
     return runShell("cd '" + folder_.string() + "' && " + environment +
                     " '" BAYESIAN_ICP_EVALUATE "' coverage " + arguments);
   }
-
-  fs::path folder_;
 };
 
 } // namespace

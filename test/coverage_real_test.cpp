@@ -1,4 +1,5 @@
 // Real pairs as cases of the coverage study.
+#include "command_helpers.h"
 #include "coverage_methods.h"
 #include "coverage_real.h"
 
@@ -7,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <io/errors.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -25,27 +25,7 @@ write(const std::string& file, const std::string& text)
   std::ofstream(file, std::ios::binary) << text;
 }
 
-/** Runs the test in an empty folder of its own. */
-class RealPairsTest : public testing::Test {
-protected:
-  void
-  SetUp() override
-  {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("real_pairs_" + std::string(test->name()) + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
-  void
-  TearDown() override
-  {
-    fs::remove_all(folder_);
-  }
-
-  fs::path folder_;
-};
+class RealPairsTest : public FolderTest {};
 
 /** A pair of 40 points with the source a half turn about z from the target. */
 void

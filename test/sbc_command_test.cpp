@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <string>
 
@@ -12,32 +10,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class SbcCommand : public testing::Test {
+class SbcCommand : public FolderTest {
 protected:
-  void
-  SetUp() override
-  {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("sbc_command_" + std::string(test->name()) + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
-  void
-  TearDown() override
-  {
-    fs::remove_all(folder_);
-  }
-
   CommandResult
   run(const std::string& arguments) const
   {
     return runShell("cd '" + folder_.string() +
                     "' && '" BAYESIAN_ICP_EVALUATE "' sbc " + arguments);
   }
-
-  fs::path folder_;
 };
 
 } // namespace

@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include <array>
 #include <filesystem>
@@ -56,27 +55,7 @@ expectSamePoints(const fs::path& expected, const fs::path& made)
   EXPECT_LE((points - expected_points).cwiseAbs().maxCoeff(), 1e-6F) << made;
 }
 
-/** \brief Runs the test in an empty folder of its own. */
-class SimulateCommand : public testing::Test {
-protected:
-  void
-  SetUp() override
-  {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("simulate_" + std::string(test->name()) + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
-  void
-  TearDown() override
-  {
-    fs::remove_all(folder_);
-  }
-
-  fs::path folder_;
-};
+class SimulateCommand : public FolderTest {};
 
 } // namespace
 

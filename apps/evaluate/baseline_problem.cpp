@@ -28,29 +28,17 @@ constexpr double max_step = 0.2;
 /** First weight of the residuals: a noise of 1 cm. */
 constexpr double first_weight = 1e4;
 
-/** All columns, or the first \p count of a random order. */
-std::vector<std::size_t>
-randomChoice(Index num_columns, Index count, std::uint64_t seed)
+/** All columns, or \p count of them at random. */
+std::vector<Index>
+chosenColumns(Index num_columns, Index count, std::uint64_t seed)
 {
-  std::vector<std::size_t> columns(static_cast<std::size_t>(num_columns));
-  std::iota(columns.begin(), columns.end(), std::size_t(0));
-  if (num_columns <= count)
-    return columns;
-  Random random(seed, choice_stream);
-  const auto size = static_cast<std::size_t>(count);
-  for (std::size_t i = 0; i < size; ++i)
-    std::swap(columns[i], columns[i + random.index(columns.size() - i)]);
-  columns.resize(size);
+  if (num_columns > count) {
+    Random random(seed, choice_stream);
+    return randomChoice(num_columns, count, random);
+  }
+  std::vector<Index> columns(static_cast<std::size_t>(num_columns));
+  std::iota(columns.begin(), columns.end(), Index(0));
   return columns;
-}
-
-Matrix3Xd
-columnsOf(const Matrix3Xd& points, const std::vector<std::size_t>& columns)
-{
-  Matrix3Xd chosen(3, static_cast<Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    chosen.col(static_cast<Index>(i)) = points.col(static_cast<Index>(columns[i]));
-  return chosen;
 }
 
 Matrix3Xd
@@ -68,8 +56,8 @@ normalsOfMatches(const Matrix3Xd& target_normals, const MatchedPoints& matches)
 BaselineProblem::BaselineProblem(const CoverageCase& coverage_case)
 : case_(coverage_case)
 , source_columns_(
-      randomChoice(case_.source.cols(), max_source_points, coverage_case.seed))
-, source_(columnsOf(case_.source, source_columns_))
+      chosenColumns(case_.source.cols(), max_source_points, coverage_case.seed))
+, source_(case_.source(Eigen::all, source_columns_))
 , prior_(case_.prior_mean, case_.prior_sd.cwiseAbs2(), case_.source.rowwise().mean())
 , origin_(case_.target.col(0))
 , tree_((case_.target.colwise() - origin_).cast<float>())

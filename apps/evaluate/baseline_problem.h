@@ -47,7 +47,7 @@ public:
   }
 
   /** \brief Their columns in the case's source. */
-  const std::vector<std::size_t>&
+  const std::vector<Eigen::Index>&
   sourceColumns() const
   {
     return source_columns_;
@@ -77,7 +77,7 @@ public:
 
 private:
   const CoverageCase& case_;
-  std::vector<std::size_t> source_columns_;
+  std::vector<Eigen::Index> source_columns_;
   Eigen::Matrix3Xd source_;
   Prior prior_;
   /** The tree is in single precision: its points are relative to this one. */

@@ -1,10 +1,10 @@
 #include "coverage_calibrated.h"
 
 #include "coverage_methods.h"
-#include "random_part.h"
 
 #include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
+#include <bayesian_icp/summary.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -24,7 +24,7 @@ thinnedSource(const CoverageCase& problem)
     return problem.source;
   Random random(problem.seed, thinning_stream);
   return problem.source(Eigen::all,
-                        randomPart(problem.source.cols(), max_source_points, random));
+                        randomChoice(problem.source.cols(), max_source_points, random));
 }
 
 std::string
@@ -79,22 +79,6 @@ resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
   return result;
 }
 
-void
-addDraws(const ChainSet& chains, MethodResult& result)
-{
-  Eigen::Index num_draws = 0;
-  for (const Chain& chain : chains.chains)
-    num_draws += chain.draws.rows();
-  result.draws.resize(num_draws, 6);
-  Eigen::Index row = 0;
-  for (const Chain& chain : chains.chains) {
-    result.draws.middleRows(row, chain.draws.rows()) = chain.draws;
-    row += chain.draws.rows();
-  }
-  // Those of the draws are not counted.
-  result.num_queries = -1;
-}
-
 /** A case, ready to be estimated. */
 struct Registration {
   explicit Registration(const CoverageCase& problem)
@@ -131,14 +115,14 @@ runCalibratedDraws(const CoverageCase& problem)
   const Registration registration(problem);
   const SurfaceScorer& scorer = registration.scorer;
   const Prior& prior = registration.prior;
-  std::vector<CalibratedMode> modes = {{estimateCalibrated(scorer, prior), 0.0}};
-  if (mayHaveSeveralModes(scorer, prior))
-    modes = significantModes(findModes(scorer, prior, modes.front().estimate).modes);
+  const std::vector<CalibratedMode> modes = calibratedModes(scorer, prior);
   MethodResult result = resultOf(modes.front().estimate, scorer);
   ChainOptions options;
   options.seed = problem.seed;
   options.num_threads = 1;
-  addDraws(sampleCalibrated(scorer, prior, modes, options), result);
+  result.draws = pooledDraws(sampleCalibrated(scorer, prior, modes, options).chains);
+  // Those of the draws are not counted.
+  result.num_queries = -1;
   result.is_valid = result.draws.rows() > 0;
   return result;
 }

@@ -7,7 +7,6 @@
 #include <io/errors.h>
 
 #include <sstream>
-#include <thread>
 
 namespace bayesian_icp::evaluate {
 
@@ -15,33 +14,26 @@ namespace po = boost::program_options;
 
 namespace {
 
-constexpr int max_threads = 256;
-constexpr int max_seed = 1000000000;
-
 po::options_description
 description()
 {
-  const auto text = [](const char* value) {
-    return po::value<std::string>()->default_value(value);
-  };
-  const auto number = [](int value) { return po::value<int>()->default_value(value); };
   po::options_description options("Options", 88);
   // clang-format off
   options.add_options()
-    ("scenes", text(""),
+    ("scenes", textOption(""),
      "simulated scenes: tuned (on which the method was tuned), new (all others), or names with "
      "commas between; with --real, names of pairs. Without it, all")
-    ("conditions", text(""), "conditions with commas between; without it, all")
-    ("methods", text(""), "methods with commas between; without it, all")
-    ("seeds", number(20), "cases of each scene and condition")
-    ("first-seed", number(1), "seed of the first of them")
-    ("real", text(""),
+    ("conditions", textOption(""), "conditions with commas between; without it, all")
+    ("methods", textOption(""), "methods with commas between; without it, all")
+    ("seeds", intOption(20), "cases of each scene and condition")
+    ("first-seed", intOption(1), "seed of the first of them")
+    ("real", textOption(""),
      "folder of real pairs with a manifest.json, in place of the simulated scenes: every seed "
      "is another random part of the source and another pose drawn from the pair's prior")
-    ("output", text("evaluation/coverage.csv"),
+    ("output", textOption("evaluation/coverage.csv"),
      "results, a row a run; runs that are there are not made again")
-    ("plots", text(""), "folder of plots (SVG and PNG, made by gnuplot); without it, none")
-    ("threads", number(0), "cases at a time; 0: as many as there are cores")
+    ("plots", textOption(""), "folder of plots (SVG and PNG, made by gnuplot); without it, none")
+    ("threads", intOption(0), "cases at a time; 0: as many as there are cores")
     ("quick", "two scenes or pairs, one condition, three seeds, unless they are given")
     ("help", "show this text");
   // clang-format on
@@ -68,12 +60,8 @@ parseCoverageOptions(int argc, const char* const* argv)
   options.real_folder = text("real");
   options.plot_folder = text("plots");
   options.num_seeds = integerWithin(given, "seeds", 1, 1000000);
-  options.first_seed =
-      static_cast<std::uint64_t>(integerWithin(given, "first-seed", 0, max_seed));
-  options.num_threads = integerWithin(given, "threads", 0, max_threads);
-  if (options.num_threads == 0)
-    options.num_threads =
-        std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options.first_seed = seedOf(given, "first-seed");
+  options.num_threads = numThreadsOf(given);
   if (options.result_file.empty())
     throw io::UsageError("--output needs the name of a file");
   if (!options.real_folder.empty() && !options.conditions.empty())

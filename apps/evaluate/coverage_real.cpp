@@ -1,6 +1,5 @@
 #include "coverage_real.h"
 
-#include "random_part.h"
 #include "scene.h"
 
 #include <bayesian_icp/calibration/twist.h>
@@ -128,7 +127,7 @@ RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
   made.truth_sd_translation = scale.truth_sd_translation;
   made.truth_sd_rotation = scale.truth_sd_rotation;
   const Eigen::Matrix3Xd& all = clouds->source_in_target;
-  const auto part = randomPart(all.cols(), max_source_points, random);
+  const auto part = randomChoice(all.cols(), max_source_points, random);
   made.source = all(Eigen::all, part);
   // The prior is about no motion: the truth turns the source about its centroid, and
   // shifts the centroid by the first three numbers.

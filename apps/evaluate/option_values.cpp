@@ -5,11 +5,25 @@
 
 #include <io/errors.h>
 
+#include <algorithm>
 #include <sstream>
+#include <thread>
 
 namespace bayesian_icp::evaluate {
 
 namespace po = boost::program_options;
+
+po::typed_value<std::string>*
+textOption(const char* standard)
+{
+  return po::value<std::string>()->default_value(standard);
+}
+
+po::typed_value<int>*
+intOption(int standard)
+{
+  return po::value<int>()->default_value(standard);
+}
 
 po::variables_map
 readCommandLine(int argc,
@@ -49,6 +63,23 @@ integerWithin(const po::variables_map& given,
                          ", but must be in [" + std::to_string(least) + ", " +
                          std::to_string(most) + "]");
   return value;
+}
+
+std::uint64_t
+seedOf(const po::variables_map& given, const std::string& name)
+{
+  constexpr int max_seed = 1000000000;
+  return static_cast<std::uint64_t>(integerWithin(given, name, 0, max_seed));
+}
+
+int
+numThreadsOf(const po::variables_map& given)
+{
+  constexpr int max_threads = 256;
+  const int num_threads = integerWithin(given, "threads", 0, max_threads);
+  return num_threads > 0
+             ? num_threads
+             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 } // namespace bayesian_icp::evaluate

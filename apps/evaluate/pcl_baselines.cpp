@@ -101,7 +101,7 @@ public:
 
 /** Planes at the source points that are registered. */
 OpenGicp::MatricesVectorPtr
-chosen(const OpenGicp::MatricesVector& planes, const std::vector<std::size_t>& columns)
+chosen(const OpenGicp::MatricesVector& planes, const std::vector<Eigen::Index>& columns)
 {
   OpenGicp::MatricesVectorPtr result(new OpenGicp::MatricesVector);
   for (const std::size_t column : columns)

@@ -15,7 +15,7 @@ struct PclProblem {
   const Eigen::Matrix3Xd& source;
   const Eigen::Matrix3Xd& target;
   /** Columns of the source that are registered. */
-  const std::vector<std::size_t>& source_columns;
+  const std::vector<Eigen::Index>& source_columns;
   /** T_target_source. */
   Eigen::Isometry3d guess;
 };

@@ -29,31 +29,27 @@ knownSamplers()
 po::options_description
 description()
 {
-  const auto text = [](const char* value) {
-    return po::value<std::string>()->default_value(value);
-  };
-  const auto number = [](int value) { return po::value<int>()->default_value(value); };
   po::options_description options("Options", 88);
   // clang-format off
   options.add_options()
-    ("data", text("data"), "folder with a folder a scene: source.pcd, target.pcd [m]")
-    ("scenes", text("can,bowl,mug,table,corridor"), "names of scenes, with commas between")
-    ("cells", text("1:6000,0.0015:100,0.0015:1000,0.005:300"),
+    ("data", textOption("data"), "folder with a folder a scene: source.pcd, target.pcd [m]")
+    ("scenes", textOption("can,bowl,mug,table,corridor"), "names of scenes, with commas between")
+    ("cells", textOption("1:6000,0.0015:100,0.0015:1000,0.005:300"),
      "scales of the likelihood, sigma [m] and effective points N, as sigma:N")
-    ("samplers", text("exact,exact-metropolis,paper,walk,mala"),
+    ("samplers", textOption("exact,exact-metropolis,paper,walk,mala"),
      "which ones to compare: exact (preset exact), exact-metropolis (the same with "
      "Metropolis steps), paper (Algorithm 1 at several step sizes; all seeds at the best), "
      "walk and mala (full batch, covariance and starts from the gold standard)")
-    ("step-sizes", text("1e-3,1e-4,1e-5,1e-6"),
+    ("step-sizes", textOption("1e-3,1e-4,1e-5,1e-6"),
      "step sizes alpha of Algorithm 1; each is also tried times 6000 sigma^2 / N, what it "
      "would be at the paper's scale, and smaller ones as long as they are better")
-    ("seeds", number(5), "runs of each sampler, seeds 1, 2, ...")
-    ("points", number(2000), "source points, the same for all samplers and the gold standard")
-    ("threads", number(1), "threads of the gold standard and the presets")
+    ("seeds", intOption(5), "runs of each sampler, seeds 1, 2, ...")
+    ("points", intOption(2000), "source points, the same for all samplers and the gold standard")
+    ("threads", intOption(1), "threads of the gold standard and the presets")
     ("gold-seconds", po::value<double>()->default_value(60.0),
      "CPU time after which a gold standard ends, converged or not [s]")
-    ("cache", text("evaluation"), "folder of the gold standards")
-    ("output", text("evaluation/samplers.csv"),
+    ("cache", textOption("evaluation"), "folder of the gold standards")
+    ("output", textOption("evaluation/samplers.csv"),
      "results, a row a run; runs that are there are not made again")
     ("quick", "one scene (can), two seeds, 500 points, unless they are given")
     ("help", "show this text");

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <sstream>
-#include <thread>
 
 namespace bayesian_icp::evaluate {
 
@@ -16,28 +15,21 @@ namespace po = boost::program_options;
 
 namespace {
 
-constexpr int max_threads = 256;
-constexpr int max_seed = 1000000000;
-
 po::options_description
 description()
 {
-  const auto text = [](const char* value) {
-    return po::value<std::string>()->default_value(value);
-  };
-  const auto number = [](int value) { return po::value<int>()->default_value(value); };
   po::options_description options("Options", 88);
   // clang-format off
   options.add_options()
-    ("sampler", text(""),
+    ("sampler", textOption(""),
      "exact-langevin, exact-metropolis, calibrated, calibrated-scans, or several with commas "
      "between; exact: the first two; without it, all")
-    ("runs", number(500), "runs of each sampler")
-    ("seed", number(1), "seed of the first of them")
-    ("output", text("evaluation/sbc.csv"),
+    ("runs", intOption(500), "runs of each sampler")
+    ("seed", intOption(1), "seed of the first of them")
+    ("output", textOption("evaluation/sbc.csv"),
      "results, a row a run; runs that are there are not made again")
-    ("plots", text(""), "folder of plots (SVG and PNG, made by gnuplot); without it, none")
-    ("threads", number(0), "runs at a time; 0: as many as there are cores")
+    ("plots", textOption(""), "folder of plots (SVG and PNG, made by gnuplot); without it, none")
+    ("threads", intOption(0), "runs at a time; 0: as many as there are cores")
     ("help", "show this text");
   // clang-format on
   return options;
@@ -60,14 +52,10 @@ parseSbcOptions(int argc, const char* const* argv)
     else
       options.samplers.push_back(name);
   options.num_runs = integerWithin(given, "runs", 1, 1000000);
-  options.first_seed =
-      static_cast<std::uint64_t>(integerWithin(given, "seed", 0, max_seed));
+  options.first_seed = seedOf(given, "seed");
   options.result_file = given["output"].as<std::string>();
   options.plot_folder = given["plots"].as<std::string>();
-  options.num_threads = integerWithin(given, "threads", 0, max_threads);
-  if (options.num_threads == 0)
-    options.num_threads =
-        std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  options.num_threads = numThreadsOf(given);
   if (options.result_file.empty())
     throw io::UsageError("--output needs the name of a file");
   return options;

@@ -70,6 +70,10 @@ matrixOf(const Vector6d& pose);
 BAYESIAN_ICP_EXPORT Vector6d
 poseOf(const Eigen::Matrix4d& T_target_source);
 
+/** \brief The matrix [v]x with [v]x a = v x a. */
+BAYESIAN_ICP_EXPORT Eigen::Matrix3d
+crossMatrix(const Eigen::Vector3d& v);
+
 /** \brief exp: R^3 -> SO(3), rotation vector [rad] to matrix. */
 BAYESIAN_ICP_EXPORT Eigen::Matrix3d
 expSO3(const Eigen::Vector3d& rotation_vector);

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <random>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -43,5 +44,11 @@ private:
   double spare_normal_ = 0.0;
   bool has_spare_normal_ = false;
 };
+
+/** \brief \p size different numbers of 0 ... count - 1 in random order, so that any
+ * part of them is a random choice as well; all of them in random order if there are
+ * fewer. */
+BAYESIAN_ICP_EXPORT std::vector<Eigen::Index>
+randomChoice(Eigen::Index count, Eigen::Index size, Random& random);
 
 } // namespace bayesian_icp

@@ -10,14 +10,6 @@ namespace bayesian_icp {
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 using Matrix63d = Eigen::Matrix<double, 6, 3>;
 
-inline Eigen::Matrix3d
-crossMatrix(const Eigen::Vector3d& v)
-{
-  Eigen::Matrix3d cross;
-  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return cross;
-}
-
 /** \brief A = [I, -[arm]x]: how a point moves with the twist (v, w). */
 inline Matrix36d
 motionOf(const Eigen::Vector3d& arm)

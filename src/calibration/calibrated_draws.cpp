@@ -159,7 +159,8 @@ scoresOf(const SurfaceScorer& scorer)
   };
 }
 
-/** exp(log_weight), normalised. */
+} // namespace
+
 std::vector<double>
 sharesOf(const std::vector<CalibratedMode>& modes)
 {
@@ -176,8 +177,6 @@ sharesOf(const std::vector<CalibratedMode>& modes)
     share /= sum;
   return shares;
 }
-
-} // namespace
 
 ChainSet
 sampleCalibrated(const MakeBatchScore& make_score,

@@ -1,10 +1,12 @@
+#include "principal_axes.h"
+
 #include <bayesian_icp/calibration/calibrated_estimate.h>
 #include <bayesian_icp/calibration/curvature.h>
 #include <bayesian_icp/calibration/robust_mode.h>
 #include <bayesian_icp/calibration/score_clusters.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -50,8 +52,7 @@ struct Ends {
 double
 startScale(const Prior& prior, const SurfaceScorer& scorer)
 {
-  const Matrix6d metric = displacementMetric(scorer, Isometry3d::Identity());
-  const double radius = std::sqrt(0.5 * metric.bottomRightCorner<3, 3>().trace());
+  const double radius = radiusOf(displacementMetric(scorer, Isometry3d::Identity()));
   return std::min(radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
          scorer.model().medianSigma();
 }
@@ -96,12 +97,9 @@ firstCovariance(const CalibratedEstimate& estimate, double noise)
       points_to_prior / (estimate.residual_scale * estimate.residual_scale);
   const Matrix6d covariance =
       (weight * estimate.scores.information + estimate.prior.precision).inverse();
-  const Matrix6d L = estimate.displacement_metric.llt().matrixL();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * covariance * L);
-  const Matrix6d axes =
-      L.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
-  const Vector6d variances = solver.eigenvalues().cwiseMax(noise * noise);
-  return axes * variances.asDiagonal() * axes.transpose();
+  const PrincipalAxes principal(covariance, estimate.displacement_metric);
+  const Vector6d variances = principal.variances.cwiseMax(noise * noise);
+  return principal.axes * variances.asDiagonal() * principal.axes.transpose();
 }
 
 /** J with the noise of secants along directions that the data do not hold: the pose is
@@ -140,6 +138,43 @@ finish(const Secants& secants, const DebitedInformation& debited, CalibratedEsti
                        e.prior.gradient);
 }
 
+/** The mode with all that is evaluated at it. */
+CalibratedEstimate
+atMode(const SurfaceScorer& scorer,
+       const Prior& prior,
+       const Ends& ends,
+       const RobustFit& mode)
+{
+  CalibratedEstimate e;
+  e.mode = mode.pose;
+  e.centre = e.mode * scorer.centroid();
+  e.residual_scale = mode.residual_scale;
+  e.cost = mode.cost;
+  e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
+  e.other_cost_ratio = ends.other.cost / ends.best.cost;
+  PatchHints hints;
+  scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
+  e.prior = twistPrior(prior, e.mode, e.centre);
+  e.displacement_metric = displacementMetric(scorer, e.mode);
+  return e;
+}
+
+/** Set covariance and score_covariance by what the secants leave of the information. */
+DebitedInformation
+debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
+{
+  DebitedInformation debited;
+  e.score_covariance = J;
+  for (int pass = 0; pass < 2; ++pass) {
+    debited = debitedInformation(
+        secants, e.score_covariance, e.prior.precision, min_relative_information);
+    e.covariance = (debited.information + e.prior.precision).inverse();
+    if (pass == 0)
+      e.score_covariance = withUnheldNoise(J, secants, debited.keep, e.covariance);
+  }
+  return debited;
+}
+
 } // namespace
 
 CalibratedEstimate
@@ -155,18 +190,7 @@ estimateCalibrated(const SurfaceScorer& scorer,
   fit.max_steps = max_mode_steps;
   fit.tolerance = mode_tolerance * noise;
   const RobustFit mode = fitRobustly(scorer, prior, ends.best.pose, fit);
-
-  CalibratedEstimate e;
-  e.mode = mode.pose;
-  e.centre = e.mode * scorer.centroid();
-  e.residual_scale = mode.residual_scale;
-  e.cost = mode.cost;
-  e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
-  e.other_cost_ratio = ends.other.cost / ends.best.cost;
-  PatchHints hints;
-  scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
-  e.prior = twistPrior(prior, e.mode, e.centre);
-  e.displacement_metric = displacementMetric(scorer, e.mode);
+  CalibratedEstimate e = atMode(scorer, prior, ends, mode);
 
   const double tau = e.residual_scale;
   const ScoreCovariance J = scoreCovariance(
@@ -185,15 +209,7 @@ estimateCalibrated(const SurfaceScorer& scorer,
                              J.covariance};
     secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
     num_evaluations += secants.num_evaluations;
-    e.score_covariance = J.covariance;
-    for (int pass = 0; pass < 2; ++pass) {
-      debited = debitedInformation(
-          secants, e.score_covariance, e.prior.precision, min_relative_information);
-      e.covariance = (debited.information + e.prior.precision).inverse();
-      if (pass == 0)
-        e.score_covariance =
-            withUnheldNoise(J.covariance, secants, debited.keep, e.covariance);
-    }
+    debited = debit(secants, J.covariance, e);
   }
   finish(secants, debited, e);
   e.num_queries = ends.num_queries + num_points * num_evaluations;

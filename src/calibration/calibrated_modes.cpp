@@ -227,18 +227,22 @@ findModes(const SurfaceScorer& scorer,
 std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes)
 {
-  double sum = 0.0;
-  for (const auto& mode : modes)
-    sum += std::exp(mode.log_weight - modes.front().log_weight);
-  modes.erase(std::remove_if(modes.begin() + 1,
-                             modes.end(),
-                             [&](const auto& mode) {
-                               const double weight =
-                                   std::exp(mode.log_weight - modes.front().log_weight);
-                               return weight < min_share * sum;
-                             }),
-              modes.end());
+  const std::vector<double> shares = sharesOf(modes);
+  const auto num_large = std::count_if(
+      shares.begin(), shares.end(), [](double share) { return share >= min_share; });
+  modes.erase(modes.begin() + num_large, modes.end());
   return modes;
+}
+
+std::vector<CalibratedMode>
+calibratedModes(const SurfaceScorer& scorer,
+                const Prior& prior,
+                const ModeSearchOptions& options)
+{
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior, options.estimate);
+  if (!mayHaveSeveralModes(scorer, prior))
+    return {{first, 0.0}};
+  return significantModes(findModes(scorer, prior, first, options).modes);
 }
 
 } // namespace bayesian_icp

@@ -1,9 +1,10 @@
+#include "principal_axes.h"
+
 #include <bayesian_icp/calibration/curvature.h>
 #include <bayesian_icp/calibration/score_clusters.h>
 #include <bayesian_icp/calibration/twist.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -54,12 +55,10 @@ struct Secant {
 double
 longestStep(const Vector6d& axis, const SecantPlan& plan)
 {
-  const double radius =
-      std::sqrt(0.5 * plan.displacement_metric.bottomRightCorner<3, 3>().trace());
   const double angle = axis.tail<3>().norm();
   return std::min(
       {max_step_to_prior_sd / std::sqrt(axis.dot(plan.prior_precision * axis)),
-       max_step_to_radius * radius,
+       max_step_to_radius * radiusOf(plan.displacement_metric),
        angle > 0.0 ? max_step_angle / angle : std::numeric_limits<double>::infinity()});
 }
 
@@ -160,21 +159,6 @@ private:
   int num_evaluations_ = 0;
 };
 
-/** Principal axes of a covariance in a metric, ascending: columns of unit length. */
-struct PrincipalAxes {
-  Matrix6d axes;
-  Vector6d standard_deviations;
-
-  PrincipalAxes(const Matrix6d& covariance, const Matrix6d& metric)
-  {
-    const Matrix6d L = metric.llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * covariance *
-                                                         L);
-    axes = L.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
-    standard_deviations = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  }
-};
-
 /** Length of the step along an axis. */
 double
 lengthOf(const Vector6d& axis, double standard_deviation, const SecantPlan& plan)
@@ -234,7 +218,8 @@ measureSecants(const SurfaceScorer& scorer,
   Secants secants = previous;
   for (int k = 0; k < 6; ++k) {
     const Vector6d axis = principal.axes.col(k);
-    const double length = lengthOf(axis, principal.standard_deviations[k], plan);
+    const double length =
+        lengthOf(axis, std::sqrt(std::max(0.0, principal.variances[k])), plan);
     const Vector6d step = length * axis;
     if (isNearly(step, previous.planned.col(k), information))
       continue;

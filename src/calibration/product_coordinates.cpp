@@ -14,14 +14,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-Matrix3d
-crossMatrix(const Vector3d& v)
-{
-  Matrix3d cross;
-  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return cross;
-}
-
 /** Ad(exp(xi))^T g: a gradient with respect to twists on the left of exp(xi), for
  * twists on its right. */
 Vector6d

@@ -49,10 +49,9 @@ reweighted(const SurfaceScores& linear, const Vector6d& xi, double tau)
       continue;
     const auto jacobian = linear.jacobians.col(i);
     const double residual = linear.residuals[i] + jacobian.dot(xi);
-    const double z = residual / (SurfaceScorer::tukey_constant * tau);
-    if (std::abs(z) >= 1.0)
+    const double weight = tukeyWeight(residual / (SurfaceScorer::tukey_constant * tau));
+    if (weight == 0.0)
       continue;
-    const double weight = (1.0 - z * z) * (1.0 - z * z);
     equations.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
     equations.gradient += weight * residual * jacobian;
   }

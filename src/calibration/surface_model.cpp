@@ -1,3 +1,4 @@
+#include "median.h"
 #include "patch_fit.h"
 
 #include <bayesian_icp/calibration/surface_model.h>
@@ -30,16 +31,6 @@ constexpr double max_takeover_residual = 2.5;
 constexpr double min_sigma_to_median = 0.3;
 constexpr double min_sigma_to_spacing = 1e-4;
 
-double
-medianOf(std::vector<double> values)
-{
-  if (values.empty())
-    return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Matrix3Xd
 finiteColumns(const Matrix3Xd& points)
 {
@@ -56,16 +47,13 @@ finiteColumns(const Matrix3Xd& points)
 std::vector<Index>
 chosenColumns(Index num_points, Index max_patches)
 {
-  std::vector<Index> columns(static_cast<std::size_t>(num_points));
-  std::iota(columns.begin(), columns.end(), Index(0));
-  if (num_points <= max_patches)
+  if (num_points <= max_patches) {
+    std::vector<Index> columns(static_cast<std::size_t>(num_points));
+    std::iota(columns.begin(), columns.end(), Index(0));
     return columns;
+  }
   Random random(1, 0);
-  for (Index i = 0; i < max_patches; ++i)
-    std::swap(columns[static_cast<std::size_t>(i)],
-              columns[static_cast<std::size_t>(i) +
-                      random.index(static_cast<std::size_t>(num_points - i))]);
-  columns.resize(static_cast<std::size_t>(max_patches));
+  std::vector<Index> columns = randomChoice(num_points, max_patches, random);
   std::sort(columns.begin(), columns.end());
   return columns;
 }

@@ -1,3 +1,5 @@
+#include "median.h"
+
 #include <bayesian_icp/calibration/surface_score.h>
 
 #include <algorithm>
@@ -16,22 +18,6 @@ constexpr double residual_cap = 5.0;
 
 /** Smallest residualScale(): below, the target's noise is overestimated. */
 constexpr double min_residual_scale = 0.3;
-
-double
-median(std::vector<double>& values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/** Tukey's weight of a residual u / tau. */
-double
-tukeyWeight(double scaled_residual)
-{
-  const double z = scaled_residual / SurfaceScorer::tukey_constant;
-  return std::abs(z) < 1.0 ? (1.0 - z * z) * (1.0 - z * z) : 0.0;
-}
 
 /** J^T n: derivative of a distance along n with respect to a twist. */
 Vector6d
@@ -105,6 +91,12 @@ clear(SurfaceScores& scores, Eigen::Index num_points)
 } // namespace
 
 double
+tukeyWeight(double z)
+{
+  return std::abs(z) < 1.0 ? (1.0 - z * z) * (1.0 - z * z) : 0.0;
+}
+
+double
 residualScale(const SurfaceScores& scores)
 {
   std::vector<double> magnitudes;
@@ -114,7 +106,7 @@ residualScale(const SurfaceScores& scores)
   if (magnitudes.empty())
     return 1.0;
   // 1.4826: the median magnitude of a standard normal variate is 1 / 1.4826.
-  return std::max(min_residual_scale, 1.4826 * median(magnitudes));
+  return std::max(min_residual_scale, 1.4826 * medianOf(std::move(magnitudes)));
 }
 
 double
@@ -154,7 +146,8 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
       continue;
     scores.has_patch[index] = 1;
     scores.residuals[i] = contact.residual;
-    const double weight = tukeyWeight(contact.residual / tau);
+    const double weight =
+        tukeyWeight(contact.residual / tau / SurfaceScorer::tukey_constant);
     if (weight == 0.0)
       continue;
     scores.active[index] = 1;
@@ -186,7 +179,8 @@ SurfaceScorer::batchScore(const Isometry3d& T_target_source,
     if (!contact.has_patch)
       continue;
     ++num_with_patch;
-    total += tukeyWeight(contact.residual / tau) * contact.residual * contact.rates;
+    total += tukeyWeight(contact.residual / tau / SurfaceScorer::tukey_constant) *
+             contact.residual * contact.rates;
   }
   return num_with_patch;
 }

@@ -11,14 +11,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-Matrix3d
-crossMatrix(const Vector3d& v)
-{
-  Matrix3d cross;
-  cross << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return cross;
-}
-
 /** d(roll, pitch, yaw) / dw for a small rotation w about the target's fixed axes. At
  * gimbal lock it is that of a pitch a little off. */
 Matrix3d

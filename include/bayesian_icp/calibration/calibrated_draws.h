@@ -31,6 +31,10 @@ struct CalibratedMode {
   double log_weight = 0.0;
 };
 
+/** \brief The shares of the modes, exp(log_weight), normalised to sum 1. */
+BAYESIAN_ICP_EXPORT std::vector<double>
+sharesOf(const std::vector<CalibratedMode>& modes);
+
 /** \brief Draw by stochastic gradient Langevin dynamics over mini-batches of the source
  * (the guarded pre-weighted score of docs/calibration.md).
  *

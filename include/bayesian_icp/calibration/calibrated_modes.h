@@ -52,4 +52,11 @@ findModes(const SurfaceScorer& scorer,
 BAYESIAN_ICP_EXPORT std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes);
 
+/** \brief The estimate, and where the prior is wide the other significantModes();
+ * heaviest first. */
+BAYESIAN_ICP_EXPORT std::vector<CalibratedMode>
+calibratedModes(const SurfaceScorer& scorer,
+                const Prior& prior,
+                const ModeSearchOptions& options = ModeSearchOptions());
+
 } // namespace bayesian_icp

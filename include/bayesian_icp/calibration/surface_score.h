@@ -40,6 +40,11 @@ struct SurfaceScores {
   int num_active;
 };
 
+/** \brief Tukey's weight (1 - z^2)^2, zero beyond |z| = 1; z is the residual over
+ * SurfaceScorer::tukey_constant times its scale. */
+BAYESIAN_ICP_EXPORT double
+tukeyWeight(double z);
+
 /** \brief Robust scale 1.4826 median |u| of the residuals of points with a patch, at
  * least 0.3. */
 BAYESIAN_ICP_EXPORT double

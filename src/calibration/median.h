@@ -1,0 +1,23 @@
+/** \file
+ * \brief The median of numbers.
+ */
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief The upper one of the two middle numbers if their count is even; 0 of none. */
+inline double
+medianOf(std::vector<double> values)
+{
+  if (values.empty())
+    return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,39 @@
+/** \file
+ * \brief Principal axes of a covariance of twists in a metric.
+ */
+#pragma once
+
+#include <bayesian_icp/pose.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+
+namespace bayesian_icp {
+
+/** \brief Axes along which twists are uncorrelated, tightest first. */
+struct PrincipalAxes {
+  /** Columns are of unit length in the metric. */
+  Matrix6d axes;
+  Vector6d variances;
+
+  PrincipalAxes(const Matrix6d& covariance, const Matrix6d& metric)
+  {
+    const Matrix6d L = metric.llt().matrixL();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * covariance *
+                                                         L);
+    axes = L.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
+    variances = solver.eigenvalues();
+  }
+};
+
+/** \brief Root mean square distance of the source's points from their centroid [m].
+ * \param[in] displacement_metric as displacementMetric() gives it */
+inline double
+radiusOf(const Matrix6d& displacement_metric)
+{
+  return std::sqrt(0.5 * displacement_metric.bottomRightCorner<3, 3>().trace());
+}
+
+} // namespace bayesian_icp
