@@ -1,0 +1,45 @@
+/** \file
+ * \brief What pcl_bayesian_icp has written, back from its files.
+ */
+#pragma once
+
+#include <bayesian_icp/pose.h>
+
+#include <array>
+#include <string>
+
+namespace bayesian_icp::io {
+
+/** \brief What tools use of a posterior.json. Numbers that are null there are NaN. */
+struct PosteriorFile {
+  /** Names of the clouds' files as they were given to the program. */
+  std::string source_file;
+  std::string target_file;
+  /** Short name of the Status, and the status in words. */
+  std::string status;
+  std::string status_message;
+  /** T_target_source that the program decided on: ICP's, or that of the mean. */
+  Eigen::Matrix4d final_matrix = Eigen::Matrix4d::Identity();
+  /** Posterior mean (x, y, z, roll, pitch, yaw) [m, rad]. */
+  Vector6d mean = Vector6d::Zero();
+  /** One for each CovarianceConvention, in their order [m, rad]. */
+  std::array<Matrix6d, 4> covariances{};
+
+  const Matrix6d&
+  covariance(CovarianceConvention convention) const
+  {
+    return covariances[static_cast<std::size_t>(convention)];
+  }
+};
+
+/** \brief Read a posterior.json.
+ * \throws FileError if it cannot be read or is no posterior of a known version */
+PosteriorFile
+readPosterior(const std::string& name);
+
+/** \brief Read the draws of a samples.csv, one pose a row [m, rad].
+ * \throws FileError if it cannot be read or has a bad row */
+PoseMatrix
+readSamples(const std::string& name);
+
+} // namespace bayesian_icp::io

@@ -1,0 +1,57 @@
+/** \file
+ * \brief The distribution of ICP's results over random starts: the baseline of the
+ * paper's evaluation.
+ */
+#pragma once
+
+#include <bayesian_icp/baselines/iterative_closest_point.h>
+#include <bayesian_icp/pose.h>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief Where the runs start, and when each stops. */
+struct MonteCarloIcpOptions {
+  /** Starts are uniform in mean +- half_range [m, rad], coordinate by coordinate. */
+  Vector6d mean = Vector6d::Zero();
+  Vector6d half_range = Vector6d::Ones();
+  /** Runs first_run ... first_run + num_runs - 1: run k is a function of (seed, k)
+   * alone, so that a part of the runs can be made later. */
+  int first_run = 0;
+  int num_runs = 10000;
+  std::uint64_t seed = 1;
+  /** 0: as OpenMP would. Results do not depend on it. */
+  int num_threads = 0;
+  /** To completion: more iterations than ICP's default. */
+  IcpOptions icp = {1000};
+};
+
+/** \brief One run. */
+struct MonteCarloIcpRun {
+  int index = 0;
+  /** Poses (x, y, z, roll, pitch, yaw) [m, rad], the end canonical. */
+  Vector6d start = Vector6d::Zero();
+  Vector6d end = Vector6d::Zero();
+  bool has_converged = false;
+  int num_iterations = 0;
+  /** Mean squared distance of the last pairs [m^2]. */
+  double mean_squared_distance = 0.0;
+};
+
+/** \brief Called with the number of finished runs, by one thread at a time; returns
+ * false to stop. */
+using MonteCarloIcpProgress = std::function<bool(int num_done)>;
+
+/** \brief Run ICP from random starts (Maken, Ramos, Ott 2020, section IV).
+ * \param[in] source 3 x n, finite, source frame [m]
+ * \return the runs in the order of their index; if stopped, those that were finished */
+BAYESIAN_ICP_EXPORT std::vector<MonteCarloIcpRun>
+monteCarloIcp(const Eigen::Matrix3Xd& source,
+              const KdTree& target,
+              const MonteCarloIcpOptions& options,
+              const MonteCarloIcpProgress& progress = MonteCarloIcpProgress());
+
+} // namespace bayesian_icp
