@@ -25,14 +25,6 @@ enum ExitCode {
   Interrupted = 130
 };
 
-using Clock = std::chrono::steady_clock;
-
-double
-secondsSince(Clock::time_point start)
-{
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 void
 tell(const std::string& message)
 {
@@ -66,27 +58,19 @@ Run
 runRegistration(const Request& request)
 {
   io::silencePcl();
-  Run run;
-  const auto start = Clock::now();
-  run.source = io::readCloud(request.source_file);
-  run.target = io::readCloud(request.target_file);
-  run.reading_seconds = secondsSince(start);
+  Run run = readRun(request.source_file, request.target_file, request.settings);
   if (!request.is_quiet) {
     warnOfLostDigits(run.source);
     warnOfLostDigits(run.target);
   }
-  run.settings = request.settings;
-  run.settings.scaleToSource(run.source.num_finite);
-
   ProgressBar bar(!request.is_quiet);
   catchInterrupt();
-  run.result = registerClouds(run.source.points,
-                              run.target.points,
-                              run.settings,
-                              [&bar](const Progress& progress) {
-                                bar.update(progress);
-                                return !wasInterrupted();
-                              });
+  registerClouds(
+      [&bar](const Progress& progress) {
+        bar.update(progress);
+        return !wasInterrupted();
+      },
+      run);
   return run;
 }
 

@@ -5,6 +5,7 @@
 #include <bayesian_icp/calibration/twist.h>
 
 #include <io/errors.h>
+#include <io/text_hash.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -28,19 +29,6 @@ readTransform(const std::string& file)
   if (!transform.linear().isUnitary(1e-3))
     throw io::FileError(file, "is not a rigid motion");
   return transform;
-}
-
-/** A number that differs from pair to pair (64 bit FNV-1a), so that cases of one seed
- * share no random numbers. */
-std::uint64_t
-streamOf(const std::string& name)
-{
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char character : name) {
-    hash ^= static_cast<unsigned char>(character);
-    hash *= 1099511628211u;
-  }
-  return hash;
 }
 
 } // namespace
@@ -116,7 +104,8 @@ RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
   const Entry& entry = entryOf(name);
   const auto clouds = cloudsOf(entry);
   const RealScale& scale = entry.scale;
-  Random random(seed, streamOf(name));
+  // Cases of one seed share no random numbers.
+  Random random(seed, io::hashOf(name));
   CoverageCase made;
   made.scene = name;
   made.condition = "real";

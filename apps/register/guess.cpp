@@ -18,6 +18,8 @@ namespace {
 constexpr double rotation_tolerance = 1e-3;
 constexpr std::uint64_t max_matrix_file_size = 1 << 16;
 
+} // namespace
+
 Eigen::Matrix4d
 readMatrixFile(const std::string& file)
 {
@@ -36,8 +38,6 @@ readMatrixFile(const std::string& file)
     throw io::FileError(file, complaint);
   return matrix;
 }
-
-} // namespace
 
 std::string
 complaintAboutMotion(const Eigen::Matrix4d& matrix)

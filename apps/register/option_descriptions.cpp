@@ -83,22 +83,21 @@ describeGeneral()
       "which is made if missing");
   group.add_options()("json", "print what posterior.json has in place of the table");
   group.add_options()("quiet", "print nothing but errors, and no progress bar");
-  group.add_options()(
-      "config",
-      text("FILE"),
-      "settings as in the 'options' of a posterior.json, or a posterior.json "
-      "itself, or a config.json of the authors' program; options on the "
-      "command line come first");
   return group;
 }
 
 } // namespace
 
 po::options_description
-describeOptions()
+describeSettings(const Settings& defaults)
 {
-  const Settings defaults;
   po::options_description registration("Registration");
+  registration.add_options()(
+      "config",
+      po::value<std::string>()->value_name("FILE"),
+      "settings as in the 'options' of a posterior.json, or a posterior.json "
+      "itself, or a config.json of the authors' program; options on the "
+      "command line come first");
   Describer describe_registration{registration};
   visitRegistration(defaults, describe_registration);
   po::options_description posterior("Posterior");
@@ -116,8 +115,15 @@ describeOptions()
   visitCalibrated(defaults.options.calibrated, describe_calibrated);
 
   po::options_description all;
-  all.add(describeGeneral()).add(registration).add(posterior).add(sampler);
-  all.add(exact).add(calibrated);
+  all.add(registration).add(posterior).add(sampler).add(exact).add(calibrated);
+  return all;
+}
+
+po::options_description
+describeOptions()
+{
+  po::options_description all;
+  all.add(describeGeneral()).add(describeSettings(Settings()));
   return all;
 }
 

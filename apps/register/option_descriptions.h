@@ -7,7 +7,16 @@
 
 namespace bayesian_icp::app {
 
-/** \brief Every option, described with its unit and its default. Values are strings. */
+struct Settings;
+
+/** \brief The options that decide the result of a registration, which all programs that
+ * register have in common, described with their units and \p defaults. Values are
+ * strings. */
+boost::program_options::options_description
+describeSettings(const Settings& defaults);
+
+/** \brief Every option of pcl_bayesian_icp, described with its unit and its default.
+ * Values are strings. */
 boost::program_options::options_description
 describeOptions();
 

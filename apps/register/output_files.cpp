@@ -29,11 +29,17 @@ writeOutputFiles(const Run& run, io::OutputFolder& folder)
   folder.add("aligned.pcd", [&](std::ostream& stream) {
     writeAligned(run.source, run.target, run.result.final_matrix, stream);
   });
+  addPosteriorFiles(run, folder);
+  folder.commit();
+}
+
+void
+addPosteriorFiles(const Run& run, io::OutputFolder& folder)
+{
   folder.add("samples.csv",
              [&](std::ostream& stream) { writeSamples(run.result.chains, stream); });
   folder.add("posterior.json",
              [&](std::ostream& stream) { stream << posteriorJson(run); });
-  folder.commit();
 }
 
 } // namespace bayesian_icp::app

@@ -15,6 +15,11 @@ namespace bayesian_icp::app {
 void
 writeSamples(const std::vector<Chain>& chains, std::ostream& stream);
 
+/** \brief Put samples.csv and posterior.json on their way into \p folder.
+ * \throws io::FileError if one cannot be written */
+void
+addPosteriorFiles(const Run& run, io::OutputFolder& folder);
+
 /** \brief Write aligned.pcd, samples.csv and posterior.json.
  * \throws io::FileError if one cannot be written; then none is */
 void

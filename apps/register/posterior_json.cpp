@@ -21,6 +21,7 @@ struct Convention {
   const char* meaning;
 };
 
+/** In the order of the enumeration. */
 const Convention conventions[] = {
     {CovarianceConvention::Parameters,
      {"x", "y", "z", "roll", "pitch", "yaw"},
@@ -38,6 +39,8 @@ const Convention conventions[] = {
      {"v_x", "v_y", "v_z", "w_x", "w_y", "w_z"},
      "twist (v, w) in the source frame, T = T_mean exp(xi): GTSAM's, which puts the "
      "rotation first"}};
+
+} // namespace
 
 ordered_json
 cloudJson(const io::CloudFile& cloud)
@@ -68,6 +71,26 @@ meanJson(const Vector6d& mean)
 }
 
 ordered_json
+finalTransformationJson(const RegistrationResult& result)
+{
+  return {{"is", result.is_final_the_mean ? "posterior mean" : "ICP's result"},
+          {"T_target_source", jsonOf(result.final_matrix)}};
+}
+
+ordered_json
+covarianceJson(CovarianceConvention convention, const Matrix6d& matrix)
+{
+  const Convention& words = conventions[static_cast<std::size_t>(convention)];
+  return {{"convention", toString(convention)},
+          {"order", words.order},
+          {"units", {"m", "m", "m", "rad", "rad", "rad"}},
+          {"meaning", words.meaning},
+          {"matrix", jsonOf(matrix)}};
+}
+
+namespace {
+
+ordered_json
 coordinatesJson(const Summary& summary)
 {
   auto list = ordered_json::array();
@@ -89,22 +112,12 @@ coordinatesJson(const Summary& summary)
 }
 
 ordered_json
-covarianceJson(const Convention& convention, const Matrix6d& matrix)
-{
-  return {{"convention", toString(convention.convention)},
-          {"order", convention.order},
-          {"units", {"m", "m", "m", "rad", "rad", "rad"}},
-          {"meaning", convention.meaning},
-          {"matrix", jsonOf(matrix)}};
-}
-
-ordered_json
 covariancesJson(const Summary& summary)
 {
   auto list = ordered_json::array();
   for (const Convention& convention : conventions)
-    list.push_back(
-        covarianceJson(convention, summary.covariance(convention.convention)));
+    list.push_back(covarianceJson(convention.convention,
+                                  summary.covariance(convention.convention)));
   return list;
 }
 
@@ -113,10 +126,12 @@ modesJson(const std::vector<Mode>& modes)
 {
   auto list = ordered_json::array();
   for (const Mode& mode : modes)
-    list.push_back({{"weight", jsonOf(mode.weight)},
-                    {"chains", mode.chains},
-                    {"mean", meanJson(mode.mean)},
-                    {"covariance", covarianceJson(conventions[0], mode.covariance)}});
+    list.push_back(
+        {{"weight", jsonOf(mode.weight)},
+         {"chains", mode.chains},
+         {"mean", meanJson(mode.mean)},
+         {"covariance",
+          covarianceJson(CovarianceConvention::Parameters, mode.covariance)}});
   return list;
 }
 
@@ -164,9 +179,7 @@ posteriorJson(const Run& run)
       {"status",
        {{"name", toString(result.summary.status)},
         {"message", result.summary.message}}},
-      {"final_transformation",
-       {{"is", result.is_final_the_mean ? "posterior mean" : "ICP's result"},
-        {"T_target_source", jsonOf(result.final_matrix)}}},
+      {"final_transformation", finalTransformationJson(result)},
       {"icp", icpJson(result)},
       {"posterior", posteriorOf(result)},
       {"data", dataJson(result.summary.data)},

@@ -18,4 +18,16 @@ struct Run {
   double reading_seconds = 0.0;
 };
 
+/** \brief Read both clouds, and scale the settings to the source where asked for.
+ * \throws io::FileError */
+Run
+readRun(const std::string& source_file,
+        const std::string& target_file,
+        const Settings& settings);
+
+/** \brief Register the clouds of \p run.
+ * \param[in] progress called after each step of the chains; returns false to cancel */
+void
+registerClouds(const ProgressCallback& progress, Run& run);
+
 } // namespace bayesian_icp::app

@@ -201,11 +201,11 @@ jsonOf(const Settings& settings)
 }
 
 Settings
-settingsOf(const json& document)
+settingsOf(const json& document, const Settings& defaults)
 {
   if (!document.is_object())
-    throw io::UsageError("'options' is not a JSON object");
-  Settings settings;
+    throw io::UsageError("the settings are not a JSON object");
+  Settings settings = defaults;
   SettingsReader reader{document, {}, {}};
   visitSettings(settings, reader);
   reader.refuseUnknownKeys();

@@ -14,9 +14,9 @@ namespace bayesian_icp::app {
 nlohmann::ordered_json
 jsonOf(const Settings& settings);
 
-/** \brief Settings from groups of keys; what is not mentioned has its default.
+/** \brief Settings from groups of keys; what is not mentioned is as in \p defaults.
  * \throws io::UsageError naming the key if it is unknown or its value malformed */
 Settings
-settingsOf(const nlohmann::json& document);
+settingsOf(const nlohmann::json& document, const Settings& defaults = Settings());
 
 } // namespace bayesian_icp::app

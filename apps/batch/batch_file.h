@@ -1,0 +1,63 @@
+/** \file
+ * \brief The file of a batch's lines, which one or several processes write.
+ */
+#pragma once
+
+#include "batch/manifest.h"
+#include "io/line_file.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+/** \brief FILE with a line a pair, and FILE.rank1, FILE.rank2, ... in which other
+ * processes of a running batch put theirs. Whatever was killed when, each pair has one
+ * line at most. */
+class BatchFile {
+public:
+  /** \brief Read what earlier runs have finished, and take their rank files in.
+   * \throws io::FileError if it cannot be written, is in use, has something else than
+   *         lines, or a pair of \p pairs with other settings */
+  BatchFile(const std::string& name, const std::vector<BatchPair>& pairs);
+
+  /** \brief Positions in the manifest of the pairs that have no line yet. */
+  std::vector<std::size_t>
+  remaining() const;
+
+  /** \brief Number of pairs of the manifest that have a line, and of those whose status
+   * is not "ok". */
+  std::size_t
+  numFinished() const;
+  std::size_t
+  numNotOk() const;
+
+  /** \brief Write a line, at once. \throws io::FileError */
+  void
+  add(const std::string& line);
+
+  /** \brief Move the lines of the rank files here, and remove those files.
+   * \throws io::FileError */
+  void
+  takeRankFiles();
+
+private:
+  /** Remember that the line's pair is done. \return whether that was new */
+  bool
+  note(const std::string& line);
+
+  std::string name_;
+  const std::vector<BatchPair>& pairs_;
+  /** Statuses of what is in the file, by the name of the pair. */
+  std::map<std::string, std::string> statuses_;
+  std::map<std::string, std::string> settings_ids_;
+  std::unique_ptr<io::LineFile> file_;
+};
+
+/** \brief The name of the file of process \p rank, 1 or more. */
+std::string
+rankFileName(const std::string& name, int rank);
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,160 @@
+#include "batch/batch_run.h"
+
+#include "batch/batch_line.h"
+#include "register/guess.h"
+#include "register/interrupt.h"
+#include "register/output_files.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <thread>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** What the threads of a batch share. */
+class Batch {
+public:
+  Batch(const std::vector<BatchPair>& pairs,
+        const BatchRunOptions& options,
+        const std::function<void(const BatchResult&)>& take)
+  : pairs_(pairs)
+  , options_(options)
+  , take_(take)
+  {}
+
+  /** Register pairs until none is left. */
+  void
+  work()
+  {
+    try {
+      while (!isStopped()) {
+        const std::size_t next = next_++;
+        if (next >= pairs_.size())
+          return;
+        handle(pairs_[next]);
+      }
+    }
+    catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (!failure_)
+        failure_ = std::current_exception();
+      has_failed_ = true;
+    }
+  }
+
+  /** \throws what one of the threads has met */
+  void
+  rethrow() const
+  {
+    if (failure_)
+      std::rethrow_exception(failure_);
+  }
+
+private:
+  bool
+  isStopped() const
+  {
+    return has_failed_ || wasInterrupted();
+  }
+
+  Run
+  registerPair(const BatchPair& pair) const
+  {
+    Settings settings = pair.settings;
+    if (!pair.guess_file.empty())
+      settings.guess = readMatrixFile(pair.guess_file);
+    Run run = readRun(pair.source_file, pair.target_file, settings);
+    registerClouds([this](const Progress&) { return !isStopped(); }, run);
+    return run;
+  }
+
+  void
+  handle(const BatchPair& pair)
+  {
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    const auto seconds = [start] {
+      return std::chrono::duration<double>(Clock::now() - start).count();
+    };
+    std::optional<Run> run;
+    std::string complaint;
+    try {
+      run = registerPair(pair);
+    }
+    catch (const std::bad_alloc&) {
+      complaint = "out of memory";
+    }
+    catch (const std::exception& error) {
+      complaint = error.what();
+    }
+    if (!run)
+      give({pair, batchErrorLine(pair, complaint, seconds()), error_status, seconds()});
+    else if (run->result.summary.status != Status::Cancelled)
+      give(pair, *run, seconds());
+  }
+
+  void
+  give(const BatchPair& pair, const Run& run, double seconds)
+  {
+    const Summary& summary = run.result.summary;
+    if (!options_.output_folder.empty() && summary.num_draws > 0) {
+      const std::filesystem::path root(options_.output_folder);
+      io::OutputFolder folder((root / pair.name).string());
+      addPosteriorFiles(run, folder);
+      folder.commit();
+    }
+    give({pair, batchLine(pair, run, seconds), toString(summary.status), seconds});
+  }
+
+  void
+  give(const BatchResult& result)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!has_failed_)
+      take_(result);
+  }
+
+  const std::vector<BatchPair>& pairs_;
+  const BatchRunOptions& options_;
+  const std::function<void(const BatchResult&)>& take_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> has_failed_{false};
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+
+} // namespace
+
+void
+runBatch(const std::vector<BatchPair>& pairs,
+         const BatchRunOptions& options,
+         const std::function<void(const BatchResult&)>& take)
+{
+  const int num_threads =
+      options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
+  const int num_workers =
+      static_cast<int>(std::min(pairs.size(), static_cast<std::size_t>(num_threads)));
+  Batch batch(pairs, options, take);
+  std::vector<std::thread> workers;
+  for (int i = 0; i < num_workers; ++i)
+    workers.emplace_back([&batch, i, num_threads, num_workers] {
+      omp_set_num_threads(num_threads / num_workers +
+                          (i < num_threads % num_workers ? 1 : 0));
+      batch.work();
+    });
+  for (std::thread& worker : workers)
+    worker.join();
+  batch.rethrow();
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,45 @@
+/** \file
+ * \brief Registers pairs on all processors, whatever happens to some of them.
+ */
+#pragma once
+
+#include "batch/manifest.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+/** \brief How a batch is run; nothing of it has an effect on the results. */
+struct BatchRunOptions {
+  /** Threads, 0 for as many as OpenMP offers. With more pairs than threads each pair
+   * has one, otherwise the pairs share them evenly. */
+  int num_threads = 0;
+  /** Folder for a folder a pair with posterior.json and samples.csv; empty for none. */
+  std::string output_folder;
+};
+
+/** \brief A pair that has ended. */
+struct BatchResult {
+  const BatchPair& pair;
+  /** Line without line break, see batchLine(). */
+  std::string line;
+  /** Short name of the Status, or error_status. */
+  std::string status;
+  double seconds;
+};
+
+/** \brief Register the pairs, reading the clouds of each when its turn comes.
+ *
+ * A pair that fails, by an exception too, has a result that says so. After an interrupt
+ * no pair is begun, and those under way are given up, without a result.
+ * \param[in] take gets each result as it comes, by one thread at a time
+ * \throws io::FileError if files of a pair cannot be written, and what \p take throws;
+ *         nothing more is begun then */
+void
+runBatch(const std::vector<BatchPair>& pairs,
+         const BatchRunOptions& options,
+         const std::function<void(const BatchResult&)>& take);
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,89 @@
+#include "batch/ranks.h"
+
+#include <mpi.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** Started by hand, MPI would only be slow to begin and may be set up badly. */
+bool
+isStartedByLauncher()
+{
+  for (const char* const variable :
+       {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"})
+    if (std::getenv(variable) != nullptr)
+      return true;
+  return false;
+}
+
+/** MPI's own waiting keeps a processor busy that other processes could use. */
+void
+await(MPI_Request request)
+{
+  int is_done = 0;
+  while (MPI_Test(&request, &is_done, MPI_STATUS_IGNORE) == MPI_SUCCESS && is_done == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+} // namespace
+
+Ranks::Ranks()
+{
+  if (!isStartedByLauncher())
+    return;
+  int provided = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+}
+
+Ranks::~Ranks()
+{
+  int is_initialized = 0;
+  MPI_Initialized(&is_initialized);
+  if (is_initialized != 0)
+    MPI_Finalize();
+}
+
+std::string
+Ranks::broadcast(const std::string& text) const
+{
+  std::string shared = text;
+  if (size_ == 1)
+    return shared;
+  MPI_Request request;
+  long length = static_cast<long>(shared.size());
+  MPI_Ibcast(&length, 1, MPI_LONG, 0, MPI_COMM_WORLD, &request);
+  await(request);
+  shared.resize(static_cast<std::size_t>(length));
+  MPI_Ibcast(
+      shared.data(), static_cast<int>(length), MPI_CHAR, 0, MPI_COMM_WORLD, &request);
+  await(request);
+  return shared;
+}
+
+int
+Ranks::maximum(int value) const
+{
+  int largest = value;
+  if (size_ == 1)
+    return largest;
+  MPI_Request request;
+  MPI_Iallreduce(&value, &largest, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request);
+  await(request);
+  return largest;
+}
+
+void
+Ranks::abort(int exit_code) const
+{
+  if (size_ > 1)
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+}
+
+} // namespace bayesian_icp::app

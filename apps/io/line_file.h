@@ -1,0 +1,42 @@
+/** \file
+ * \brief A text file that grows by whole lines, so that a run that was killed goes on
+ * where it stopped.
+ */
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace bayesian_icp::io {
+
+/** \brief Lines on the disk, written by one process at a time. */
+class LineFile {
+public:
+  /** \brief Open \p name, or make it and its folder, keep other processes from it, and
+   * read what is there. A last line that was cut off is removed.
+   * \param[in] read_line gets each complete line, without its line break
+   * \throws FileError if the file cannot be written or is in use by another process,
+   *         and what \p read_line throws */
+  LineFile(const std::string& name,
+           const std::function<void(const std::string& line)>& read_line);
+  ~LineFile();
+  LineFile(const LineFile&) = delete;
+  LineFile&
+  operator=(const LineFile&) = delete;
+
+  /** \brief Append a line, at once and completely.
+   * \throws FileError if that fails, for example because the disk is full; the file is
+   *         then as it was */
+  void
+  add(const std::string& line) const;
+
+private:
+  /** Remove what follows the first \p size bytes. */
+  void
+  cutTo(long size) const;
+
+  std::string name_;
+  int descriptor_ = -1;
+};
+
+} // namespace bayesian_icp::io

@@ -1,0 +1,30 @@
+#include "register/run.h"
+
+#include <chrono>
+
+namespace bayesian_icp::app {
+
+Run
+readRun(const std::string& source_file,
+        const std::string& target_file,
+        const Settings& settings)
+{
+  using Clock = std::chrono::steady_clock;
+  Run run;
+  const auto start = Clock::now();
+  run.source = io::readCloud(source_file);
+  run.target = io::readCloud(target_file);
+  run.reading_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  run.settings = settings;
+  run.settings.scaleToSource(run.source.num_finite);
+  return run;
+}
+
+void
+registerClouds(const ProgressCallback& progress, Run& run)
+{
+  run.result =
+      registerClouds(run.source.points, run.target.points, run.settings, progress);
+}
+
+} // namespace bayesian_icp::app

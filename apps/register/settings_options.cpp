@@ -1,0 +1,188 @@
+#include "register/settings_options.h"
+
+#include "io/errors.h"
+#include "io/numbers.h"
+#include "register/choices.h"
+#include "register/config_file.h"
+#include "register/guess.h"
+#include "register/setting_fields.h"
+#include "register/unused_settings.h"
+
+#include <boost/program_options/parsers.hpp>
+
+namespace bayesian_icp::app {
+
+namespace po = boost::program_options;
+
+namespace {
+
+[[noreturn]] void
+refuse(const std::string& option, const std::string& value, const std::string& expected)
+{
+  throw io::UsageError("--" + option + ": " + io::quoted(value) + " is not " +
+                       expected);
+}
+
+void
+convert(const std::string& option, const std::string& text, double& value)
+{
+  if (!io::readNumber(text, value))
+    refuse(option, text, "a number");
+}
+
+template <typename Integer>
+void
+convertInteger(const std::string& option, const std::string& text, Integer& value)
+{
+  if (!io::readNumber(text, value))
+    refuse(option, text, "a whole number in its range");
+}
+
+void
+convert(const std::string& option, const std::string& text, int& value)
+{
+  convertInteger(option, text, value);
+}
+
+void
+convert(const std::string& option, const std::string& text, std::uint64_t& value)
+{
+  convertInteger(option, text, value);
+}
+
+/** Six numbers with commas between, or where it makes sense one for all. */
+void
+convert(const std::string& option, const std::string& text, Vector6d& value)
+{
+  const bool may_be_one = option != "prior-mean";
+  const auto items = io::splitAt(',', text);
+  Vector6d numbers;
+  bool is_good = items.size() == 6 || (may_be_one && items.size() == 1);
+  for (std::size_t k = 0; is_good && k < 6; ++k)
+    is_good = io::readNumber(items[items.size() == 1 ? 0 : k],
+                             numbers[static_cast<Eigen::Index>(k)]);
+  if (!is_good)
+    refuse(option,
+           text,
+           std::string("six numbers with commas between") +
+               (may_be_one ? ", or one for all" : ""));
+  value = numbers;
+}
+
+void
+convert(const std::string&, const std::string& text, Eigen::Matrix4d& value)
+{
+  value = readGuess(text);
+}
+
+template <typename Choice>
+void
+convert(const std::string& option, const std::string& text, Choice& value)
+{
+  if (!readChoice(text, value))
+    refuse(option, text, namesOfChoices(value));
+}
+
+/** Takes over what the command line says of the settings. */
+struct SettingsReader {
+  const po::variables_map& given;
+
+  template <typename T>
+  void
+  operator()(const Field& field, T& value)
+  {
+    const std::string name = longNameOf(field);
+    if (given.count(name) == 0)
+      return;
+    if constexpr (std::is_same_v<T, bool>)
+      value = true;
+    else
+      convert(name, given[name].as<std::string>(), value);
+  }
+};
+
+/** Refuses options that have no effect with the preset. */
+struct UnusedOptionRefuser {
+  const po::variables_map& given;
+  Preset preset;
+
+  template <typename T>
+  void
+  operator()(const Field& field, const T&) const
+  {
+    const std::string name = longNameOf(field);
+    if (given.count(name) > 0 && isUnused(field, preset))
+      throw io::UsageError("--" + name + ": has no effect with preset " +
+                           toString(preset));
+  }
+};
+
+} // namespace
+
+po::variables_map
+splitCommandLine(int argc,
+                 const char* const* argv,
+                 po::options_description options,
+                 const char* positional_name)
+{
+  namespace style = po::command_line_style;
+  // No guessing: an abbreviated or misspelt option is an error.
+  const int accepted =
+      (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
+  options.add_options()(positional_name, po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add(positional_name, -1);
+  po::variables_map given;
+  try {
+    po::store(po::command_line_parser(argc, argv)
+                  .options(options)
+                  .positional(positional)
+                  .style(accepted)
+                  .run(),
+              given);
+  }
+  catch (const po::error& error) {
+    throw io::UsageError(error.what());
+  }
+  return given;
+}
+
+std::string
+textOf(const po::variables_map& given, const std::string& name)
+{
+  if (given.count(name) == 0)
+    return "";
+  auto text = given[name].as<std::string>();
+  if (text.empty())
+    throw io::UsageError("--" + name + ": the name is empty");
+  return text;
+}
+
+Settings
+settingsFrom(const po::variables_map& given,
+             const Settings& defaults,
+             std::string& note)
+{
+  Settings settings = defaults;
+  const std::string config = textOf(given, "config");
+  if (!config.empty())
+    settings = readConfigFile(config, note);
+  SettingsReader reader{given};
+  visitSettings(settings, reader);
+  if (given.count("step-size") > 0)
+    settings.is_step_size_times_points = false;
+  if (given.count("effective-points") > 0)
+    settings.is_effective_points_source_size = false;
+  const std::string complaint = settings.validate();
+  if (!complaint.empty())
+    throw io::UsageError(complaint);
+  const UnusedOptionRefuser refuser{given, settings.options.preset};
+  visitSettings(settings, refuser);
+  const std::string unused = unusedSettings(settings);
+  if (!unused.empty())
+    note += (note.empty() ? "" : "; ") + unused + ": no effect with preset " +
+            toString(settings.options.preset);
+  return settings;
+}
+
+} // namespace bayesian_icp::app
