@@ -10,6 +10,8 @@
 #include "io/numbers.h"
 #include "register/interrupt.h"
 
+#include <bayesian_icp/summary.h>
+
 #include <iostream>
 #include <optional>
 
@@ -153,7 +155,8 @@ runTool(int argc, char** argv, const Ranks& ranks)
     print(batchHelpText());
     return Good;
   case BatchRequest::Kind::ShowVersion:
-    print("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION "\n");
+    print(std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
+          (Ranks::hasMpi() ? " with MPI\n" : " without MPI\n"));
     return Good;
   case BatchRequest::Kind::Register:
     break;
