@@ -1,5 +1,7 @@
 #include "pipeline_parts.h"
 
+#include <bayesian_icp/measurement.h>
+
 #include <utility>
 
 namespace bayesian_icp {
@@ -43,10 +45,7 @@ makePrior(const PriorOptions& options,
           const Vector6d& initial_pose,
           const Eigen::Matrix3Xd& source_points)
 {
-  const Vector6d& mean = options.mean.allFinite() ? options.mean : initial_pose;
-  if (options.frame == PriorFrame::Origin)
-    return Prior(mean, options.variance);
-  return Prior(mean, options.variance, source_points.rowwise().mean());
+  return priorOf(options, initial_pose, source_points.rowwise().mean());
 }
 
 } // namespace bayesian_icp

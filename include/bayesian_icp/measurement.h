@@ -16,9 +16,10 @@
 namespace bayesian_icp {
 
 /** \brief Ratio of posterior to prior standard deviation above which draws cannot tell
- * a direction from one that the clouds do not see: three standard errors of a standard
- * deviation from min_ess draws below 1. */
-constexpr double max_measured_share_of_prior = 0.9;
+ * a direction from one that the clouds do not see: of min_ess draws whose variance is 1
+ * in all six directions, the smallest is (1 - sqrt(6 / 400))^2 = 0.77, give or take
+ * 0.03, and this is four times that below. */
+constexpr double max_measured_share_of_prior = 0.8;
 
 /** \brief Standard deviation given to directions that the clouds do not see, in units
  * of the prior's: their information is a ten-thousandth of the prior's. */
