@@ -91,7 +91,7 @@ main(int argc, char** argv)
   prior.mean = poseOf(predicted.T);
   prior.variance.setConstant(0.1 * 0.1);
   icp.setPreset(Preset::Calibrated);
-  icp.setPrior(prior);
+  icp.setPrior(prior.mean, prior.variance);
   icp.setInputSource(source);
   icp.setInputTarget(target);
   Cloud aligned;

@@ -3,6 +3,7 @@
  */
 #include "batch/batch_command.h"
 #include "batch/batch_file.h"
+#include "batch/batch_line.h"
 #include "batch/batch_run.h"
 #include "batch/ranks.h"
 #include "io/cloud_file.h"
@@ -87,7 +88,7 @@ runToStandardOutput(const BatchRequest& request,
 {
   ProgressLines progress(ranks, pairs.size(), !request.is_quiet);
   runBatch(pairs, runOptionsOf(request), [&](const BatchResult& result) {
-    print(result.line + '\n');
+    print(batchLine(result) + '\n');
     progress.show(result);
   });
   return exitCodeOf(progress.numNotOk() == 0);
@@ -134,9 +135,9 @@ runToFile(const BatchRequest& request,
   ProgressLines progress(ranks, share.size(), !request.is_quiet);
   runBatch(share, runOptionsOf(request), [&](const BatchResult& result) {
     if (file)
-      file->add(result.line);
+      file->add(batchLine(result));
     else
-      part->add(result.line);
+      part->add(batchLine(result));
     progress.show(result);
   });
   part.reset();

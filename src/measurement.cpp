@@ -88,6 +88,17 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
   return measurement;
 }
 
+PoseEstimate
+estimateOf(const Prior& prior)
+{
+  const Matrix6d precision =
+      twistPrior(prior, isometryOf(prior.mean()), Eigen::Vector3d::Zero()).precision +
+      least_precision * Matrix6d::Identity();
+  PoseEstimate estimate = estimateOf(prior.mean(), precision.inverse());
+  estimate.status = Status::Ok;
+  return estimate;
+}
+
 Prior
 priorOf(const PriorOptions& options,
         const Vector6d& initial_pose,

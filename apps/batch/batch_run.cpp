@@ -1,6 +1,5 @@
 #include "batch/batch_run.h"
 
-#include "batch/batch_line.h"
 #include "register/guess.h"
 #include "register/interrupt.h"
 #include "register/output_files.h"
@@ -98,7 +97,7 @@ private:
       complaint = error.what();
     }
     if (!run)
-      give({pair, batchErrorLine(pair, complaint, seconds()), error_status, seconds()});
+      give({pair, nullptr, error_status, complaint, seconds()});
     else if (run->result.summary.status != Status::Cancelled)
       give(pair, *run, seconds());
   }
@@ -113,7 +112,7 @@ private:
       addPosteriorFiles(run, folder);
       folder.commit();
     }
-    give({pair, batchLine(pair, run, seconds), toString(summary.status), seconds});
+    give({pair, &run, toString(summary.status), summary.message, seconds});
   }
 
   void

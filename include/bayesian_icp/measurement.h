@@ -44,6 +44,10 @@ struct BAYESIAN_ICP_EXPORT PoseMeasurement {
 BAYESIAN_ICP_EXPORT PoseMeasurement
 withoutPrior(const PoseEstimate& posterior, const Prior& prior);
 
+/** \brief The prior as a Gaussian about its mean, with status Ok. */
+BAYESIAN_ICP_EXPORT PoseEstimate
+estimateOf(const Prior& prior);
+
 /** \brief The prior that a run has used.
  * \param[in] options its prior
  * \param[in] initial_pose its guess, which is the mean of a prior that has none
