@@ -1,6 +1,6 @@
 #include "batch/batch_run.h"
 
-#include "register/guess.h"
+#include "io/motion.h"
 #include "register/interrupt.h"
 #include "register/output_files.h"
 
@@ -71,7 +71,7 @@ private:
   {
     Settings settings = pair.settings;
     if (!pair.guess_file.empty())
-      settings.guess = readMatrixFile(pair.guess_file);
+      settings.guess = io::readMotion("guess", pair.guess_file);
     Run run = readRun(pair.source_file, pair.target_file, settings);
     registerClouds([this](const Progress&) { return !isStopped(); }, run);
     return run;
