@@ -106,7 +106,7 @@ complaintAboutExport(const PoseEstimate& estimate,
   if (!estimate.mean.allFinite())
     return "the mean pose is not finite";
   for (const Matrix6d& covariance : estimate.covariances) {
-    const std::string complaint = complaintAboutNumbers(covariance);
+    std::string complaint = complaintAboutNumbers(covariance);
     if (!complaint.empty())
       return complaint;
   }

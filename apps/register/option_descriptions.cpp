@@ -3,7 +3,7 @@
 #include "io/numbers.h"
 #include "register/choices.h"
 #include "register/command_line.h"
-#include "register/export_files.h"
+#include "register/export_options.h"
 #include "register/setting_fields.h"
 
 #include <boost/program_options/value_semantic.hpp>
@@ -87,35 +87,6 @@ describeGeneral()
   return group;
 }
 
-po::options_description
-describeExports()
-{
-  po::options_description group("Export");
-  const auto text = [](const char* placeholder) {
-    return po::value<std::string>()->value_name(placeholder);
-  };
-  group.add_options()(
-      "export",
-      text("LIST"),
-      ("posterior mean and covariance for other software: " +
-       namesOfChoices(ExportFormat::Ros) +
-       ", with commas between; one is printed in place of the table, with --output "
-       "all are files in that folder; docs/exports.md has their conventions")
-          .c_str());
-  group.add_options()("target-frame",
-                      text("NAME"),
-                      "frame_id of ros, target frame of csv (default target)");
-  group.add_options()(
-      "source-frame", text("NAME"), "source frame of csv (default source)");
-  group.add_options()(
-      "timestamp", text("S"), "time of ros, tum and csv [s since 1970] (default 0)");
-  group.add_options()(
-      "vertices", text("I,J"), "vertices of target and source in g2o (default 0,1)");
-  group.add_options()("export-unreliable",
-                      "also export if the status is neither ok nor doubtful");
-  return group;
-}
-
 } // namespace
 
 po::options_description
@@ -153,7 +124,9 @@ po::options_description
 describeOptions()
 {
   po::options_description all;
-  all.add(describeGeneral()).add(describeExports()).add(describeSettings(Settings()));
+  all.add(describeGeneral())
+      .add(describeExportOptions())
+      .add(describeSettings(Settings()));
   return all;
 }
 

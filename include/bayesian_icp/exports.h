@@ -98,8 +98,8 @@ g2oEdge(const PoseEstimate& estimate, const ExportOptions& options);
 BAYESIAN_ICP_EXPORT std::string
 g2oVertex(const Eigen::Matrix4d& pose, int id);
 
-/** \brief For numpy.loadtxt or an std::istream after skipping lines that begin with #:
- * the 4x4 matrix of the pose, GTSAM's 6x6 covariance and the 6x6 information.
+/** \brief Rows of numbers below lines that begin with #: the 4x4 matrix of the pose,
+ * GTSAM's 6x6 covariance and the 6x6 information.
  * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 gtsamText(const PoseEstimate& estimate, const ExportOptions& options);

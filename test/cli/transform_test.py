@@ -131,6 +131,24 @@ class TransformMotion(TransformTest):
         matrix = document["posterior"]["mean"]["T_target_source"]
         self.assert_moved(before, cloud_files.read_pcd(moved)[1], matrix, normals=False)
 
+    def test_ply_keeps_all_fields_and_the_viewpoint(self):
+        half = math.sqrt(0.5)
+        source = self.cloud(viewpoint=f"1 2 3 {half} 0 0 {half}")
+        ply, pcd = self.folder / "all.ply", self.folder / "all.pcd"
+        self.assert_done(transform(source, ply, "--pose", WORDS))
+        self.assert_done(transform(ply, pcd, "--pose", WORDS, "--inverse"))
+        _, before = cloud_files.read_pcd(source)
+        header, after = cloud_files.read_pcd(pcd)
+        self.assertEqual(header["FIELDS"], [name for name, _ in FIELDS])
+        self.assert_moved(before, after, cloud_files.matrix_of(0, 0, 0, 0, 0, 0))
+        for a, b in zip(before, after):
+            for name in ("intensity", "ring", "time"):
+                self.assertEqual(a[name], b[name])
+        # The camera is the last element: 17 floats from its position on, two ints, two floats.
+        position = struct.unpack("<3f", ply.read_bytes()[-84:-72])
+        expected = cloud_files.moved(cloud_files.matrix_of(*POSE), (1, 2, 3))
+        self.assertLess(math.dist(position, expected), FLOAT_ROUNDING * 10)
+
     def test_ply(self):
         points = cloud_files.box_surface()
         source = self.file("in.ply", cloud_files.ply_bytes(points))
