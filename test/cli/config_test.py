@@ -218,6 +218,7 @@ class AuthorsLayout(ConfigTest):
 
 class Repeatability(ConfigTest):
     OPTIONS = [
+        "--preset=paper",
         "--guess=0.001,0.002,0.003,0.01,0.02,0.03",
         "--max-distance=0.5",
         "--prior-variance=0.1,0.2,0.3,0.4,0.5,inf",
