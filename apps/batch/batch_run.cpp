@@ -145,6 +145,7 @@ runBatch(const std::vector<BatchPair>& pairs,
       static_cast<int>(std::min(pairs.size(), static_cast<std::size_t>(num_threads)));
   Batch batch(pairs, options, take);
   std::vector<std::thread> workers;
+  workers.reserve(static_cast<std::size_t>(num_workers));
   for (int i = 0; i < num_workers; ++i)
     workers.emplace_back([&batch, i, num_threads, num_workers] {
       omp_set_num_threads(num_threads / num_workers +

@@ -17,15 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/** A graph needs covariances whose scale is right. */
-Settings
-defaultSettings()
-{
-  Settings settings;
-  settings.options.preset = Preset::Calibrated;
-  return settings;
-}
-
 po::options_description
 describeOptionsOfGraph()
 {
@@ -44,7 +35,7 @@ describeOptionsOfGraph()
                       "edge of the prior");
   group.add_options()("quiet", "print only what is wrong");
   po::options_description all;
-  all.add(group).add(describeSettings(defaultSettings()));
+  all.add(group).add(describeSettings(Settings()));
   return all;
 }
 
@@ -108,7 +99,7 @@ parseGraphCommand(int argc, const char* const* argv)
     for (const std::string& text : given["loop"].as<std::vector<std::string>>())
       request.loops.push_back(loopOf(text, request.scans.size()));
   request.has_weak_edges = given.count("weak-edges") > 0;
-  request.settings = settingsFrom(given, defaultSettings(), command.note);
+  request.settings = settingsFrom(given, Settings(), command.note);
   command.is_quiet = given.count("quiet") > 0;
   return command;
 }

@@ -15,7 +15,8 @@ from cli_tool import FAST, ToolTest, run, strict_json
 
 BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
 # About 0.1 s a pair.
-SLOW = ["--samples", "200", "--chains", "2", "--thinning", "10", "--step-size", "1e-6"]
+SLOW = ["--preset", "paper", "--samples", "200", "--chains", "2", "--thinning", "10"]
+SLOW += ["--step-size", "1e-6"]
 
 
 def run_batch(*arguments, launcher=(), **options):
