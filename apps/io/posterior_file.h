@@ -10,6 +10,15 @@
 
 namespace bayesian_icp::io {
 
+/** \brief Name and version of the layout of posterior.json; a change that breaks
+ * readers is a new version. */
+constexpr const char* posterior_schema_name = "pcl_bayesian_icp/posterior";
+constexpr int posterior_schema_version = 1;
+
+/** \brief First line of samples.csv. */
+constexpr const char* samples_header =
+    "chain,draw,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad";
+
 /** \brief What tools use of a posterior.json. Numbers that are null there are NaN. */
 struct PosteriorFile {
   /** Names of the clouds' files as they were given to the program. */
@@ -32,13 +41,15 @@ struct PosteriorFile {
   }
 };
 
-/** \brief Read a posterior.json.
- * \throws FileError if it cannot be read or is no posterior of a known version */
+/** \brief Read a posterior.json of at most 16 MB.
+ * \throws FileError if it cannot be read, is no posterior of a known version, or lacks
+ * or garbles something of the above */
 PosteriorFile
 readPosterior(const std::string& name);
 
-/** \brief Read the draws of a samples.csv, one pose a row [m, rad].
- * \throws FileError if it cannot be read or has a bad row */
+/** \brief Read the draws of a samples.csv of at most 1 GB, one pose a row [m, rad].
+ * \throws FileError if it cannot be read, has no draws, or a row that is not two
+ * indices and six finite numbers */
 PoseMatrix
 readSamples(const std::string& name);
 

@@ -4,6 +4,7 @@
 #include "io/numbers.h"
 #include "register/choices.h"
 #include "register/config_file.h"
+#include "register/export_options.h"
 #include "register/guess.h"
 #include "register/option_descriptions.h"
 #include "register/setting_fields.h"
@@ -173,6 +174,31 @@ textOf(const po::variables_map& given, const std::string& name)
 }
 
 void
+takeExports(const po::variables_map& given, Request& request)
+{
+  request.exports = readExportOptions(given);
+  if (request.exports.formats.empty() || !request.output_folder.empty())
+    return;
+  if (request.exports.formats.size() > 1)
+    throw io::UsageError("--export: several formats need a folder, --output");
+  if (request.is_json || request.is_quiet)
+    throw io::UsageError(
+        "--export without --output prints, which excludes --json and --quiet");
+}
+
+/** They would be in other units than those of the file. */
+void
+refuseLengths(const po::variables_map& given, const std::string& config)
+{
+  for (const char* option :
+       {"guess", "max-distance", "prior-mean", "prior-variance", "initial-spread"})
+    if (given.count(option) > 0)
+      throw io::UsageError(std::string("--") + option +
+                           ": is in metres, but with normalize-cloud the lengths of " +
+                           config + " are in units of the clouds");
+}
+
+void
 takeSettings(const po::variables_map& given, Request& request)
 {
   const std::string config = textOf(given, "config");
@@ -180,6 +206,8 @@ takeSettings(const po::variables_map& given, Request& request)
     request.settings = readConfigFile(config, request.note);
   SettingsReader reader{given};
   visitSettings(request.settings, reader);
+  if (request.settings.are_lengths_scaled)
+    refuseLengths(given, config);
   if (given.count("step-size") > 0)
     request.settings.is_step_size_times_points = false;
   if (given.count("effective-points") > 0)
@@ -214,6 +242,7 @@ parseCommandLine(int argc, const char* const* argv)
   request.is_quiet = given.count("quiet") > 0;
   if (request.is_json && request.is_quiet)
     throw io::UsageError("--json and --quiet exclude each other");
+  takeExports(given, request);
   takeSettings(given, request);
   return request;
 }

@@ -9,11 +9,6 @@
 
 namespace bayesian_icp::app {
 
-/** \brief What is wrong with \p matrix as a rigid motion; empty if it is one, up to
- * what a few printed digits allow. */
-std::string
-complaintAboutMotion(const Eigen::Matrix4d& matrix);
-
 /** \brief The matrix T_target_source of "x,y,z,roll,pitch,yaw" [m, rad], or of a text
  * file with the 16 numbers of the matrix row by row. \throws io::UsageError if it is
  * neither, io::FileError if the file has something else */

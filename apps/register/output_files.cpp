@@ -1,6 +1,7 @@
 #include "register/output_files.h"
 
 #include "io/numbers.h"
+#include "io/posterior_file.h"
 #include "register/posterior_json.h"
 
 #include <ostream>
@@ -10,7 +11,7 @@ namespace bayesian_icp::app {
 void
 writeSamples(const std::vector<Chain>& chains, std::ostream& stream)
 {
-  stream << "chain,draw,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad\n";
+  stream << io::samples_header << '\n';
   for (std::size_t i = 0; i < chains.size(); ++i) {
     if (chains[i].diverged)
       continue;

@@ -1,5 +1,6 @@
 #include "register/posterior_json.h"
 
+#include "io/posterior_file.h"
 #include "register/data_json.h"
 #include "register/json_values.h"
 #include "register/settings_json.h"
@@ -155,8 +156,8 @@ posteriorJson(const Run& run)
 {
   const RegistrationResult& result = run.result;
   const ordered_json document = {
-      {"schema", posterior_schema_name},
-      {"schema_version", posterior_schema_version},
+      {"schema", io::posterior_schema_name},
+      {"schema_version", io::posterior_schema_version},
       {"program", {{"name", "pcl_bayesian_icp"}, {"version", BAYESIAN_ICP_VERSION}}},
       {"source", cloudJson(run.source)},
       {"target", cloudJson(run.target)},

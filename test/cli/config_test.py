@@ -197,8 +197,6 @@ class AuthorsLayout(ConfigTest):
         for method in ("preconditioned_sgld2", "fixed", "adam", "adadelta", "momentum", "rmsprop"):
             content = self.changed(method=method)
             self.refuse(2, content, f"'{method}' is not available in this version")
-        content = self.changed(normalize_cloud=True)
-        self.refuse(2, content, "normalize-cloud is not available in this version")
 
     def test_mistakes(self):
         self.refuse(2, self.changed(method="sgd"), "unknown method 'sgd'")

@@ -2,7 +2,7 @@
 # Arguments: prefix.
 set -euo pipefail
 prefix=$1
-for tool in pcl_bayesian_icp pcl_bayesian_icp_simulate; do
+for tool in pcl_bayesian_icp pcl_bayesian_icp_simulate pcl_bayesian_icp_transform; do
   env -i "$prefix/bin/$tool" --help >/dev/null
   libraries=$(env -i "$(command -v ldd)" "$prefix/bin/$tool" | grep libpcl_bayesian_icp)
   echo "$tool: $libraries"
