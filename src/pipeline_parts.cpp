@@ -25,6 +25,18 @@ estimateOf(ChainSet chain_set)
   return result;
 }
 
+void
+addDoubts(const std::vector<std::string>& doubts, Summary& summary)
+{
+  if (doubts.empty())
+    return;
+  const bool is_lowered = summary.status == Status::Ok;
+  if (is_lowered)
+    summary.status = Status::Doubtful;
+  for (std::size_t i = 0; i < doubts.size(); ++i)
+    summary.message += (i > 0 ? "; " : is_lowered ? ", but " : "; also ") + doubts[i];
+}
+
 PosteriorEstimate
 checkArguments(const Eigen::Matrix3Xd& source_points,
                const Vector6d& initial_pose,

@@ -40,9 +40,8 @@ motionOf(const Request& request)
   if (fs::path(request.pose).extension() != ".json")
     return io::readMotion("pose", request.pose);
   const io::PosteriorFile posterior = io::readPosterior(request.pose);
-  const Eigen::Matrix4d motion = request.choice == PoseChoice::Mean
-                                     ? matrixOf(posterior.mean)
-                                     : posterior.final_matrix;
+  Eigen::Matrix4d motion = request.choice == PoseChoice::Mean ? matrixOf(posterior.mean)
+                                                              : posterior.final_matrix;
   const std::string complaint = io::complaintAboutMotion(motion);
   if (!complaint.empty())
     throw io::FileError(request.pose, complaint);

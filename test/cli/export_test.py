@@ -175,7 +175,8 @@ class ExportRefusals(ExportTest):
         self.assertTrue(result.stdout.startswith("EDGE_SE3:QUAT 0 1 "), result.stdout)
 
     def test_covariance_of_too_few_draws(self):
-        few = ["--samples=4", "--chains=1", "--step-size=1e-6", "--export-unreliable"]
+        few = ["--samples=4", "--preset=paper", "--chains=1", "--step-size=1e-6"]
+        few += ["--export-unreliable"]
         output = self.folder / "output"
         result = run(*self.small_pair(), *few, "--export=g2o,gtsam,ros", "-o", output, "--quiet")
         self.assertEqual(result.returncode, 1)
