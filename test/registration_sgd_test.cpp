@@ -77,7 +77,8 @@ TEST_F(SgdRegistration, TheOutputIsTheSourceMovedByTheFinalTransformation)
   transformPointCloud(*scans_.source, expected, icp.getFinalTransformation());
   ASSERT_EQ(output_.size(), expected.size());
   for (std::size_t i = 0; i < output_.size(); ++i)
-    ASSERT_EQ(output_[i].getVector3fMap(), expected[i].getVector3fMap());
+    ASSERT_LT((output_[i].getVector3fMap() - expected[i].getVector3fMap()).norm(),
+              1e-6f); // a few roundings of numbers below 1 m
   EXPECT_EQ(icp.getFinalTransformation(),
             bayesian_icp::matrixOf(icp.getResult().pose).cast<float>().eval());
   EXPECT_EQ(icp.nr_iterations_, icp.getResult().num_iterations);
@@ -199,6 +200,7 @@ TEST_F(SgdRegistration, AFreshObjectRepeatsTheResultAndASecondAlignForgetsTheFir
   icp.setInputSource(source);
   icp.align(*source);
   EXPECT_EQ(icp.getFinalTransformation(), first);
+  align(again);
   EXPECT_EQ((*source)[5].getVector3fMap(), output_[5].getVector3fMap());
 }
 

@@ -8,6 +8,7 @@
 #include "register/option_descriptions.h"
 #include "register/setting_fields.h"
 #include "register/unused_settings.h"
+#include "sgd_icp/request.h"
 
 #include <boost/program_options.hpp>
 
@@ -128,6 +129,7 @@ splitCommandLine(int argc, const char* const* argv)
   const int accepted =
       (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
   po::options_description all = describeOptions();
+  all.add(describeSgdOptions()); // refused before, unless help is asked for
   all.add_options()("cloud", po::value<std::vector<std::string>>());
   po::positional_options_description positional;
   positional.add("cloud", -1);
