@@ -27,6 +27,11 @@ protected:
     for (int i = 0; i < 16; ++i)
       file >> truth_(i / 4, i % 4);
     EXPECT_FALSE(file.fail());
+    // An eighth of the source, to be quick.
+    bayesian_icp::Random random(1, 0);
+    const auto size = static_cast<Eigen::Index>(source_->size());
+    for (const auto index : bayesian_icp::randomChoice(size, size / 8, random))
+      some_->push_back(static_cast<index_t>(index));
   }
 
   /** Error of the pose from the true one, with pairs not filtered. */
@@ -44,6 +49,7 @@ protected:
     icp.setOptions(options);
     icp.setInputSource(source_);
     icp.setInputTarget(target_);
+    icp.setIndices(some_);
     Cloud output;
     icp.align(output);
     return (bayesian_icp::poseError(icp.getResult().pose,
@@ -53,6 +59,7 @@ protected:
 
   Cloud::Ptr source_{new Cloud};
   Cloud::Ptr target_{new Cloud};
+  IndicesPtr some_{new Indices};
   Eigen::Matrix4d truth_;
   QuietConsole quiet_;
 };

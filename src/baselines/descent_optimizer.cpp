@@ -56,7 +56,7 @@ public:
     const Vector6d ratio = ((mean_square_step_.array() + constant) /
                             (mean_square_gradient_.array() + constant))
                                .sqrt();
-    const Vector6d step = -ratio.cwiseProduct(gradient);
+    Vector6d step = -ratio.cwiseProduct(gradient);
     updateAverage(decay_rate, step.cwiseAbs2(), mean_square_step_);
     return step;
   }
