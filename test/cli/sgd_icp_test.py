@@ -40,7 +40,8 @@ class SgdIcp(ToolTest):
         # in 32 bits, which moves a point of 0.3 m by 3e-8 m, and its pose by that over the
         # smallest lever arm, 0.05 m.
         pair = self.small_pair()
-        icp = strict_json(run(*pair, "--json", "--samples", "4", "--iterations", "999").stdout)
+        words = ["--preset", "paper", "--samples", "4", "--iterations", "999"]
+        icp = strict_json(run(*pair, "--json", *words).stdout)
         matrix = icp["icp"]["T_target_source"]
         guess = self.file("guess.txt", "\n".join(" ".join(map(repr, row)) for row in matrix))
         words = ["--batch-size=300", "--keep-duplicates", "--optimizer=momentum"]
