@@ -10,6 +10,7 @@
 #include "register/posterior_json.h"
 #include "register/progress_bar.h"
 #include "register/report_text.h"
+#include "sgd_icp/run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -155,6 +156,8 @@ registerAsAsked(const Request& request)
 int
 runTool(int argc, char** argv)
 {
+  if (isSgdIcpAskedFor(argc, argv))
+    return runSgdIcp(argc, argv);
   const Request request = parseCommandLine(argc, argv);
   switch (request.kind) {
   case Request::Kind::ShowHelp:

@@ -1,49 +1,12 @@
+#include "option_checker.h"
+
 #include <bayesian_icp/options.h>
 
 #include <cmath>
-#include <sstream>
 
 namespace bayesian_icp {
 
 namespace {
-
-/** The first complaint of a series of checks. */
-class Checker {
-public:
-  template <typename T>
-  void
-  require(bool is_good, const char* field, const T& value, const char* allowed)
-  {
-    if (is_good || !complaint_.empty())
-      return;
-    std::ostringstream text;
-    text << field << " is " << value << ", but must be " << allowed;
-    complaint_ = text.str();
-  }
-
-  void
-  positive(const char* field, double value, const char* unit = "")
-  {
-    const std::string allowed = std::string("positive and finite") + unit;
-    require(value > 0.0 && std::isfinite(value), field, value, allowed.c_str());
-  }
-
-  void
-  atLeast(const char* field, int value, int minimum)
-  {
-    const std::string allowed = "at least " + std::to_string(minimum);
-    require(value >= minimum, field, value, allowed.c_str());
-  }
-
-  const std::string&
-  complaint() const
-  {
-    return complaint_;
-  }
-
-private:
-  std::string complaint_;
-};
 
 void
 check(const PriorOptions& prior, Preset preset, Checker& checker)

@@ -5,6 +5,7 @@
 #include "register/export_options.h"
 #include "register/option_descriptions.h"
 #include "register/settings_options.h"
+#include "sgd_icp/request.h"
 
 #include <vector>
 
@@ -47,8 +48,9 @@ takeExports(const po::variables_map& given, Request& request)
 Request
 parseCommandLine(int argc, const char* const* argv)
 {
-  const po::variables_map given =
-      splitCommandLine(argc, argv, describeOptions(), "cloud");
+  po::options_description all = describeOptions();
+  all.add(describeSgdOptions()); // refused before, unless help is asked for
+  const po::variables_map given = splitCommandLine(argc, argv, all, "cloud");
   Request request;
   if (given.count("help") > 0 || given.count("version") > 0) {
     request.kind =

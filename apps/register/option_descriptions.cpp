@@ -5,6 +5,7 @@
 #include "register/command_line.h"
 #include "register/export_options.h"
 #include "register/setting_fields.h"
+#include "sgd_icp/request.h"
 
 #include <boost/program_options/value_semantic.hpp>
 
@@ -77,6 +78,11 @@ describeGeneral()
   };
   group.add_options()("help,h", "show this text");
   group.add_options()("version", "show the version");
+  group.add_options()(
+      "method",
+      text("NAME"),
+      "bayesian-icp, or sgd-icp for a pose without a posterior (default "
+      "bayesian-icp)");
   group.add_options()(
       "output,o",
       text("DIR"),
@@ -170,7 +176,8 @@ helpText()
          "draws.\n"
          "Clouds are .pcd or .ply files in metres. Options may begin with one dash or\n"
          "two, their values follow a blank or '='.\n"
-      << describeOptions() << about_exact << about_calibrated
+      << describeOptions() << describeSgdOptions() << about_exact << about_calibrated
+      << aboutSgdIcp()
       << "\nExit codes:\n"
          "  0    the posterior is there and can be trusted\n"
          "  1    the registration failed, the chains have not mixed, they are in "

@@ -16,7 +16,7 @@ constexpr long bar_width = 50;
 
 } // namespace
 
-ProgressBar::ProgressBar(bool is_wanted)
+ProgressBar::ProgressBar(bool is_wanted, const char* activity) : activity_(activity)
 {
   if (is_wanted && isatty(STDERR_FILENO) != 0)
     thread_ = std::thread([this] { drawUntilStopped(); });
@@ -65,7 +65,7 @@ ProgressBar::draw() const
     const auto done = static_cast<std::size_t>(bar_width * steps / total_steps_);
     const std::string bar = std::string(done, '#') + std::string(bar_width - done, '.');
     const long percent = 100 * steps / total_steps_;
-    std::fprintf(stderr, "\rsampling [%s] %3ld %%", bar.c_str(), percent);
+    std::fprintf(stderr, "\r%s [%s] %3ld %%", activity_, bar.c_str(), percent);
   }
   std::fflush(stderr);
 }

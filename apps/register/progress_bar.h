@@ -16,8 +16,9 @@ namespace bayesian_icp::app {
  * the run lasts over two seconds. Leaves nothing on the screen when it goes. */
 class ProgressBar {
 public:
-  /** \brief The run begins now, with ICP. A bar that is not wanted never shows. */
-  explicit ProgressBar(bool is_wanted);
+  /** \brief The run begins now, with ICP. A bar that is not wanted never shows.
+   * \param[in] activity what the steps are doing */
+  explicit ProgressBar(bool is_wanted, const char* activity = "sampling");
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar&
@@ -34,6 +35,7 @@ private:
   void
   draw() const;
 
+  const char* activity_;
   std::atomic<bool> has_icp_finished_{false};
   std::atomic<long> steps_{0};
   std::atomic<long> total_steps_{0};

@@ -4,9 +4,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/correspondence.h>
-#include <bayesian_icp/likelihood.h>
-#include <bayesian_icp/mini_batch.h>
+#include <bayesian_icp/matched_batch.h>
 #include <bayesian_icp/prior.h>
 #include <bayesian_icp/sgld.h>
 
@@ -31,14 +29,9 @@ public:
   operator()(const Vector6d& pose, Random& random);
 
 private:
-  const Eigen::Matrix3Xd& source_points_;
-  const CorrespondenceSearch& search_;
   const Prior& prior_;
   double weight_;
-  MiniBatches mini_batches_;
-  Eigen::Matrix3Xd batch_points_;
-  Eigen::Matrix3Xd moved_points_;
-  Correspondences correspondences_;
+  MatchedBatch batch_;
 };
 
 } // namespace bayesian_icp

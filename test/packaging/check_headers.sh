@@ -20,5 +20,7 @@ for compiler in "$@"; do
     compile "$compiler" "$header"
   done
 done
-echo "$1 pcl/registration/bayesian_icp.h"
-compile "$1" pcl/registration/bayesian_icp.h
+for header in pcl/registration/{bayesian_icp,checked_icp,stochastic_gradient_icp}.h; do
+  echo "$1 $header"
+  compile "$1" "$header"
+done

@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include <bayesian_icp/baselines/descent_optimizer.h>
 #include <bayesian_icp/correspondence.h>
 #include <bayesian_icp/export.h>
 #include <bayesian_icp/pose.h>
@@ -16,30 +17,24 @@
 
 namespace bayesian_icp {
 
-/** \brief How a gradient becomes a step. */
-enum class SgdOptimizer { FixedStep, Momentum, AdaDelta, Adam, RmsProp };
-
-/** \brief Short name: "fixed", "momentum", "adadelta", "adam", "rmsprop". */
-BAYESIAN_ICP_EXPORT const char*
-toString(SgdOptimizer optimizer);
-
-/** \brief Constants of the optimisers are those of the authors' program. */
+/** \brief Defaults are those of the authors' program; docs/sgd_icp.md says which. */
 struct StochasticGradientIcpOptions {
   SgdOptimizer optimizer = SgdOptimizer::Adam;
-  /** Step size; NaN: the optimiser's own (fixed 1, momentum 1, Adam 0.1, RMSProp 0.01;
-   * AdaDelta has none). Positive. */
+  /** Positive; NaN: defaultStepSize(). No effect on AdaDelta. */
   double step_size = std::numeric_limits<double>::quiet_NaN();
-  /** Source points a step; positive, more than the source has is all of it. */
+  /** Source points a step, positive; more than the source has is all of it. */
   int batch_size = 150;
   /** Positive. */
-  int max_iterations = 1000;
+  int max_iterations = 150;
   /** Use a target point for the nearest of a mini-batch's source points only. */
   bool is_one_to_one = true;
-  /** Converged when for so many iterations no translation [m] and no angle [rad] has
-   * changed by more than these. */
-  double translation_epsilon = 1e-4;
-  double rotation_epsilon = 1e-4;
-  int num_still_iterations = 10;
+  /** The pose is still while its translation [m] and the sum of its three angles'
+   * changes [rad] are less than these away from where it came to rest; not negative, 0
+   * is never. */
+  double translation_epsilon = 5e-3;
+  double rotation_epsilon = 5e-3;
+  /** Converged after so many still steps in a row, positive. */
+  int num_still_iterations = 5;
   std::uint64_t seed = 1;
 
   /** \brief What is wrong with the first bad field; empty if all is well. */
@@ -47,21 +42,43 @@ struct StochasticGradientIcpOptions {
   validate() const;
 };
 
-/** \brief Where the descent ended. */
-struct StochasticGradientIcpResult {
-  /** T_target_source as a pose [m, rad]. */
-  Vector6d pose = Vector6d::Zero();
-  int num_iterations = 0;
-  /** False where max_iterations came first, no correspondence was found, or the pose
-   * became non-finite. */
-  bool has_converged = false;
+/** \brief Why a descent ended. */
+enum class DescentEnd {
+  Converged,
+  MaxIterations,
+  /** A hundred mini-batches had fewer than three points with a correspondence. */
+  TooFewCorrespondences,
+  /** The pose became non-finite. */
+  Diverged,
+  /** The progress callback asked for it. */
+  Cancelled,
+  /** Bad options, fewer than three source points, or a non-finite initial pose. */
+  InvalidInput
 };
 
-/** \brief Called after each step with the pose; returns false to stop. */
+/** \brief Short name: "converged", "max_iterations", "too_few_correspondences",
+ * "diverged", "cancelled", "invalid_input". */
+BAYESIAN_ICP_EXPORT const char*
+toString(DescentEnd end);
+
+/** \brief Where the descent ended. */
+struct StochasticGradientIcpResult {
+  /** T_target_source as a canonical pose [m, rad]: the last finite one. */
+  Vector6d pose = Vector6d::Zero();
+  /** Steps made; mini-batches with too few correspondences make none. */
+  int num_iterations = 0;
+  /** Whether the pose came to rest: end is Converged. */
+  bool has_converged = false;
+  DescentEnd end = DescentEnd::InvalidInput;
+};
+
+/** \brief Called after each step, counted from 1, with the pose (angles as they come,
+ * not wrapped); returns false to stop. */
 using StochasticGradientIcpProgress =
     std::function<bool(int iteration, const Vector6d& pose)>;
 
-/** \brief Descend from \p initial_pose.
+/** \brief Descend the mean of |R s + u - q|^2 / 2 over the pairs of each mini-batch
+ * from \p initial_pose. The source is dealt out in shuffled epochs.
  * \param[in] source_points 3 x n, finite, source frame [m]
  * \param[in] search finds correspondences within its gate; called by this thread only
  */

@@ -6,9 +6,7 @@
 
 #include <bayesian_icp/pipeline.h>
 
-#include <pcl/registration/icp.h>
-
-#include <memory>
+#include <pcl/registration/checked_icp.h>
 
 namespace pcl {
 
@@ -47,9 +45,12 @@ namespace pcl {
  */
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class BayesianIterativeClosestPoint
-: public IterativeClosestPoint<PointSource, PointTarget, Scalar> {
+: public bayesian_icp_detail::
+      CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar> {
 public:
-  using Base = IterativeClosestPoint<PointSource, PointTarget, Scalar>;
+  using Icp = IterativeClosestPoint<PointSource, PointTarget, Scalar>;
+  using Base = bayesian_icp_detail::
+      CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>;
   using Ptr = shared_ptr<BayesianIterativeClosestPoint>;
   using ConstPtr = shared_ptr<const BayesianIterativeClosestPoint>;
   using Matrix4 = typename Base::Matrix4;
@@ -269,58 +270,36 @@ public:
 
   using Base::convergence_criteria_; // public in PCL's class, too
   using Base::getClassName;
-  using Base::getFitnessScore;
-
-  /** \brief Mean squared distance [m^2] of the transformed source to the target, as
-   * PCL's, leaving out non-finite points (PCL 1.13 aborts on them, also where it is
-   * called through a pointer to PCL's class).
-   * \param[in] max_range largest squared distance that counts [m^2]
-   * \return the largest double if no point is in range */
-  double
-  getFitnessScore(double max_range = std::numeric_limits<double>::max());
 
 protected:
-  using Base::converged_;
   using Base::corr_dist_threshold_;
   using Base::correspondence_estimation_;
   using Base::correspondence_rejectors_;
-  using Base::correspondences_;
   using Base::final_transformation_;
   using Base::force_no_recompute_;
-  using Base::indices_;
-  using Base::input_;
-  using Base::min_number_correspondences_;
-  using Base::nr_iterations_;
   using Base::reg_name_;
-  using Base::source_has_normals_;
   using Base::target_;
-  using Base::target_has_normals_;
-  using Base::transformation_;
-  using Base::transformation_estimation_;
-  using Base::transformCloud;
   using Base::tree_;
-  using Base::tree_reciprocal_;
   using Base::use_reciprocal_correspondence_;
 
-  /** \brief ICP, then the posterior. */
   void
-  computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
+  forgetResult() override;
+
+  /** \brief ICP, then the posterior. */
+  bool
+  registerUsable(const PointCloudSourceConstPtr& source,
+                 PointCloudSource& output,
+                 const Matrix4& guess) override;
+
+  void
+  keepFailure(bool is_guess_finite, const char* reason) override;
 
 private:
-  bool
-  targetIsUsable() const;
-
-  void
-  failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess);
-
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
 
   bayesian_icp::PosteriorEstimate
   estimateByPreset(const PointCloudSourceConstPtr& source, const Vector6d& start);
-
-  bool
-  hasDefaultEstimation() const;
 
   /** \brief Whether pairs are those of the nearest points, no more and no fewer. */
   bool
@@ -338,9 +317,6 @@ private:
   bool
   isTreeOfWholeTarget() const;
 
-  std::unique_ptr<bayesian_icp::CorrespondenceSearch>
-  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source);
-
   bool
   moveToMean(const PointCloudSource& source);
 
@@ -353,16 +329,6 @@ private:
 } // namespace pcl
 
 #include <pcl/registration/impl/bayesian_icp.hpp>
-
-/** Calls X(point type, scalar) for every instantiation that the library holds. */
-#define PCL_BAYESIAN_ICP_FOR_POINT_TYPES(X, Scalar)                                    \
-  X(pcl::PointXYZ, Scalar)                                                             \
-  X(pcl::PointXYZI, Scalar)                                                            \
-  X(pcl::PointXYZRGB, Scalar)                                                          \
-  X(pcl::PointXYZRGBA, Scalar)                                                         \
-  X(pcl::PointNormal, Scalar)                                                          \
-  X(pcl::PointXYZRGBNormal, Scalar)                                                    \
-  X(pcl::PointXYZINormal, Scalar)
 
 #if !defined(PCL_NO_PRECOMPILE) && !defined(PCL_REGISTRATION_BAYESIAN_ICP_CPP_)
 #define PCL_BAYESIAN_ICP_DECLARE(PointT, Scalar)                                       \

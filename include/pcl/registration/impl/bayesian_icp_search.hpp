@@ -80,10 +80,49 @@ private:
   std::vector<float> squared_distance_ = std::vector<float>(1);
 };
 
+/** A search that also knows which target points its answers are. */
+template <typename PointTarget>
+class PairSearch : public bayesian_icp::CorrespondenceSearch {
+public:
+  using TargetConstPtr = typename PointCloud<PointTarget>::ConstPtr;
+
+  explicit PairSearch(const TargetConstPtr& target) : target_(target) {}
+
+  void
+  find(const bayesian_icp::Vector6d& pose,
+       const std::vector<std::size_t>& source_indices,
+       const Eigen::Matrix3Xd& moved_points,
+       bayesian_icp::Correspondences& correspondences) const override
+  {
+    correspondences.clear();
+    for (const auto& pair : findPairs(pose, source_indices, moved_points))
+      if (pair.index_match >= 0)
+        correspondences.push_back({static_cast<std::size_t>(pair.index_query),
+                                   targetPoint(pair.index_match)});
+  }
+
+  /** As find(), as PCL's pairs: index_query counts columns, distance is squared [m^2].
+   */
+  virtual Correspondences
+  findPairs(const bayesian_icp::Vector6d& pose,
+            const std::vector<std::size_t>& source_indices,
+            const Eigen::Matrix3Xd& moved_points) const = 0;
+
+protected:
+  Eigen::Vector3d
+  targetPoint(index_t index) const
+  {
+    return ((*target_)[index].getVector3fMap().template cast<double>());
+  }
+
+private:
+  TargetConstPtr target_;
+};
+
 /** What registration::CorrespondenceEstimation would find, from several threads:
  * queries to a tree that is built are const, the estimation object is not. */
 template <typename PointSource, typename PointTarget>
-class KdTreeSearch : public bayesian_icp::CorrespondenceSearch {
+class KdTreeSearch : public PairSearch<PointTarget> {
 public:
   using TargetTreeConstPtr = typename search::KdTree<PointTarget>::ConstPtr;
   using SourceConstPtr = typename PointCloud<PointSource>::ConstPtr;
@@ -95,8 +134,8 @@ public:
                const TargetConstPtr& target,
                double max_distance,
                const SourceConstPtr& reciprocal_source)
-  : target_tree_(target_tree)
-  , target_(target)
+  : PairSearch<PointTarget>(target)
+  , target_tree_(target_tree)
   , max_squared_distance_(max_distance * max_distance)
   {
     if (reciprocal_source) {
@@ -105,24 +144,10 @@ public:
     }
   }
 
-  void
-  find(const bayesian_icp::Vector6d& pose,
-       const std::vector<std::size_t>& source_indices,
-       const Eigen::Matrix3Xd& moved_points,
-       bayesian_icp::Correspondences& correspondences) const override
-  {
-    correspondences.clear();
-    for (const auto& pair : findPairs(pose, source_indices, moved_points))
-      correspondences.push_back(
-          {static_cast<std::size_t>(pair.index_query), targetPoint(pair.index_match)});
-  }
-
-  /** As find(), as PCL's pairs: index_query counts columns, distance is squared [m^2].
-   */
   Correspondences
   findPairs(const bayesian_icp::Vector6d& pose,
             const std::vector<std::size_t>& source_indices,
-            const Eigen::Matrix3Xd& moved_points) const
+            const Eigen::Matrix3Xd& moved_points) const override
   {
     Correspondences pairs;
     NearestNeighbor<PointTarget> nearest_target(*target_tree_);
@@ -131,7 +156,7 @@ public:
           nearest_target.find(moved_points.col(i), max_squared_distance_);
       if (match >= 0 &&
           (!source_tree_ || isReciprocal(pose,
-                                         targetPoint(match),
+                                         this->targetPoint(match),
                                          source_indices[static_cast<std::size_t>(i)])))
         pairs.emplace_back(
             static_cast<index_t>(i), match, nearest_target.squaredDistance());
@@ -146,12 +171,6 @@ public:
   }
 
 private:
-  Eigen::Vector3d
-  targetPoint(index_t index) const
-  {
-    return ((*target_)[index].getVector3fMap().template cast<double>());
-  }
-
   /** Whether the source point nearest to \p target_point is \p source_index. Sought in
    * the source frame, where the tree need not be built again for every pose. */
   bool
@@ -167,7 +186,6 @@ private:
   }
 
   TargetTreeConstPtr target_tree_;
-  TargetConstPtr target_;
   double max_squared_distance_;
   typename search::KdTree<PointSource>::Ptr source_tree_;
 };
@@ -175,7 +193,7 @@ private:
 /** Whatever correspondence estimation and rejectors the user has installed, applied to
  * each mini-batch in the order in which pcl::IterativeClosestPoint applies them. */
 template <typename PointSource, typename PointTarget, typename Scalar>
-class PluginSearch : public bayesian_icp::CorrespondenceSearch {
+class PluginSearch : public PairSearch<PointTarget> {
 public:
   using Source = PointCloud<PointSource>;
   using SourceConstPtr = typename Source::ConstPtr;
@@ -201,20 +219,18 @@ public:
   PluginSearch(const Plugins& plugins,
                const SourceConstPtr& source,
                const TargetConstPtr& target)
-  : plugins_(plugins)
+  : PairSearch<PointTarget>(target)
+  , plugins_(plugins)
   , source_(source)
-  , target_(target)
   {}
 
-  void
-  find(const bayesian_icp::Vector6d& pose,
-       const std::vector<std::size_t>& source_indices,
-       const Eigen::Matrix3Xd& moved_points,
-       bayesian_icp::Correspondences& correspondences) const override
+  Correspondences
+  findPairs(const bayesian_icp::Vector6d& pose,
+            const std::vector<std::size_t>& source_indices,
+            const Eigen::Matrix3Xd& moved_points) const override
   {
-    correspondences.clear();
-    if (!canBeQueried(moved_points)) // a chain that has run away
-      return;
+    if (!canBeQueried(moved_points)) // a pose that has run away
+      return (Correspondences());
     const auto batch = moveBatch(pose, source_indices);
     PCLPointCloud2::Ptr batch_blob;
     if (needsBlob()) {
@@ -225,11 +241,7 @@ public:
         plugins_.default_search
             ? plugins_.default_search->findPairs(pose, source_indices, moved_points)
             : estimate(batch, batch_blob);
-    for (const auto& pair : reject(pairs, source_indices, batch_blob))
-      if (pair.index_match >= 0)
-        correspondences.push_back(
-            {static_cast<std::size_t>(pair.index_query),
-             (*target_)[pair.index_match].getVector3fMap().template cast<double>()});
+    return (reject(pairs, source_indices, batch_blob));
   }
 
   bool
@@ -320,7 +332,6 @@ private:
 
   Plugins plugins_;
   SourceConstPtr source_;
-  TargetConstPtr target_;
 };
 
 } // namespace bayesian_icp_detail

@@ -1,0 +1,294 @@
+#include "sgd_icp/request.h"
+
+#include "io/errors.h"
+#include "io/numbers.h"
+#include "register/guess.h"
+#include "register/option_descriptions.h"
+
+#include <boost/program_options.hpp>
+
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+namespace po = boost::program_options;
+
+namespace {
+
+constexpr SgdOptimizer optimizers[] = {SgdOptimizer::FixedStep,
+                                       SgdOptimizer::Momentum,
+                                       SgdOptimizer::AdaDelta,
+                                       SgdOptimizer::Adam,
+                                       SgdOptimizer::RmsProp};
+
+/** Options of Bayesian ICP that SGD-ICP has, too. */
+po::options_description
+sharedOptions()
+{
+  po::options_description shared;
+  auto add = shared.add_options();
+  add("method", po::value<std::string>())("json", "")("quiet", "");
+  for (const char* name : {"output,o",
+                           "guess",
+                           "max-distance,d",
+                           "iterations,i",
+                           "batch-size",
+                           "step-size",
+                           "seed"})
+    add(name, po::value<std::string>());
+  return shared;
+}
+
+/** No guessing: an abbreviated or misspelt option is an error. */
+int
+style()
+{
+  namespace style = po::command_line_style;
+  return (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
+}
+
+po::variables_map
+split(int argc, const char* const* argv)
+{
+  po::options_description all = sharedOptions();
+  all.add(describeSgdOptions());
+  all.add_options()("cloud", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("cloud", -1);
+  po::variables_map given;
+  try {
+    po::store(po::command_line_parser(argc, argv)
+                  .options(all)
+                  .positional(positional)
+                  .style(style())
+                  .run(),
+              given);
+  }
+  catch (const po::unknown_option& error) {
+    const std::string option = error.get_option_name();
+    const std::string name = option.substr(option.find_first_not_of('-'));
+    if (describeOptions().find_nothrow(name, false) != nullptr)
+      throw io::UsageError("--" + name + ": has no effect with method sgd-icp");
+    throw io::UsageError(error.what());
+  }
+  catch (const po::error& error) {
+    throw io::UsageError(error.what());
+  }
+  return given;
+}
+
+template <typename Number>
+void
+take(const po::variables_map& given, const std::string& option, Number& number)
+{
+  if (given.count(option) == 0)
+    return;
+  const auto& text = given[option].as<std::string>();
+  if (!io::readNumber(text, number))
+    throw io::UsageError(
+        "--" + option + ": " + io::quoted(text) + " is not a " +
+        (std::is_integral_v<Number> ? "whole number in its range" : "number"));
+}
+
+void
+takeOptimizer(const po::variables_map& given, SgdOptimizer& optimizer)
+{
+  if (given.count("optimizer") == 0)
+    return;
+  const auto& name = given["optimizer"].as<std::string>();
+  std::string names;
+  for (const SgdOptimizer candidate : optimizers) {
+    if (name == toString(candidate)) {
+      optimizer = candidate;
+      return;
+    }
+    names += (names.empty() ? "" : ", ") + std::string(toString(candidate));
+  }
+  throw io::UsageError("--optimizer: " + io::quoted(name) + " is not one of " + names);
+}
+
+void
+takeClouds(const po::variables_map& given, SgdRequest& request)
+{
+  std::vector<std::string> clouds;
+  if (given.count("cloud") > 0)
+    clouds = given["cloud"].as<std::vector<std::string>>();
+  if (clouds.size() < 2)
+    throw io::UsageError("two clouds are needed, a source and a target");
+  if (clouds.size() > 2)
+    throw io::UsageError("two clouds are needed, " + io::quoted(clouds[2]) +
+                         " is one too many");
+  request.source_file = clouds[0];
+  request.target_file = clouds[1];
+}
+
+void
+takeOptions(const po::variables_map& given, SgdRequest& request)
+{
+  auto& options = request.options;
+  takeOptimizer(given, options.optimizer);
+  take(given, "step-size", options.step_size);
+  take(given, "batch-size", options.batch_size);
+  take(given, "iterations", options.max_iterations);
+  take(given, "translation-epsilon", options.translation_epsilon);
+  take(given, "rotation-epsilon", options.rotation_epsilon);
+  take(given, "still-iterations", options.num_still_iterations);
+  take(given, "seed", options.seed);
+  take(given, "max-distance", request.max_distance);
+  options.is_one_to_one = given.count("keep-duplicates") == 0;
+  if (given.count("guess") > 0)
+    request.guess = readGuess(given["guess"].as<std::string>());
+}
+
+/** The option that a complaint of validate() speaks of. */
+std::string
+optionOf(const std::string& complaint)
+{
+  const std::string field = complaint.substr(0, complaint.find(' '));
+  if (field == "max_iterations")
+    return "--iterations";
+  if (field == "num_still_iterations")
+    return "--still-iterations";
+  std::string option = "--" + field;
+  for (char& character : option)
+    if (character == '_')
+      character = '-';
+  return option;
+}
+
+void
+check(const po::variables_map& given, const SgdRequest& request)
+{
+  if (request.is_json && request.is_quiet)
+    throw io::UsageError("--json and --quiet exclude each other");
+  if (!(request.max_distance > 0.0))
+    throw io::UsageError("--max-distance: is " + io::textOf(request.max_distance) +
+                         ", but must be positive (m)");
+  if (!request.guess.allFinite())
+    throw io::UsageError("--guess: must be finite");
+  if (given.count("step-size") > 0) {
+    if (request.options.optimizer == SgdOptimizer::AdaDelta)
+      throw io::UsageError("--step-size: has no effect with optimizer adadelta");
+    if (std::isnan(request.options.step_size))
+      throw io::UsageError("--step-size: is nan, but must be positive and finite");
+  }
+  const std::string complaint = request.options.validate();
+  if (!complaint.empty())
+    throw io::UsageError(optionOf(complaint) + ": " + complaint);
+}
+
+} // namespace
+
+bool
+isSgdIcpAskedFor(int argc, const char* const* argv)
+{
+  po::options_description known;
+  known.add_options()("method", po::value<std::string>());
+  known.add_options()("help,h", "")("version", "");
+  const po::options_description own = describeSgdOptions();
+  known.add(own);
+  po::variables_map given;
+  try {
+    po::store(po::command_line_parser(argc, argv)
+                  .options(known)
+                  .style(style())
+                  .allow_unregistered()
+                  .run(),
+              given);
+  }
+  catch (const po::error& error) {
+    throw io::UsageError(error.what());
+  }
+  if (given.count("help") > 0 || given.count("version") > 0)
+    return false;
+  const std::string method = given.count("method") > 0
+                                 ? given["method"].as<std::string>()
+                                 : std::string("bayesian-icp");
+  if (method != "bayesian-icp" && method != "sgd-icp")
+    throw io::UsageError("--method: " + io::quoted(method) +
+                         " is not bayesian-icp or sgd-icp");
+  if (method == "sgd-icp")
+    return true;
+  for (const auto& option : own.options())
+    if (given.count(option->long_name()) > 0)
+      throw io::UsageError("--" + option->long_name() +
+                           ": has no effect with method bayesian-icp");
+  return false;
+}
+
+SgdRequest
+parseSgdCommandLine(int argc, const char* const* argv)
+{
+  const po::variables_map given = split(argc, argv);
+  SgdRequest request;
+  takeClouds(given, request);
+  if (given.count("output") > 0) {
+    request.output_folder = given["output"].as<std::string>();
+    if (request.output_folder.empty())
+      throw io::UsageError("--output: the name is empty");
+  }
+  request.is_json = given.count("json") > 0;
+  request.is_quiet = given.count("quiet") > 0;
+  takeOptions(given, request);
+  check(given, request);
+  return request;
+}
+
+po::options_description
+describeSgdOptions()
+{
+  const StochasticGradientIcpOptions defaults;
+  po::options_description group("Method sgd-icp only");
+  const auto add =
+      [&group](const char* name, const char* placeholder, const std::string& help) {
+        group.add_options()(
+            name, po::value<std::string>()->value_name(placeholder), help.c_str());
+      };
+  add("optimizer",
+      "NAME",
+      std::string("how gradients become steps: fixed, momentum, adadelta, adam or "
+                  "rmsprop (default ") +
+          toString(defaults.optimizer) + ")");
+  add("translation-epsilon",
+      "M",
+      "the pose is still while its translation stays this near to where it came to "
+      "rest [m]; 0 is never (default " +
+          io::textOf(defaults.translation_epsilon) + ")");
+  add("rotation-epsilon",
+      "RAD",
+      "... and the sum of the changes of its angles stays below this [rad] (default " +
+          io::textOf(defaults.rotation_epsilon) + ")");
+  add("still-iterations",
+      "N",
+      "converged after so many still steps in a row (default " +
+          io::textOf(defaults.num_still_iterations) + ")");
+  group.add_options()("keep-duplicates",
+                      "let a target point be in several pairs of a mini-batch, not "
+                      "only in that of the nearest source point");
+  return group;
+}
+
+std::string
+aboutSgdIcp()
+{
+  const StochasticGradientIcpOptions defaults;
+  std::ostringstream text;
+  text << "\nMethod sgd-icp finds a pose by stochastic gradient descent, and no "
+          "posterior. Of the\n"
+          "other options it has --guess, --max-distance, --seed, --output (aligned.pcd "
+          "and\n"
+          "sgd_icp.json), --json, --quiet, and with defaults of its own --iterations ("
+       << defaults.max_iterations << "),\n--batch-size (" << defaults.batch_size
+       << ") and --step-size (";
+  for (const SgdOptimizer optimizer : optimizers)
+    if (optimizer != SgdOptimizer::AdaDelta)
+      text << toString(optimizer) << ' ' << defaultStepSize(optimizer)
+           << (optimizer == SgdOptimizer::RmsProp ? "; adadelta has none" : ", ");
+  text << ");\nothers are refused. Its exit code is 0 if the descent came to rest, "
+          "else 1.\n";
+  return text.str();
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,174 @@
+/** \file
+ * \brief ICP by stochastic gradient descent as a PCL registration class.
+ */
+#pragma once
+
+#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
+
+#include <pcl/registration/checked_icp.h>
+
+namespace pcl {
+
+/** \brief Iterative closest point by stochastic gradient descent on mini-batches of the
+ * source (SGD-ICP; Maken, Ramos, Ott: Speeding up Iterative Closest Point Using
+ * Stochastic Gradient Descent, ICRA 2019).
+ *
+ * A registration with the interface of pcl::IterativeClosestPoint. Each step takes the
+ * pairs of a mini-batch from the correspondence estimation, rejectors, search tree and
+ * maximum correspondence distance that the object was given. There is no closed-form
+ * step; a transformation estimation of the user's own is asked once, at the end, for
+ * the nearest motion that it allows. The Euclidean fitness epsilon has no effect.
+ *
+ * setMaximumIterations() counts steps. setTransformationEpsilon() [m^2] and
+ * setTransformationRotationEpsilon() (a cosine) are, as in PCL, a squared distance and
+ * the cosine of an angle: the descent has converged when, for as many steps in a row as
+ * the options say, the translation and the sum of the changes of roll, pitch and yaw
+ * are within them. As with PCL's ICP, hasConverged() is also true where the iterations
+ * ran out, unless convergence_criteria_ says otherwise; getResult() tells the two
+ * apart.
+ *
+ * Non-finite points, indices and correspondences_ (those of the whole source at the
+ * final transformation) are as in pcl::BayesianIterativeClosestPoint. The same seed
+ * gives the same result. One object is for one thread at a time.
+ *
+ * \tparam Scalar float or double, type of the transformations; the descent is in double
+ * \ingroup registration
+ */
+template <typename PointSource, typename PointTarget, typename Scalar = float>
+class StochasticGradientDescentIterativeClosestPoint
+: public bayesian_icp_detail::
+      CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar> {
+public:
+  using Base = bayesian_icp_detail::
+      CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>;
+  using Ptr = shared_ptr<StochasticGradientDescentIterativeClosestPoint>;
+  using ConstPtr = shared_ptr<const StochasticGradientDescentIterativeClosestPoint>;
+  using Matrix4 = typename Base::Matrix4;
+  using PointCloudSource = typename Base::PointCloudSource;
+  using PointCloudSourceConstPtr = typename Base::PointCloudSourceConstPtr;
+  using Options = bayesian_icp::StochasticGradientIcpOptions;
+  using Result = bayesian_icp::StochasticGradientIcpResult;
+
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+
+  /** \brief With the defaults of Options, the number of iterations and the epsilons
+   * among them. */
+  StochasticGradientDescentIterativeClosestPoint();
+
+  /** \brief All options at once; its iterations and epsilons are put into PCL's
+   * settings of these names. Options out of range are reported by align(). */
+  void
+  setOptions(const Options& options);
+
+  /** \brief The options with the present settings of PCL's in place of its own. */
+  Options
+  getOptions() const;
+
+  void
+  setOptimizer(bayesian_icp::SgdOptimizer optimizer)
+  {
+    options_.optimizer = optimizer;
+  }
+
+  /** \brief NaN: the optimiser's own. */
+  void
+  setStepSize(double step_size)
+  {
+    options_.step_size = step_size;
+  }
+
+  /** \brief Source points a step. */
+  void
+  setMiniBatchSize(int batch_size)
+  {
+    options_.batch_size = batch_size;
+  }
+
+  void
+  setSeed(std::uint64_t seed)
+  {
+    options_.seed = seed;
+  }
+
+  /** \brief Told of every step; returns false to stop there. */
+  void
+  setProgressCallback(const bayesian_icp::StochasticGradientIcpProgress& callback)
+  {
+    progress_callback_ = callback;
+  }
+
+  /** \brief Pose, steps and reason of the end of the last align(). */
+  const Result&
+  getResult() const
+  {
+    return (result_);
+  }
+
+  using Base::convergence_criteria_; // public in PCL's class, too
+  using Base::getClassName;
+
+protected:
+  using Base::converged_;
+  using Base::correspondence_estimation_;
+  using Base::correspondence_rejectors_;
+  using Base::correspondences_;
+  using Base::final_transformation_;
+  using Base::max_iterations_;
+  using Base::nr_iterations_;
+  using Base::previous_transformation_;
+  using Base::reg_name_;
+  using Base::target_;
+  using Base::transformation_;
+  using Base::transformation_epsilon_;
+  using Base::transformation_rotation_epsilon_;
+  using Base::tree_;
+  using Base::update_visualizer_;
+  using typename Base::State;
+
+  void
+  forgetResult() override;
+
+  bool
+  registerUsable(const PointCloudSourceConstPtr& source,
+                 PointCloudSource& output,
+                 const Matrix4& guess) override;
+
+  void
+  keepFailure(bool is_guess_finite, const char* reason) override;
+
+private:
+  using Search = bayesian_icp_detail::PairSearch<PointTarget>;
+
+  /** \brief What pcl::IterativeClosestPoint does before its first iteration. */
+  void
+  giveTargetToPlugins();
+
+  void
+  takeStep(const Search& search,
+           const PointCloudSource& source,
+           const bayesian_icp::Vector6d& pose);
+
+  void
+  findPairs(const Search& search, const PointCloudSource& source);
+
+  void
+  publishEnd();
+
+  Options options_;
+  Result result_;
+  bayesian_icp::StochasticGradientIcpProgress progress_callback_;
+};
+
+} // namespace pcl
+
+#include <pcl/registration/impl/stochastic_gradient_icp.hpp>
+
+#if !defined(PCL_NO_PRECOMPILE) &&                                                     \
+    !defined(PCL_REGISTRATION_STOCHASTIC_GRADIENT_ICP_CPP_)
+#define PCL_BAYESIAN_ICP_DECLARE(PointT, Scalar)                                       \
+  extern template class pcl::                                                          \
+      StochasticGradientDescentIterativeClosestPoint<PointT, PointT, Scalar>;
+PCL_BAYESIAN_ICP_FOR_POINT_TYPES(PCL_BAYESIAN_ICP_DECLARE, float)
+PCL_BAYESIAN_ICP_FOR_POINT_TYPES(PCL_BAYESIAN_ICP_DECLARE, double)
+#undef PCL_BAYESIAN_ICP_DECLARE
+#endif

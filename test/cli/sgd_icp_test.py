@@ -1,0 +1,222 @@
+"""--method sgd-icp: a pose without a posterior, and the options it has and has not."""
+
+import math
+import unittest
+
+import cloud_files
+from cli_tool import DATA, SMALL_PAIR_POSE, ToolTest, run, strict_json
+
+SGD = ["--method", "sgd-icp"]
+
+
+class SgdIcp(ToolTest):
+    def json_of(self, *arguments):
+        result = run(*arguments, *SGD, "--json")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        document = strict_json(result.stdout)
+        self.assertEqual(result.returncode == 0, document["has_converged"])
+        self.assertEqual(document["has_converged"], document["end"] == "converged")
+        return document
+
+    def errors(self, document, truth):
+        """Distance of the translations [m] and largest difference of an angle [rad]."""
+        pose = list(document["pose"].values())
+        return (
+            math.dist(pose[:3], truth[:3]),
+            max(abs(a - b) for a, b in zip(pose[3:], truth[3:])),
+        )
+
+    def test_comes_nearer_to_the_truth_with_every_optimizer(self):
+        pair = self.small_pair()
+        start = math.dist(SMALL_PAIR_POSE[:3], (0, 0, 0))
+        for optimizer in ("fixed", "momentum", "adadelta", "adam", "rmsprop"):
+            with self.subTest(optimizer=optimizer):
+                document = self.json_of(*pair, "--optimizer", optimizer)
+                self.assertEqual(document["options"]["optimizer"], optimizer)
+                self.assertLess(self.errors(document, SMALL_PAIR_POSE)[0], start)
+
+    def test_rests_where_icp_rests(self):
+        # All points, all pairs: both seek a pose at which the mean gradient is zero. ICP is
+        # in 32 bits, which moves a point of 0.3 m by 3e-8 m, and its pose by that over the
+        # smallest lever arm, 0.05 m.
+        pair = self.small_pair()
+        words = ["--preset", "paper", "--samples", "4", "--iterations", "999"]
+        icp = strict_json(run(*pair, "--json", *words).stdout)
+        matrix = icp["icp"]["T_target_source"]
+        guess = self.file("guess.txt", "\n".join(" ".join(map(repr, row)) for row in matrix))
+        words = ["--batch-size=300", "--keep-duplicates", "--optimizer=momentum"]
+        words += ["--iterations=3000", "--translation-epsilon=0", "--guess", guess]
+        found = self.json_of(*pair, *words)["T_target_source"]
+        for row, expected_row in zip(found, matrix):
+            for number, expected_number in zip(row, expected_row):
+                self.assertAlmostEqual(number, expected_number, delta=4 * 3e-8 / 0.05)
+
+    def test_the_matrix_is_that_of_the_pose(self):
+        document = self.json_of(*self.small_pair())
+        expected = cloud_files.matrix_of(*document["pose"].values())
+        for row, expected_row in zip(document["T_target_source"], expected):
+            for number, expected_number in zip(row, expected_row):
+                self.assertAlmostEqual(number, expected_number, delta=1e-14)
+
+    def test_the_guess_is_where_it_starts(self):
+        guess = ",".join(map(str, SMALL_PAIR_POSE))
+        words = ["--optimizer", "fixed", "--step-size", "1e-12", "--iterations", "1"]
+        document = self.json_of(*self.small_pair(), "--guess", guess, *words)
+        translation, angle = self.errors(document, SMALL_PAIR_POSE)
+        self.assertLess(max(translation, angle), 1e-11)
+        self.assertEqual((document["iterations"], document["end"]), (1, "max_iterations"))
+
+    def test_is_repeatable_and_depends_on_the_seed(self):
+        pair = self.small_pair()
+        first, again = (self.json_of(*pair) for _ in range(2))
+        other = self.json_of(*pair, "--seed", "2")
+        self.assertEqual(first["pose"], again["pose"])
+        self.assertNotEqual(first["pose"], other["pose"])
+
+    def test_every_option_arrives(self):
+        given = {
+            "optimizer": ("optimizer", "momentum"),
+            "step-size": ("step_size", 0.5),
+            "batch-size": ("batch_size", 31),
+            "iterations": ("max_iterations", 17),
+            "max-distance": ("max_distance_m", 0.75),
+            "translation-epsilon": ("translation_epsilon_m", 0.002),
+            "rotation-epsilon": ("rotation_epsilon_rad", 0.003),
+            "still-iterations": ("still_iterations", 4),
+            "seed": ("seed", 18446744073709551615),
+        }
+        words = [f"--{name}={value}" for name, (_, value) in given.items()]
+        options = self.json_of(*self.small_pair(), *words, "--keep-duplicates")["options"]
+        for key, value in given.values():
+            self.assertEqual(options[key], value)
+        self.assertIs(options["is_one_to_one"], False)
+        defaults = self.json_of(*self.small_pair())["options"]
+        self.assertIs(defaults["is_one_to_one"], True)
+        self.assertEqual((defaults["optimizer"], defaults["step_size"]), ("adam", 0.1))
+
+    def test_table(self):
+        result = run(*self.small_pair(), *SGD, "--translation-epsilon=1", "--rotation-epsilon=9")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        for part in ("no posterior", " m\n", " rad", " deg", "converged after 5 iterations"):
+            self.assertIn(part, result.stdout)
+
+    def test_files(self):
+        output = self.folder / "out"
+        result = run(*self.small_pair(), *SGD, "-o", output, "--quiet")
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(
+            sorted(path.name for path in output.iterdir()), ["aligned.pcd", "sgd_icp.json"]
+        )
+        document = strict_json((output / "sgd_icp.json").read_text())
+        _, aligned = cloud_files.read_pcd(output / "aligned.pcd")
+        _, source = cloud_files.read_pcd(self.folder / "source.pcd")
+        for before, after in zip(source, aligned):
+            point = [cloud_files.struct.unpack("<f", before[k])[0] for k in "xyz"]
+            expected = cloud_files.moved(document["T_target_source"], point)
+            actual = [cloud_files.struct.unpack("<f", after[k])[0] for k in "xyz"]
+            self.assertLess(math.dist(actual, expected), 1e-7)
+
+    def test_no_pairs_within_the_gate(self):
+        output = self.folder / "out"
+        pair = self.small_pair()
+        words = ["--guess", "9,0,0,0,0,0", "-d", "0.1", "--json", "-o", output]
+        result = run(*pair, *SGD, *words)
+        self.assertEqual(result.returncode, 1)
+        document = strict_json(result.stdout)
+        self.assertEqual(document["end"], "too_few_correspondences")
+        self.assertEqual((document["iterations"], document["pose"]["x_m"]), (0, 9))
+        self.assertIn("no files are written", result.stderr)
+        self.assertEqual(list(output.iterdir()), [])
+
+    def test_a_scan_with_holes(self):
+        points = cloud_files.box_surface(seed=1) + [(math.nan, 0.0, 0.0)]
+        holed = self.file("holed.pcd", cloud_files.pcd_bytes(points))
+        source, _ = self.small_pair()
+        document = self.json_of(source, holed)
+        self.assertEqual(document["target"]["finite_points"], 300)
+        self.assertEqual(document["pose"], self.json_of(*self.small_pair())["pose"])
+        self.assertEqual(self.json_of(holed, source)["source"]["points"], 301)
+
+    def test_a_committed_pair(self):
+        pair = DATA / "mug"
+        document = self.json_of(pair / "source.pcd", pair / "target.pcd", "--iterations", "1000")
+        # Nearer than it started: 39 mm and 0.12 rad.
+        translation, angle = self.errors(document, (0.03, -0.02, 0.015, 0.08, -0.06, 0.12))
+        self.assertLess(translation, 0.039)
+        self.assertLess(angle, 0.12)
+
+
+class SgdIcpRefusals(ToolTest):
+    def refuse(self, words, *parts):
+        self.assert_refused(2, run("a.pcd", "b.pcd", *words), *parts)
+
+    def test_methods(self):
+        self.refuse(["--method", "icp"], "--method", "'icp'")
+        self.refuse(["--method"], "--method")
+        self.refuse(["--method=sgd-icp", "--method=sgd-icp"], "--method")
+
+    def test_options_of_the_posterior(self):
+        for name in ("samples", "preset", "sigma", "prior-mean", "config", "threads"):
+            self.refuse([*SGD, f"--{name}", "1"], f"--{name}: has no effect with method sgd-icp")
+        for name in ("mean", "reciprocal", "one-to-one"):
+            self.refuse([*SGD, f"--{name}"], f"--{name}: has no effect with method sgd-icp")
+        self.refuse([*SGD, "--sampels", "9"], "'--sampels'")
+
+    def test_options_of_sgd_icp(self):
+        for words in (
+            ["--optimizer", "adam"],
+            ["--still-iterations", "3"],
+            ["--translation-epsilon", "1"],
+            ["--rotation-epsilon", "1"],
+            ["--keep-duplicates"],
+        ):
+            self.refuse(words, f"{words[0]}: has no effect with method bayesian-icp")
+            self.refuse(["--method=bayesian-icp", *words], words[0])
+        self.refuse(
+            [*SGD, "--optimizer=adadelta", "--step-size=1"],
+            "--step-size: has no effect with optimizer adadelta",
+        )
+
+    def test_malformed_values(self):
+        for name, value in (
+            ("optimizer", "sgd"),
+            ("step-size", "0.1m"),
+            ("step-size", ""),
+            ("step-size", "nan"),
+            ("step-size", "-1"),
+            ("batch-size", "0"),
+            ("batch-size", "1.5"),
+            ("iterations", "0"),
+            ("iterations", "99999999999"),
+            ("still-iterations", "0"),
+            ("translation-epsilon", "-1"),
+            ("rotation-epsilon", "nan"),
+            ("seed", "-1"),
+            ("max-distance", "0"),
+            ("max-distance", "1,0"),
+            ("guess", "1,2,3"),
+        ):
+            with self.subTest(option=name, value=value):
+                self.refuse([*SGD, f"--{name}={value}"], f"--{name}")
+
+    def test_clouds_and_outputs(self):
+        self.assert_refused(2, run("a.pcd", *SGD), "two clouds are needed")
+        self.assert_refused(2, run("a.pcd", "b.pcd", "c.pcd", *SGD), "'c.pcd'")
+        self.refuse([*SGD, "--json", "--quiet"], "--json", "--quiet")
+        self.refuse([*SGD, "-o", ""], "output")
+        self.assert_refused(3, run("no.pcd", "such.pcd", *SGD), "no.pcd: no such file")
+        self.assert_refused(
+            3, run(*self.small_pair(), *SGD, "-o", self.file("file", "x")), "file"
+        )
+
+    def test_help_and_version_come_first(self):
+        for words in ([*SGD, "--help"], ["--help", "--optimizer", "adam"]):
+            result = run(*words)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            for part in ("--method NAME", "--optimizer NAME", "sgd_icp.json", "rmsprop 0.01"):
+                self.assertIn(part, result.stdout)
+        self.assertEqual(run(*SGD, "--version").returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
