@@ -90,9 +90,23 @@ figureHtml(const std::string& svg_html, const std::string& caption, FigureWidth 
 }
 
 std::string
-figureGridHtml(const std::string& figures_html)
+figureGridHtml(const std::string& figures_html, FigureGrid grid)
 {
-  return element("div class=\"grid\"", figures_html) + '\n';
+  return element(grid == FigureGrid::Any ? "div class=\"grid\""
+                                         : "div class=\"grid pairs\"",
+                 figures_html) +
+         '\n';
+}
+
+std::string
+legendHtml(const std::vector<std::pair<std::string, std::string>>& colours)
+{
+  std::string html;
+  for (const auto& [colour, meaning] : colours)
+    html += element("li",
+                    "<span class=\"swatch\" style=\"background:" + escaped(colour) +
+                        "\"></span>" + escaped(meaning));
+  return element("ul class=\"legend\"", html) + '\n';
 }
 
 std::string

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp::html {
@@ -53,9 +54,17 @@ figureHtml(const std::string& svg_html,
            const std::string& caption,
            FigureWidth width = FigureWidth::Small);
 
-/** \brief Small figures beside each other. */
+/** \brief Small figures beside each other: as many as there is room for, or at most
+ * two. */
+enum class FigureGrid { Any, Pairs };
+
 std::string
-figureGridHtml(const std::string& figures_html);
+figureGridHtml(const std::string& figures_html, FigureGrid grid = FigureGrid::Any);
+
+/** \brief What the colours of the figures below it mean: pairs of "#RRGGBB" and words.
+ */
+std::string
+legendHtml(const std::vector<std::pair<std::string, std::string>>& colours);
 
 /** \brief A part of the page with a heading; \p id names it in links. */
 std::string

@@ -35,11 +35,17 @@ th, td { padding: .25rem .7rem .25rem 0; border-bottom: 1px solid var(--line);
   text-align: right; white-space: nowrap; vertical-align: top; }
 th { text-align: left; font-weight: 600; } th.number { text-align: right; }
 td.words { text-align: left; }
+th[scope=row] { white-space: normal; }
 pre { background: var(--panel); border: 1px solid var(--line); border-radius: .4rem;
   padding: .7rem; margin: .5rem 0; white-space: pre-wrap; overflow-wrap: anywhere;
   font-size: .85rem; }
 .grid { display: grid; gap: .6rem 1.2rem;
   grid-template-columns: repeat(auto-fill, minmax(min(100%, 19rem), 1fr)); }
+.pairs { grid-template-columns: repeat(auto-fill, minmax(min(100%, 24rem), 1fr)); }
+.legend { list-style: none; padding: 0; display: flex; flex-wrap: wrap; gap: .2rem 1rem;
+  font-size: .9rem; }
+.swatch { display: inline-block; width: .8rem; height: .8rem; border-radius: 50%;
+  margin-right: .4rem; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 figure { margin: .6rem 0; min-width: 0; }
 figcaption { color: var(--faint); font-size: .9rem; max-width: 46rem; }
 figure svg { display: block; width: 100%; height: auto; }
