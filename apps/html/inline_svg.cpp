@@ -22,7 +22,8 @@ removeAll(std::string& text, const std::string& begin, const std::string& end)
   std::size_t position = 0;
   while (true) {
     const auto from = text.find(begin, position);
-    const auto to = from == std::string::npos ? from : text.find(end, from);
+    const auto to =
+        from == std::string::npos ? from : text.find(end, from + begin.size());
     if (to == std::string::npos)
       break;
     kept.append(text, position, from - position);
@@ -78,6 +79,7 @@ inlineSvg(const std::string& document,
       replaceAll(content, before + name, before + id + '-' + name);
   replaceAll(content, " color=\"black\"", "");
   replaceAll(content, "\"black\"", "\"currentColor\"");
+  replaceAll(content, "'black'", "'currentColor'");
   replaceAll(content, "\n\n", "\n");
   return "<svg id=\"" + id + "\" viewBox=\"" + viewBoxOf(document) +
          "\" role=\"img\" aria-labelledby=\"" + id + "-title " + id +

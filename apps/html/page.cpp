@@ -49,11 +49,12 @@ tableHtml(const Table& table)
                       escaped(table.header[i]));
   for (const auto& cells : table.rows)
     rows += rowHtml(table, cells);
-  return scrolledHtml(table.caption,
-                      element("table",
-                              element("caption", escaped(table.caption)) +
-                                  element("thead", element("tr", header)) +
-                                  element("tbody", rows))) +
+  return scrolledHtml(
+             table.caption,
+             element("table",
+                     element("caption", element("span", escaped(table.caption))) +
+                         element("thead", element("tr", header)) +
+                         element("tbody", rows))) +
          '\n';
 }
 

@@ -35,7 +35,8 @@ th, td { padding: .25rem .7rem .25rem 0; border-bottom: 1px solid var(--line);
   text-align: right; white-space: nowrap; vertical-align: top; }
 th { text-align: left; font-weight: 600; } th.number { text-align: right; }
 td.words { text-align: left; }
-th[scope=row] { white-space: normal; }
+td.words:last-child { white-space: normal; min-width: 13rem; }
+caption span { display: inline-block; max-width: calc(100vw - 2rem); white-space: normal; }
 pre { background: var(--panel); border: 1px solid var(--line); border-radius: .4rem;
   padding: .7rem; margin: .5rem 0; white-space: pre-wrap; overflow-wrap: anywhere;
   font-size: .85rem; }

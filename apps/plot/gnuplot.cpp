@@ -1,6 +1,5 @@
 #include "plot/gnuplot.h"
 
-#include "io/errors.h"
 #include "plot/temporary_folder.h"
 
 #include <csignal>
@@ -80,8 +79,8 @@ void
 requireGnuplot(const std::string& option)
 {
   if (!hasGnuplot())
-    throw io::FileError(
-        "gnuplot", "is not there, but " + option + " needs it (package gnuplot-nox)");
+    throw GnuplotError("is not there, but " + option +
+                       " needs it (package gnuplot-nox)");
 }
 
 void
@@ -134,13 +133,12 @@ drawSvgs(const std::vector<Drawing>& drawings)
   const bool is_good =
       pipeInto("gnuplot --default-settings 2> '" + complaints + '\'', script);
   if (!is_good)
-    throw io::FileError("gnuplot",
-                        "could not draw the figures" + firstComplaint(complaints));
+    throw GnuplotError("could not draw the figures" + firstComplaint(complaints));
   std::vector<std::string> svgs;
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     svgs.push_back(contentOf(svgName(folder, i)));
     if (svgs.back().find("</svg>") == std::string::npos)
-      throw io::FileError("gnuplot", "has not drawn all figures");
+      throw GnuplotError("has not drawn all figures");
   }
   return svgs;
 }

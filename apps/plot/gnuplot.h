@@ -3,10 +3,17 @@
  */
 #pragma once
 
+#include "io/errors.h"
+
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::plot {
+
+/** \brief gnuplot is not there, or does not draw. */
+struct GnuplotError : io::FileError {
+  explicit GnuplotError(const std::string& reason) : io::FileError("gnuplot", reason) {}
+};
 
 /** \brief Whether the program gnuplot is there. */
 bool
@@ -14,7 +21,7 @@ hasGnuplot();
 
 /** \brief For options that cannot do without it.
  * \param[in] option its name, with dashes
- * \throws io::FileError if there is no gnuplot */
+ * \throws GnuplotError if there is no gnuplot */
 void
 requireGnuplot(const std::string& option);
 
@@ -50,7 +57,7 @@ struct Drawing {
 
 /** \brief The drawings as SVG documents, in their order. Backgrounds are transparent;
  * html/inline_svg.h puts them into pages.
- * \throws io::FileError if gnuplot does not draw them */
+ * \throws GnuplotError if it does not draw them */
 std::vector<std::string>
 drawSvgs(const std::vector<Drawing>& drawings);
 

@@ -8,6 +8,8 @@ namespace {
 
 /** Of all chains together, in one trace. */
 constexpr Eigen::Index max_trace_draws = 1200;
+/** Traces with fewer draws have a dot for each. */
+constexpr Eigen::Index max_marked_draws = 60;
 constexpr int max_rank_bins = 20;
 /** Draws a bin and chain, so that the noise of a bin stays below a third or so. */
 constexpr Eigen::Index min_draws_a_bin = 10;
@@ -83,34 +85,48 @@ linesOf(const DrawSet& draws, const char* kind, const std::string& style)
   return lines;
 }
 
+/** Two panels: the traces, and below them the ranks. */
+std::string
+chainScript(const DrawSet& draws, int k)
+{
+  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  Eigen::Index last_draw = 1;
+  for (const ChainDraws& chain : draws.chains)
+    last_draw = std::max(last_draw, chain.errors.rows() - 1);
+  const bool is_short = last_draw < max_marked_draws;
+  return dataBlocks(draws, k) + chart_style +
+         "set multiplot\nset lmargin at screen 0.22\nset rmargin at screen 0.96\n"
+         "set bmargin at screen 0.6\nset tmargin at screen 0.97\n"
+         "set xlabel 'draw of the chain' offset 0, 0.4\nset xtics " +
+         plotNumber(std::max(1.0, roundStep(static_cast<double>(last_draw), 0.2))) +
+         "\nset xrange [0:" + std::to_string(last_draw) +
+         "]\nset ylabel offset 0.6, 0 " +
+         plot::quotedForGnuplot(axis.name + " − mean [" + axis.unit + ']') + "\nplot " +
+         linesOf(draws,
+                 "trace",
+                 is_short ? "linespoints pointtype 7 pointsize 0.2 linewidth 0.6"
+                          : "lines linewidth 0.6") +
+         "\nset bmargin at screen 0.15\nset tmargin at screen 0.43\n"
+         "set xlabel 'rank among all draws [%]'\nset ylabel 'draws / expected'\n"
+         "set xrange [0:100]\nset xtics 20\nset yrange [0:*]\nset ytics 1\n"
+         "plot 1 with lines linecolor rgb '" +
+         quiet_colour + "' dashtype 2, " +
+         linesOf(draws, "ranks", "steps linewidth 1.4") + "\nunset multiplot\n";
+}
+
 Chart
 chainChart(const DrawSet& draws, int k)
 {
-  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  const std::string& name = draws.axes[static_cast<std::size_t>(k)].name;
   Chart chart;
-  chart.id = "chains-" + axis.name;
-  chart.title = "Chains of " + axis.name;
-  chart.caption = axis.name + ": trace, and ranks.";
+  chart.id = "chains-" + name;
+  chart.title = "Chains of " + name;
+  chart.caption = name + ": trace, and ranks.";
   chart.description =
-      "Above, the draws of " + axis.name +
+      "Above, the draws of " + name +
       " in their order, a line a chain; below, how often each chain has "
       "the ranks among all draws, in units of what is expected.";
-  chart.drawing = {
-      340,
-      330,
-      12,
-      dataBlocks(draws, k) + chart_style +
-          "set multiplot\nset lmargin at screen 0.17\nset rmargin at screen 0.97\n"
-          "set bmargin at screen 0.59\nset tmargin at screen 0.97\n"
-          "set xlabel 'draw of the chain' offset 0, 0.5\nset ylabel " +
-          plot::quotedForGnuplot(axis.name + " − mean [" + axis.unit + ']') +
-          "\nplot " + linesOf(draws, "trace", "lines linewidth 0.6") +
-          "\nset bmargin at screen 0.13\nset tmargin at screen 0.43\n"
-          "set xlabel 'rank among all draws [%]'\nset ylabel 'draws / expected'\n"
-          "set xrange [0:100]\nset yrange [0:*]\nset ytics 1\nplot 1 with lines "
-          "linecolor rgb '" +
-          quiet_colour + "' dashtype 2, " +
-          linesOf(draws, "ranks", "steps linewidth 1.4") + "\nunset multiplot\n"};
+  chart.drawing = {340, 350, 12, chainScript(draws, k)};
   return chart;
 }
 

@@ -25,15 +25,21 @@ struct Chart {
   plot::Drawing drawing;
 };
 
-/** \brief Colours that colour-blind readers can tell apart (Okabe and Ito 2008), on
- * white and on black. */
-inline constexpr std::array<const char*, 6> chart_colours = {
-    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"};
+/** \brief Colours that colour-blind readers can tell apart (Okabe and Ito 2008, and two
+ * more), on white and on black. */
+inline constexpr std::array<const char*, 8> chart_colours = {"#0072B2",
+                                                             "#D55E00",
+                                                             "#009E73",
+                                                             "#CC79A7",
+                                                             "#E69F00",
+                                                             "#56B4E9",
+                                                             "#999933",
+                                                             "#AA4466"};
 inline constexpr const char* target_colour = chart_colours[0];
 inline constexpr const char* source_colour = chart_colours[1];
 inline constexpr const char* quiet_colour = "#8A939C";
 
-/** \brief The colour of a chain; the seventh has that of the first. */
+/** \brief The colour of a chain; the ninth has that of the first. */
 inline const char*
 colourOf(int chain)
 {
@@ -53,6 +59,18 @@ inline std::string
 plotRange(double low, double high)
 {
   return '[' + plotNumber(low) + ':' + plotNumber(high) + ']';
+}
+
+/** \brief A round number between \p share and 1.5 times \p share of \p span. */
+inline double
+roundStep(double span, double share)
+{
+  const double least = share * span;
+  const double decade = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double step : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (step * decade >= least)
+      return step * decade;
+  return 10.0 * decade;
 }
 
 /** \brief The style that all charts begin with: thin axes without a box. */

@@ -77,8 +77,8 @@ widened(const Range& range, double span)
 
 /** A picture's layout in pixels: the plot in it and its margins. */
 constexpr double plot_width = 350.0, max_plot_height = 350.0, min_plot_height = 130.0;
-constexpr double left_margin = 58.0, right_margin = 12.0;
-constexpr double bottom_margin = 46.0, top_margin = 8.0;
+constexpr double left_margin = 66.0, right_margin = 12.0;
+constexpr double bottom_margin = 50.0, top_margin = 8.0;
 
 std::string
 pointsBlock(const std::string& name, const Eigen::Matrix3Xd& points)
@@ -120,8 +120,8 @@ viewOf(const Scene& scene, Eigen::Index horizontal, Eigen::Index vertical)
       pointsBlock("target", scene.target) + pointsBlock("source", scene.source) +
       chart_style + marginsScript(width, height) + "set border 15\nset xrange " +
       plotRange(x.low, x.high) + "\nset yrange " + plotRange(y.low, y.high) +
-      "\nset xlabel '" + axis_names[horizontal] + " [m]'\nset ylabel '" +
-      axis_names[vertical] + " [m]'\nplot " +
+      "\nset xlabel '" + axis_names[horizontal] + " [m]' offset 0, 0.4\nset ylabel '" +
+      axis_names[vertical] + " [m]' offset 1, 0\nplot " +
       dots("$target" + columns,
            x.span(),
            2.0,

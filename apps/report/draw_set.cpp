@@ -12,6 +12,8 @@ namespace {
 
 /** Standard deviations below this are shown in millimetres [m]. */
 constexpr double small_deviation = 0.1;
+/** Differences below this are none [m, rad]. */
+constexpr double rounding = 1e-12;
 
 Axis
 axisOf(int k, const CoordinateSummary& coordinate)
@@ -35,7 +37,9 @@ errorsOf(const PoseMatrix& draws, const Vector6d& mean, const DrawSet& set)
     const Vector6d error =
         poseError(draws.row(i).transpose(), mean, CovarianceConvention::Parameters);
     for (int k = 0; k < 6; ++k)
-      errors(i, k) = set.axes[static_cast<std::size_t>(k)].factor * error[k];
+      errors(i, k) = std::abs(error[k]) < rounding
+                         ? 0.0
+                         : set.axes[static_cast<std::size_t>(k)].factor * error[k];
   }
   return errors;
 }
@@ -58,6 +62,21 @@ drawSetOf(const RegistrationResult& result)
   return set;
 }
 
+Eigen::VectorXd
+pooledErrors(const DrawSet& draws, int coordinate)
+{
+  Eigen::Index num_draws = 0;
+  for (const ChainDraws& chain : draws.chains)
+    num_draws += chain.errors.rows();
+  Eigen::VectorXd errors(num_draws);
+  Eigen::Index filled = 0;
+  for (const ChainDraws& chain : draws.chains) {
+    errors.segment(filled, chain.errors.rows()) = chain.errors.col(coordinate);
+    filled += chain.errors.rows();
+  }
+  return errors;
+}
+
 std::vector<Eigen::Index>
 evenlySpaced(Eigen::Index num_rows, Eigen::Index max_rows)
 {
@@ -71,14 +90,12 @@ evenlySpaced(Eigen::Index num_rows, Eigen::Index max_rows)
 std::vector<Eigen::VectorXd>
 ranksOf(const DrawSet& draws, int coordinate)
 {
-  std::vector<double> sorted;
-  for (const ChainDraws& chain : draws.chains)
-    for (Eigen::Index i = 0; i < chain.errors.rows(); ++i)
-      sorted.push_back(chain.errors(i, coordinate));
-  std::sort(sorted.begin(), sorted.end());
+  Eigen::VectorXd sorted = pooledErrors(draws, coordinate);
+  std::sort(sorted.data(), sorted.data() + sorted.size());
   const auto rankOf = [&sorted](double value) {
-    const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), value);
-    const auto below = static_cast<double>(first - sorted.begin());
+    const auto [first, last] =
+        std::equal_range(sorted.data(), sorted.data() + sorted.size(), value);
+    const auto below = static_cast<double>(first - sorted.data());
     return below + 0.5 * static_cast<double>(last - first - 1);
   };
   std::vector<Eigen::VectorXd> ranks;

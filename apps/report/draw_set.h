@@ -46,6 +46,10 @@ struct DrawSet {
 DrawSet
 drawSetOf(const RegistrationResult& result);
 
+/** \brief One coordinate of all draws, chain after chain. */
+Eigen::VectorXd
+pooledErrors(const DrawSet& draws, int coordinate);
+
 /** \brief At most \p max_rows of the rows, evenly over all of them, in their order;
  * the first one is among them. */
 std::vector<Eigen::Index>

@@ -1,5 +1,7 @@
 #include "report/posterior_charts.h"
 
+#include <bayesian_icp/diagnostics.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -10,11 +12,13 @@ namespace {
 
 constexpr Eigen::Index max_density_draws = 4000;
 constexpr Eigen::Index max_pair_draws = 400;
+/** Makes each chain one of gnuplot's data sets. */
+constexpr const char* data_set_separator = "\n\n";
 
-/** \p max_rows draws of all chains in a data block of gnuplot, six columns; chains one
- * after the other with two blank lines between, which makes them its indices. */
+/** \p max_rows draws of all chains in a data block of gnuplot, six columns, with
+ * \p separator behind each chain. */
 std::string
-drawsBlock(const DrawSet& draws, Eigen::Index max_rows)
+drawsBlock(const DrawSet& draws, Eigen::Index max_rows, const char* separator)
 {
   std::string block = "$draws << EOD\n";
   const Eigen::Index share = std::max<Eigen::Index>(
@@ -24,22 +28,29 @@ drawsBlock(const DrawSet& draws, Eigen::Index max_rows)
       for (int k = 0; k < 6; ++k)
         block += plotNumber(chain.errors(row, k)) + (k < 5 ? ' ' : '\n');
     }
-    block += "\n\n";
+    block += separator;
   }
   return block + "EOD\n";
 }
 
-/** Smallest and largest error of a coordinate, with a margin on both sides. */
+/** Where all but a few stray draws are, with a margin on both sides; 0 is within. */
 std::pair<double, double>
 rangeOf(const DrawSet& draws, int k)
 {
-  double low = 0.0, high = 0.0;
-  for (const ChainDraws& chain : draws.chains) {
-    low = std::min(low, chain.errors.col(k).minCoeff());
-    high = std::max(high, chain.errors.col(k).maxCoeff());
-  }
-  const double margin = high > low ? 0.05 * (high - low) : 1.0;
-  return {low - margin, high + margin};
+  constexpr double stray = 0.002, margin = 0.08;
+  const Eigen::VectorXd errors = pooledErrors(draws, k);
+  const double low = std::min(0.0, quantile(errors, stray));
+  const double high = std::max(0.0, quantile(errors, 1.0 - stray));
+  const double added = high > low ? margin * (high - low) : 1.0;
+  return {low - added, high + added};
+}
+
+/** Half of a range about the mean that has all of it. */
+double
+reachOf(const DrawSet& draws, int k)
+{
+  const auto [low, high] = rangeOf(draws, k);
+  return std::max(-low, high);
 }
 
 std::string
@@ -52,8 +63,11 @@ std::string
 intervalText(const Axis& axis)
 {
   constexpr int num_digits = 3;
-  return "95 % from " + io::textOf(axis.quantile_2_5, num_digits) + " to +" +
-         io::textOf(axis.quantile_97_5, num_digits) + ' ' + axis.unit;
+  const auto signedText = [](double value) {
+    return (value > 0.0 ? "+" : "") + io::textOf(value, num_digits);
+  };
+  return "95 % from " + signedText(axis.quantile_2_5) + " to " +
+         signedText(axis.quantile_97_5) + ' ' + axis.unit;
 }
 
 /** The curve in the block $density, the interval below it, and the mean. */
@@ -63,7 +77,7 @@ densityScript(const DrawSet& draws, int k)
   const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
   const auto [low, high] = rangeOf(draws, k);
   const double width = kernelWidth(draws, k);
-  std::string script = drawsBlock(draws, max_density_draws) + chart_style +
+  std::string script = drawsBlock(draws, max_density_draws, "") + chart_style +
                        "set border 1\nunset ytics\nset xlabel " +
                        plot::quotedForGnuplot(differenceLabel(axis)) +
                        "\nset xtics autofreq\nset yrange [0:*]\nset samples 240\n"
@@ -130,15 +144,14 @@ correlationPanel(const Matrix6d& covariance, int row, int column)
                    std::abs(correlation) >= 0.5 ? 20 : 13);
 }
 
-/** Two ticks that do not meet those of the next panel. */
+/** Ticks at the mean and on both sides of it. */
 std::string
-ticksOf(const char* which, double low, double high, bool has_labels)
+ticksOf(const char* which, double reach, bool has_labels)
 {
-  const double step = std::pow(10.0, std::floor(std::log10(0.8 * (high - low))));
-  const double ratio = 0.8 * (high - low) / step;
-  const double distance = step * (ratio >= 5.0 ? 2.5 : ratio >= 2.0 ? 1.0 : 0.5);
-  return std::string("set ") + which + "tics " + plotNumber(distance) +
-         (has_labels ? " format '%g'\n" : " format ''\n");
+  constexpr double share = 0.27;
+  return std::string("set ") + which + "range " + plotRange(-reach, reach) + "\nset " +
+         which + "tics " + plotNumber(roundStep(2.0 * reach, share)) +
+         (has_labels ? " format '%g' font ',10'\n" : " format ''\n");
 }
 
 std::string
@@ -146,12 +159,10 @@ scatterPanel(const DrawSet& draws, int row, int column)
 {
   const Axis& x = draws.axes[static_cast<std::size_t>(column)];
   const Axis& y = draws.axes[static_cast<std::size_t>(row)];
-  const auto [left, right] = rangeOf(draws, column);
-  const auto [low, high] = rangeOf(draws, row);
-  std::string script = "set border 15 linewidth 0.5\nset xrange " +
-                       plotRange(left, right) + "\nset yrange " + plotRange(low, high) +
-                       '\n' + ticksOf("x", left, right, row == 5) +
-                       ticksOf("y", low, high, column == 0);
+  const double x_reach = reachOf(draws, column), y_reach = reachOf(draws, row);
+  std::string script = "set border 15 linewidth 0.5\n" +
+                       ticksOf("x", x_reach, row == 5) +
+                       ticksOf("y", y_reach, column == 0);
   script +=
       row == 5 ? "set xlabel '" + x.name + " [" + x.unit + "]'\n" : "unset xlabel\n";
   script +=
@@ -161,7 +172,7 @@ scatterPanel(const DrawSet& draws, int row, int column)
     plots += (i > 0 ? ", " : "plot ") +
              dots("$draws index " + io::textOf(i) + " using " +
                       std::to_string(column + 1) + ':' + std::to_string(row + 1),
-                  right - left,
+                  2.0 * x_reach,
                   2.2,
                   std::string("#30") + (colourOf(draws.chains[i].chain) + 1));
   return script + plots + '\n';
@@ -181,8 +192,8 @@ densityCharts(const DrawSet& draws)
 Chart
 pairChart(const DrawSet& draws, const Matrix6d& covariance)
 {
-  std::string script =
-      drawsBlock(draws, max_pair_draws) + chart_style + "set multiplot\n";
+  std::string script = drawsBlock(draws, max_pair_draws, data_set_separator) +
+                       chart_style + "set multiplot\n";
   for (int row = 0; row < 6; ++row)
     for (int column = 0; column < 6; ++column)
       script +=
@@ -191,11 +202,12 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance)
            : column > row ? correlationPanel(covariance, row, column)
                           : scatterPanel(draws, row, column));
   Chart chart;
-  chart.id = "pairs";
+  chart.id = "pairs-of-coordinates";
   chart.title = "Pairs of coordinates";
   chart.caption = "Each pair of coordinates, as differences from their means: up to " +
                   io::textOf(max_pair_draws) +
-                  " draws, coloured by chain; above the diagonal their correlations.";
+                  " draws, coloured by chain, a few stray ones outside; above the "
+                  "diagonal the correlations of all draws.";
   chart.description = chart.caption;
   chart.width = html::FigureWidth::Scrolled;
   chart.drawing = {860, 860, 12, script + "unset multiplot\n"};

@@ -48,7 +48,8 @@ std::string
 titleOf(const Run& run)
 {
   const auto nameOf = [](const io::CloudFile& cloud) {
-    return std::filesystem::path(cloud.file).filename().string();
+    const std::filesystem::path path(cloud.file);
+    return (path.parent_path().filename() / path.filename()).string();
   };
   return nameOf(run.source) + " registered to " + nameOf(run.target);
 }

@@ -13,7 +13,7 @@ namespace bayesian_icp::app {
  * the run. The charts are drawn by gnuplot.
  * \param[in] run with at least one draw
  * \param[in] command that made the run, as a shell takes it
- * \throws io::FileError if gnuplot cannot draw */
+ * \throws plot::GnuplotError if gnuplot cannot draw */
 std::string
 reportHtml(const Run& run, const std::string& command);
 

@@ -22,8 +22,9 @@ constexpr std::size_t max_chains_in_legend = 12;
 std::string
 drawsText(const Summary& summary)
 {
-  return io::textOf(summary.num_draws) + " draws of " +
-         io::textOf(summary.num_chains - summary.num_diverged_chains) + " chains.";
+  return "Draws: " + io::textOf(summary.num_draws) +
+         ", chains: " + io::textOf(summary.num_chains - summary.num_diverged_chains) +
+         '.';
 }
 
 Section

@@ -17,6 +17,11 @@ constexpr double small_deviation = 0.1;
 /** Digits of means whose standard deviation is not known, or zero. */
 constexpr int default_decimals = 4;
 
+/** No line breaks within a coordinate. */
+const std::string space = "\u00A0";
+const std::string plus_minus = space + "±" + space;
+const std::string degree = "°";
+
 /** Decimals that show a deviation with two significant digits. */
 int
 decimalsFor(double deviation)
@@ -34,18 +39,18 @@ roundedTo(double value, int decimals)
   return is_zero && text.front() == '-' ? text.substr(1) : text;
 }
 
-/** " ± 0.42 mm" */
+/** "± 0.42 mm" */
 std::string
 deviationText(double deviation, bool is_angle)
 {
   if (!std::isfinite(deviation))
-    return " ± unknown";
+    return plus_minus + "unknown";
   const bool is_small = !is_angle && deviation < small_deviation;
   const double shown = is_small ? millimetres_per_metre * deviation : deviation;
-  return " ± " + roundedTo(shown, deviation > 0.0 ? decimalsFor(shown) : 0) +
-         (is_angle   ? "°"
-          : is_small ? " mm"
-                     : " m");
+  return plus_minus + roundedTo(shown, deviation > 0.0 ? decimalsFor(shown) : 0) +
+         (is_angle   ? degree
+          : is_small ? space + "mm"
+                     : space + "m");
 }
 
 template <typename Mean, typename Deviation>
@@ -69,13 +74,20 @@ poseText(const Summary& summary)
 }
 
 std::string
+weightText(double weight)
+{
+  constexpr double least = 0.01;
+  return weight < least ? "below 0.01" : "about " + io::fixedTextOf(weight, 2);
+}
+
+std::string
 modesText(const std::vector<Mode>& modes)
 {
   std::string text;
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const Mode& mode = modes[i];
     text += (i > 0 ? "; or " : "") + std::string("pose ") + io::textOf(i + 1) +
-            " (weight about " + io::fixedTextOf(mode.weight, 2) + "): " +
+            " (weight " + weightText(mode.weight) + "): " +
             poseText([&](int k) { return mode.mean[k]; },
                      [&](int k) { return std::sqrt(mode.covariance(k, k)); });
   }
@@ -114,6 +126,27 @@ divergedText(const Summary& summary)
          io::textOf(summary.num_chains) + " chains";
 }
 
+Verdict
+goodOpening(const DataReport& data, Preset preset)
+{
+  using html::Tone;
+  if (preset != Preset::Calibrated)
+    return {Tone::Good, "Good draws of the posterior that was stated", "", ""};
+  const auto num_unobserved =
+      std::count_if(data.directions.begin(),
+                    data.directions.end(),
+                    [](const DataDirection& direction) {
+                      return direction.observability == Observability::PriorOnly;
+                    });
+  if (num_unobserved > 0)
+    return {Tone::Caution,
+            "Reliable, but " + io::textOf(num_unobserved) +
+                " of 6 motions cannot be observed",
+            "",
+            ""};
+  return {Tone::Good, "The pose and its ± can be relied on", "", ""};
+}
+
 /** Tone, heading, and what the sentence begins with. */
 Verdict
 opening(const Summary& summary, Preset preset)
@@ -121,9 +154,7 @@ opening(const Summary& summary, Preset preset)
   using html::Tone;
   switch (summary.status) {
   case Status::Ok:
-    if (preset == Preset::Calibrated)
-      return {Tone::Good, "The pose and its ± can be relied on", "", ""};
-    return {Tone::Good, "Good draws of the posterior that was stated", "", ""};
+    return goodOpening(summary.data, preset);
   case Status::Doubtful:
     return {Tone::Caution, "Use with care: the clouds call for doubt", "", ""};
   case Status::NotMixed:
@@ -173,9 +204,9 @@ uncertainText(int coordinate, double mean, double standard_deviation)
   const double deviation = factor * standard_deviation;
   const std::string name = coordinate_names[static_cast<std::size_t>(coordinate)];
   if (!std::isfinite(mean))
-    return name + " unknown";
-  return name + ' ' + roundedTo(factor * mean, decimalsFor(deviation)) +
-         (is_angle ? "°" : " m") + deviationText(deviation, is_angle);
+    return name + space + "unknown";
+  return name + space + roundedTo(factor * mean, decimalsFor(deviation)) +
+         (is_angle ? degree : space + "m") + deviationText(deviation, is_angle);
 }
 
 Verdict

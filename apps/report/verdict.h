@@ -29,7 +29,7 @@ Verdict
 verdictOf(const Summary& summary, Preset preset);
 
 /** \brief "x 0.0213 m ± 0.42 mm": mean with as many digits as the standard deviation
- * justifies.
+ * justifies; all spaces are U+00A0, no-break spaces.
  * \param[in] coordinate index in (x, y, z, roll, pitch, yaw)
  * \param[in] mean,standard_deviation [m, rad]; angles are told in degrees */
 std::string

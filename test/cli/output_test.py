@@ -97,7 +97,7 @@ class Files(ToolTest):
         for seed in ("1", "2"):
             self.assert_ran(run(*self.small_pair(), *FAST, "-o", output, "--seed", seed))
         names = sorted(path.name for path in output.iterdir())
-        self.assertEqual(names, ["aligned.pcd", "posterior.json", "samples.csv"])
+        self.assertEqual(names, ["aligned.pcd", "posterior.json", "report.html", "samples.csv"])
         document = strict_json((output / "posterior.json").read_text())
         self.assertEqual(document["options"]["chains"]["seed"], 2)
         new_file = self.file("new", "")
