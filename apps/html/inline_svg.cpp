@@ -74,9 +74,10 @@ inlineSvg(const std::string& document,
       content.find("href='#gp", content.rfind("</defs>")) != std::string::npos;
   if (!has_markers)
     removeAll(content, "<defs>", "</defs>");
+  const std::string own = id + '-';
   for (const std::string name : {"gpDot", "gpPt", "textbox", "greybox"})
     for (const std::string before : {"id='", "'#", "url(#"})
-      replaceAll(content, before + name, before + id + '-' + name);
+      replaceAll(content, before + name, std::string(before).append(own).append(name));
   replaceAll(content, " color=\"black\"", "");
   replaceAll(content, "\"black\"", "\"currentColor\"");
   replaceAll(content, "'black'", "'currentColor'");

@@ -56,7 +56,8 @@ details { margin: .6rem 0; } summary { cursor: pointer; font-weight: 600; }
   figure, table, .box, pre { break-inside: avoid; } h2 { break-after: avoid; }
   .scroll { overflow: visible; } figure .scroll svg { min-width: 0; }
   .grid { grid-template-columns: repeat(3, 1fr); }
-  td, th { white-space: normal; } }
+  td, th { white-space: normal; }
+  ::details-content { content-visibility: visible; block-size: auto; } }
 )css";
 
 } // namespace bayesian_icp::html

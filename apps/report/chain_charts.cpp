@@ -135,9 +135,9 @@ chainChart(const DrawSet& draws, int k)
 std::vector<Chart>
 chainCharts(const DrawSet& draws)
 {
-  std::vector<Chart> charts;
-  for (int k = 0; k < 6; ++k)
-    charts.push_back(chainChart(draws, k));
+  std::vector<Chart> charts(6);
+  for (std::size_t k = 0; k < charts.size(); ++k)
+    charts[k] = chainChart(draws, static_cast<int>(k));
   return charts;
 }
 

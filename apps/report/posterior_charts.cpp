@@ -183,9 +183,9 @@ scatterPanel(const DrawSet& draws, int row, int column)
 std::vector<Chart>
 densityCharts(const DrawSet& draws)
 {
-  std::vector<Chart> charts;
-  for (int k = 0; k < 6; ++k)
-    charts.push_back(densityChart(draws, k));
+  std::vector<Chart> charts(6);
+  for (std::size_t k = 0; k < charts.size(); ++k)
+    charts[k] = densityChart(draws, static_cast<int>(k));
   return charts;
 }
 

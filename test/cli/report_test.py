@@ -120,7 +120,8 @@ class ReportPage(ReportTest):
         command = page.texts["pre"].splitlines()[0]
         (self.folder / "output" / "samples.csv").unlink()
         shell = command.split("{", maxsplit=1)[0]
-        self.assertEqual(subprocess.run(["sh", "-c", shell], check=False).returncode, 1)
+        result = subprocess.run(["sh", "-c", shell], capture_output=True, check=False)
+        self.assertEqual(result.returncode, 1, result.stderr)
         self.assertEqual((self.folder / "output" / "samples.csv").read_text(), samples)
 
     def test_motions_that_the_clouds_do_not_hold(self):
