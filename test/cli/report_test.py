@@ -60,7 +60,7 @@ class ReportPage(ReportTest):
         for pair, options, more in (
             (mug, CALIBRATED, ["directions"]),
             (self.small_pair(), FAST, []),
-            (self.small_pair(), ["--chains=1", "--samples=1"], []),
+            (self.small_pair(), ["--preset=paper", "--chains=1", "--samples=1"], []),
         ):
             with self.subTest(options=options):
                 _, text = self.report_of(*pair, *options)
