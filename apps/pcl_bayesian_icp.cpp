@@ -3,6 +3,7 @@
  */
 #include "io/errors.h"
 #include "io/numbers.h"
+#include "plot/gnuplot.h"
 #include "register/command_line.h"
 #include "register/export_files.h"
 #include "register/interrupt.h"
@@ -10,6 +11,7 @@
 #include "register/posterior_json.h"
 #include "register/progress_bar.h"
 #include "register/report_text.h"
+#include "report/report_html.h"
 #include "sgd_icp/run.h"
 
 #include <algorithm>
@@ -100,13 +102,38 @@ printExport(const Request& request, const Run& run)
   }
 }
 
+/** Adds the report, if it is wanted. What keeps it from being drawn keeps nothing else
+ * from being written.
+ * \return why there is none; empty if there is one, or none is wanted */
+std::string
+addReport(const Request& request, const Run& run, io::OutputFolder& folder)
+{
+  constexpr const char* name = "report.html";
+  std::string complaint;
+  if (request.wants_report)
+    try {
+      plot::requireGnuplot(name);
+      const std::string page = reportHtml(run, request.command);
+      folder.add(name, [&page](std::ostream& stream) { stream << page; });
+      return "";
+    }
+    catch (const plot::GnuplotError& error) {
+      complaint = std::string(name) + " is not written: " + error.what();
+    }
+  folder.leaveOut(name);
+  return complaint;
+}
+
 /** \return whether all that was asked for could be exported */
 bool
 writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
 {
   const auto refusals =
       addExports(request.exports, PoseEstimate(run.result.summary), folder);
+  const std::string complaint = addReport(request, run, folder);
   writeOutputFiles(run, folder);
+  if (!complaint.empty())
+    tell(complaint);
   for (const std::string& refusal : refusals)
     tell(refusal);
   return refusals.empty();

@@ -6,10 +6,10 @@
 #include "coverage_real.h"
 #include "coverage_study.h"
 #include "coverage_table.h"
-#include "gnuplot.h"
 
 #include <io/cloud_file.h>
 #include <io/errors.h>
+#include <plot/gnuplot.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -160,7 +160,7 @@ runCoverageCommand(int argc, const char* const* argv)
   }
   io::silencePcl();
   if (!options.plot_folder.empty())
-    requireGnuplot();
+    plot::requireGnuplot("--plots");
   CoverageStudy study = studyOf(options);
   study.report = reportProgress;
   CoverageFile results(options.result_file);

@@ -2,10 +2,10 @@
 
 #include "coverage_summary.h"
 #include "coverage_table.h"
-#include "gnuplot.h"
 
 #include <io/errors.h>
 #include <io/numbers.h>
+#include <plot/gnuplot.h>
 
 #include <algorithm>
 #include <array>
@@ -88,13 +88,13 @@ coverageScript(const Methods& methods, const std::string& folder)
   for (std::size_t i = 0; i < methods.size(); ++i)
     plot += ", $coverage" + std::to_string(i) +
             " using 1:2 with steps linewidth 2 title " +
-            quotedForGnuplot(methods[i].first);
+            plot::quotedForGnuplot(methods[i].first);
   return blocksOf("coverage", methods, coverageData) +
          "reset\nset key outside right\nset grid\nset xrange [0:1]\nset yrange [0:1]\n"
          "set size ratio -1\n"
          "set xlabel 'probability of the region'\n"
          "set ylabel 'share of truths within it'\n" +
-         pictures(folder + "/coverage", "900, 600", plot + "\n");
+         plot::pictures(folder + "/coverage", "900, 600", plot + "\n");
 }
 
 std::string
@@ -104,15 +104,16 @@ pitScript(const Methods& methods, const std::string& folder)
   std::string plot = "set multiplot layout " + rows + ", 6\n";
   for (std::size_t i = 0; i < methods.size(); ++i)
     for (std::size_t k = 0; k < coordinates.size(); ++k)
-      plot += "set title " + quotedForGnuplot(methods[i].first + ' ' + coordinates[k]) +
+      plot += "set title " +
+              plot::quotedForGnuplot(methods[i].first + ' ' + coordinates[k]) +
               "\nplot $pit" + std::to_string(i) + " using 1:" + std::to_string(k + 2) +
               " with boxes, 1 linecolor 'gray'\n";
   return blocksOf("pit", methods, pitData) +
          "reset\nunset key\nset style fill solid 0.6 noborder\nset boxwidth 0.09\n"
          "set xrange [0:1]\nset yrange [0:*]\nset xtics 0.5\n" +
-         pictures(folder + "/pit",
-                  "1200, " + std::to_string(180 * methods.size()),
-                  plot + "unset multiplot\n");
+         plot::pictures(folder + "/pit",
+                        "1200, " + std::to_string(180 * methods.size()),
+                        plot + "unset multiplot\n");
 }
 
 /** Lines "index of the cell, ANEES"; the same cells for every method. */
@@ -142,10 +143,12 @@ aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
   }
   std::string ticks, plot = "plot 1 notitle with lines linecolor 'gray'";
   for (std::size_t i = 0; i < cells.size(); ++i)
-    ticks += (i > 0 ? ", " : "") + quotedForGnuplot(cells[i]) + ' ' + std::to_string(i);
+    ticks += (i > 0 ? ", " : "") + plot::quotedForGnuplot(cells[i]) + ' ' +
+             std::to_string(i);
   for (std::size_t i = 0; i < methods.size(); ++i)
     plot += ", $anees" + std::to_string(i) + " using 1:2 with points pointtype " +
-            std::to_string(i + 4) + " title " + quotedForGnuplot(methods[i].first);
+            std::to_string(i + 4) + " title " +
+            plot::quotedForGnuplot(methods[i].first);
   const auto data = [&cells](const Runs& of_method) {
     return aneesData(of_method, cells);
   };
@@ -154,10 +157,11 @@ aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
          "set ylabel 'mean NEES / 6'\nset xrange [-0.5:" +
          std::to_string(cells.size()) + " - 0.5]\nset xtics rotate by -60 (" + ticks +
          ")\n" +
-         pictures(folder + "/anees",
-                  std::to_string(std::max<std::size_t>(900, 300 + 18 * cells.size())) +
-                      ", 600",
-                  plot + "\n");
+         plot::pictures(
+             folder + "/anees",
+             std::to_string(std::max<std::size_t>(900, 300 + 18 * cells.size())) +
+                 ", 600",
+             plot + "\n");
 }
 
 } // namespace
@@ -165,16 +169,16 @@ aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
 void
 plotCoverage(const Runs& runs, const std::string& folder)
 {
-  makePlotFolder(folder);
+  plot::makePlotFolder(folder);
   Methods methods;
   for (const auto& [name, of_method] : runsByMethod(runs))
     if (const Runs valid = validOf(of_method); !valid.empty())
       methods.emplace_back(name, valid);
   if (methods.empty())
     throw io::FileError(folder, "no plots: there is no valid run");
-  runGnuplot("set encoding utf8\n" + coverageScript(methods, folder) +
-                 pitScript(methods, folder) + aneesScript(runs, methods, folder),
-             folder);
+  plot::runGnuplot("set encoding utf8\n" + coverageScript(methods, folder) +
+                       pitScript(methods, folder) + aneesScript(runs, methods, folder),
+                   folder);
 }
 
 } // namespace bayesian_icp::evaluate

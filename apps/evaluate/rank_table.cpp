@@ -1,6 +1,6 @@
 #include "rank_table.h"
 
-#include "gnuplot.h"
+#include <plot/gnuplot.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,7 +72,7 @@ printRankTable(const RankStudy& study, const RankFile& results, std::ostream& st
 void
 plotRanks(const RankStudy& study, const RankFile& results, const std::string& folder)
 {
-  makePlotFolder(folder);
+  plot::makePlotFolder(folder);
   const std::size_t num_rows = study.samplers.size();
   std::string data;
   std::string plot = "set multiplot layout " + std::to_string(num_rows) + ", 6\n";
@@ -84,19 +84,19 @@ plotRanks(const RankStudy& study, const RankFile& results, const std::string& fo
       const std::string name = "ranks" + std::to_string(i) + '_' + std::to_string(k);
       data += histogramBlock(name, rankHistogram(runs, k));
       plot += "set title " +
-              quotedForGnuplot(sampler.name + ' ' +
-                               coordinates[static_cast<std::size_t>(k)]) +
+              plot::quotedForGnuplot(sampler.name + ' ' +
+                                     coordinates[static_cast<std::size_t>(k)]) +
               "\nplot $" + name + " using 1:2 with boxes, " + format("%.1f", expected) +
               " linecolor 'gray'\n";
     }
   }
-  runGnuplot("set encoding utf8\n" + data +
-                 "reset\nunset key\nset style fill solid 0.6 noborder\n"
-                 "set boxwidth 0.9\nset xrange [-0.5:9.5]\nset yrange [0:*]\n" +
-                 pictures(folder + "/ranks",
-                          "1200, " + std::to_string(180 * num_rows),
-                          plot + "unset multiplot\n"),
-             folder);
+  plot::runGnuplot("set encoding utf8\n" + data +
+                       "reset\nunset key\nset style fill solid 0.6 noborder\n"
+                       "set boxwidth 0.9\nset xrange [-0.5:9.5]\nset yrange [0:*]\n" +
+                       plot::pictures(folder + "/ranks",
+                                      "1200, " + std::to_string(180 * num_rows),
+                                      plot + "unset multiplot\n"),
+                   folder);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -1,11 +1,11 @@
 #include "sbc_command.h"
 
-#include "gnuplot.h"
 #include "rank_study.h"
 #include "rank_table.h"
 #include "sbc_options.h"
 
 #include <io/errors.h>
+#include <plot/gnuplot.h>
 
 #include <algorithm>
 #include <iostream>
@@ -46,7 +46,7 @@ runSbcCommand(int argc, const char* const* argv)
     return 0;
   }
   if (!options.plot_folder.empty())
-    requireGnuplot();
+    plot::requireGnuplot("--plots");
   RankStudy study;
   study.samplers = chosenSamplers(options.samplers);
   study.num_runs = options.num_runs;

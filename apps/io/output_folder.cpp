@@ -93,6 +93,12 @@ OutputFolder::add(const std::string& name,
 }
 
 void
+OutputFolder::leaveOut(const std::string& name)
+{
+  left_out_.push_back((fs::path(folder_) / name).string());
+}
+
+void
 OutputFolder::commit()
 {
   while (!files_.empty()) {
@@ -101,6 +107,11 @@ OutputFolder::commit()
     if (error)
       throw FileError(files_.back().name, reasonOf(error.value()));
     files_.pop_back();
+  }
+  for (const std::string& name : left_out_) {
+    std::error_code error;
+    if (!fs::remove(name, error) && error)
+      throw FileError(name, "cannot be removed: " + error.message());
   }
 }
 

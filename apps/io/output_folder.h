@@ -33,6 +33,11 @@ public:
   addByName(const std::string& name,
             const std::function<void(const std::string& path)>& write);
 
+  /** \brief Have commit() remove an older file of this name, which is not to be taken
+   * for a part of what is new. */
+  void
+  leaveOut(const std::string& name);
+
   /** \brief Rename what was added, replacing older files of these names.
    * \throws FileError if that fails */
   void
@@ -46,6 +51,7 @@ private:
 
   std::string folder_;
   std::vector<File> files_;
+  std::vector<std::string> left_out_;
 };
 
 } // namespace bayesian_icp::io

@@ -43,6 +43,29 @@ takeExports(const po::variables_map& given, Request& request)
         "--export without --output prints, which excludes --json and --quiet");
 }
 
+/** An argument as a shell takes it back. */
+std::string
+quotedForShell(const std::string& argument)
+{
+  const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                         "0123456789_@%+=:,./-";
+  if (!argument.empty() && argument.find_first_not_of(harmless) == std::string::npos)
+    return argument;
+  std::string quoted = "'";
+  for (const char character : argument)
+    quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  return quoted + '\'';
+}
+
+std::string
+commandOf(int argc, const char* const* argv)
+{
+  std::string command;
+  for (int i = 0; i < argc; ++i)
+    command += (i > 0 ? " " : "") + quotedForShell(argv[i]);
+  return command;
+}
+
 } // namespace
 
 Request
@@ -52,6 +75,7 @@ parseCommandLine(int argc, const char* const* argv)
   all.add(describeSgdOptions()); // refused before, unless help is asked for
   const po::variables_map given = splitCommandLine(argc, argv, all, "cloud");
   Request request;
+  request.command = commandOf(argc, argv);
   if (given.count("help") > 0 || given.count("version") > 0) {
     request.kind =
         given.count("help") > 0 ? Request::Kind::ShowHelp : Request::Kind::ShowVersion;
@@ -59,6 +83,9 @@ parseCommandLine(int argc, const char* const* argv)
   }
   takeClouds(given, request);
   request.output_folder = textOf(given, "output");
+  request.wants_report = given.count("no-report") == 0;
+  if (!request.wants_report && request.output_folder.empty())
+    throw io::UsageError("--no-report: has no effect without --output");
   request.is_json = given.count("json") > 0;
   request.is_quiet = given.count("quiet") > 0;
   if (request.is_json && request.is_quiet)

@@ -20,6 +20,9 @@ struct Request {
   std::string output_folder;
   /** Without formats if nothing is to be exported. */
   ExportRequest exports;
+  bool wants_report = true;
+  /** This command line as a shell takes it. */
+  std::string command;
   bool is_json = false;
   bool is_quiet = false;
   Settings settings;

@@ -13,49 +13,54 @@ constexpr double millimetres = 1e3;
 constexpr double milliradians = 1e3;
 constexpr double percent = 100.0;
 constexpr std::size_t column_width = 11;
-
-/** Who holds the pose along a direction, left aligned below "held by". */
-std::string
-holderOf(Observability observability)
-{
-  constexpr std::size_t holder_width = 7;
-  const char* name = observability == Observability::Observed ? "data"
-                     : observability == Observability::Weak   ? "weak"
-                                                              : "prior";
-  return "  " + leftAligned(name, holder_width);
-}
+/** Of the column "held by". */
+constexpr std::size_t holder_width = 7;
 
 /** Deviations as displacement, and as angle where the motion is not a translation. */
 std::string
 directionRow(const DataDirection& direction)
 {
-  const bool is_translation = direction.description.rfind("translation", 0) == 0;
-  const double angle =
-      is_translation ? std::numeric_limits<double>::quiet_NaN()
-                     : direction.standard_deviation * direction.twist.tail<3>().norm();
   return cell(millimetres * direction.standard_deviation, 3, column_width) +
-         cell(milliradians * angle, 3, column_width) +
+         cell(milliradians * angularDeviation(direction), 3, column_width) +
          cell(millimetres * direction.prior_standard_deviation, 1, column_width) +
-         holderOf(direction.observability) + "  " + direction.description + '\n';
+         "  " + leftAligned(holderOf(direction.observability), holder_width) + "  " +
+         direction.description + '\n';
 }
 
+} // namespace
+
 std::string
-flagsLine(const DataFlags& flags)
+flagNames(const DataFlags& flags)
 {
-  std::string line;
-  const auto add = [&line](bool is_raised, const char* name) {
+  std::string names;
+  const auto add = [&names](bool is_raised, const char* name) {
     if (is_raised)
-      line += (line.empty() ? "" : ", ") + std::string(name);
+      names += (names.empty() ? "" : ", ") + std::string(name);
   };
   add(flags.wrong_basin, "wrong basin");
   add(flags.low_support, "low support");
   add(flags.few_patches, "few patches");
   add(flags.misfit, "misfit");
   add(flags.no_information, "no information");
-  return "Flags:   " + (line.empty() ? "none" : line) + '\n';
+  return names;
 }
 
-} // namespace
+const char*
+holderOf(Observability observability)
+{
+  return observability == Observability::Observed ? "data"
+         : observability == Observability::Weak   ? "weak"
+                                                  : "prior";
+}
+
+double
+angularDeviation(const DataDirection& direction)
+{
+  const bool is_translation = direction.description.rfind("translation", 0) == 0;
+  return is_translation
+             ? std::numeric_limits<double>::quiet_NaN()
+             : direction.standard_deviation * direction.twist.tail<3>().norm();
+}
 
 std::string
 dataText(const DataReport& report)
@@ -69,6 +74,7 @@ dataText(const DataReport& report)
   text += "  held by  motion\n";
   for (const DataDirection& direction : report.directions)
     text += directionRow(direction);
+  const std::string flags = flagNames(report.flags);
   return text + "Noise:   " + io::textOf(millimetres * report.noise_scale, 4) +
          " mm from the surface, " + io::fixedTextOf(report.residual_scale, 2) +
          " times the target's own\nPatches: about " +
@@ -76,8 +82,8 @@ dataText(const DataReport& report)
          " independent ones, correlation factor " +
          io::fixedTextOf(report.correlation_factor, 2) +
          "\nSupport: " + io::fixedTextOf(percent * report.active_fraction, 0) +
-         " % of the source points lie on the target's surface\n" +
-         flagsLine(report.flags);
+         " % of the source points lie on the target's surface\nFlags:   " +
+         (flags.empty() ? "none" : flags) + '\n';
 }
 
 } // namespace bayesian_icp::app

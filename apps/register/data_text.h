@@ -14,4 +14,17 @@ namespace bayesian_icp::app {
 std::string
 dataText(const DataReport& report);
 
+/** \brief "wrong basin, misfit"; empty if no flag is raised. */
+std::string
+flagNames(const DataFlags& flags);
+
+/** \brief Who holds the pose along a direction: "data", "weak" or "prior". */
+const char*
+holderOf(Observability observability);
+
+/** \brief Standard deviation of the angle along a direction [rad]; NaN for a
+ * translation. */
+double
+angularDeviation(const DataDirection& direction);
+
 } // namespace bayesian_icp::app

@@ -86,8 +86,10 @@ describeGeneral()
   group.add_options()(
       "output,o",
       text("DIR"),
-      "write aligned.pcd, samples.csv and posterior.json into this folder, "
-      "which is made if missing");
+      "write aligned.pcd, samples.csv, posterior.json and report.html (one page with "
+      "all that is to be known, for a browser; needs gnuplot) into this folder, which "
+      "is made if missing");
+  group.add_options()("no-report", "with -o: do not write report.html");
   group.add_options()("json", "print what posterior.json has in place of the table");
   group.add_options()("quiet", "print nothing but errors, and no progress bar");
   return group;

@@ -166,6 +166,12 @@ class Modes(ExactTest):
             self.assertLess(deviation, 0.02)
         self.check_table(run(*pair, *self.OPTIONS), modes)
 
+    def test_report_has_the_pose_of_each_mode(self):
+        self.run_to_files(*self.ridges(), *self.OPTIONS)
+        text = (self.folder / "output" / "report.html").read_text()
+        self.assertRegex(text, r"Do not use one mean: \d+ different poses fit")
+        self.assertRegex(text, r"pose 1 \(weight .*; or pose 2 \(weight ")
+
     def check_table(self, result, modes):
         """The table has a block for every mode: weight, chains, mean and deviation."""
         self.assertEqual(result.returncode, 1)

@@ -14,6 +14,8 @@ GOOD = [*MUG, "--preset=exact", "--sigma=0.005", "--effective-points=300"]
 GOOD += ["--prior-frame=source-centroid"]
 TIME = "1700000000.123456789"
 OPTIONS = ["--timestamp", TIME, "--target-frame=map/0", "--source-frame=scan_1", "--vertices=3,8"]
+# What there is without an export.
+WRITTEN = ["aligned.pcd", "posterior.json", "report.html", "samples.csv"]
 FILES = ["pose.csv", "pose.g2o", "pose_gtsam.txt", "pose_ros.yaml", "pose_tum.txt"]
 FILES += ["pose_tum_covariance.txt"]
 # Rounding: inverses of matrices of condition 1e6 and sums over hundreds of draws.
@@ -63,7 +65,7 @@ class ExportFormats(ExportTest):
         self.assertEqual((self.result.returncode, self.result.stderr), (0, ""))
         self.assertIn("Posterior mean", self.result.stdout)
         names = sorted(path.name for path in self.output.iterdir())
-        self.assertEqual(names, sorted(["aligned.pcd", "posterior.json", "samples.csv", *FILES]))
+        self.assertEqual(names, sorted([*WRITTEN, *FILES]))
 
     def test_ros(self):
         message = formats.read_yaml(self.text("pose_ros.yaml"))
@@ -169,7 +171,7 @@ class ExportRefusals(ExportTest):
         self.assertIn("--export g2o: not written: ", result.stderr)
         self.assertIn("--export ros: not written: ", result.stderr)
         names = sorted(path.name for path in output.iterdir())
-        self.assertEqual(names, ["aligned.pcd", "posterior.json", "samples.csv"])
+        self.assertEqual(names, WRITTEN)
         result = run(*pair, *FAST, "--export=g2o", "--export-unreliable")
         self.assertEqual(result.returncode, 1)
         self.assertTrue(result.stdout.startswith("EDGE_SE3:QUAT 0 1 "), result.stdout)

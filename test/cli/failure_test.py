@@ -77,6 +77,7 @@ class Interrupted(ToolTest):
         samples = (output / "samples.csv").read_text()
         self.assertEqual(len(samples.splitlines()), num_draws + 1)
         self.assertEqual(strict_json((output / "posterior.json").read_text()), document)
+        self.assertIn("Interrupted: do not trust the ±", (output / "report.html").read_text())
 
 
 class Progress(ToolTest):

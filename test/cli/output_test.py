@@ -97,7 +97,7 @@ class Files(ToolTest):
         for seed in ("1", "2"):
             self.assert_ran(run(*self.small_pair(), *FAST, "-o", output, "--seed", seed))
         names = sorted(path.name for path in output.iterdir())
-        self.assertEqual(names, ["aligned.pcd", "posterior.json", "samples.csv"])
+        self.assertEqual(names, ["aligned.pcd", "posterior.json", "report.html", "samples.csv"])
         document = strict_json((output / "posterior.json").read_text())
         self.assertEqual(document["options"]["chains"]["seed"], 2)
         new_file = self.file("new", "")
@@ -134,6 +134,8 @@ class Files(ToolTest):
         result, document, good = self.run_with_some_diverged_chains(output)
         self.assertEqual(result.returncode, 1)
         self.assertEqual(document["status"]["name"], "diverged")
+        diverged = f"{4 - len(good)} of 4 chains diverged"
+        self.assertIn(f"Do not trust this posterior: {diverged}", (output / "report.html").read_text())
         self.assertEqual(document["posterior"]["draws"], 100 * len(good))
         written = columns((output / "samples.csv").read_text())["chain"]
         self.assertEqual(written, [chain for chain in good for _ in range(100)])

@@ -1,6 +1,7 @@
 # Picture of a posterior: draws of x and y, and the marginals of x, y and yaw, about their
-# means and up to four standard deviations from them.
-# Called as: gnuplot -c scripts/demo.gp samples.csv picture.png
+# means and up to four standard deviations from them. README's picture is made, after
+# scripts/demo, by
+#   gnuplot -c scripts/mug_posterior.gp build/demo/samples.csv docs/images/mug_posterior.png
 samples = ARG1
 picture = ARG2
 

@@ -1,0 +1,92 @@
+#include "html/inline_svg.h"
+
+#include "html/escape.h"
+
+namespace bayesian_icp::html {
+
+namespace {
+
+void
+replaceAll(std::string& text, const std::string& old, const std::string& by)
+{
+  for (auto at = text.find(old); at != std::string::npos;
+       at = text.find(old, at + by.size()))
+    text.replace(at, old.size(), by);
+}
+
+/** Takes out everything from each \p begin to the next \p end, both included. */
+void
+removeAll(std::string& text, const std::string& begin, const std::string& end)
+{
+  std::string kept;
+  std::size_t position = 0;
+  while (true) {
+    const auto from = text.find(begin, position);
+    const auto to =
+        from == std::string::npos ? from : text.find(end, from + begin.size());
+    if (to == std::string::npos)
+      break;
+    kept.append(text, position, from - position);
+    position = to + end.size();
+  }
+  text = kept.append(text, position);
+}
+
+/** What is between the opening and the closing tag. */
+std::string
+contentOf(const std::string& document)
+{
+  const auto tag = document.find("<svg");
+  const auto begin = document.find('>', tag);
+  const auto end = document.rfind("</svg>");
+  if (tag == std::string::npos || begin > end || end == std::string::npos)
+    return "";
+  return document.substr(begin + 1, end - begin - 1);
+}
+
+/** The value of viewBox; empty if there is none. */
+std::string
+viewBoxOf(const std::string& document)
+{
+  const std::string name = "viewBox=\"";
+  const auto begin = document.find(name);
+  if (begin == std::string::npos)
+    return "";
+  const auto end = document.find('"', begin + name.size());
+  return document.substr(begin + name.size(), end - begin - name.size());
+}
+
+} // namespace
+
+std::string
+inlineSvg(const std::string& document,
+          const std::string& id,
+          const std::string& title,
+          const std::string& description)
+{
+  std::string content = contentOf(document);
+  // Titles within are tooltips with gnuplot's commands.
+  removeAll(content, "<title>", "</title>");
+  removeAll(content, "<desc>", "</desc>");
+  removeAll(content, " id=\"gnuplot_", "\"");
+  const bool has_markers =
+      content.find("href='#gp") < content.rfind("</defs>") &&
+      content.find("href='#gp", content.rfind("</defs>")) != std::string::npos;
+  if (!has_markers)
+    removeAll(content, "<defs>", "</defs>");
+  const std::string own = id + '-';
+  for (const std::string name : {"gpDot", "gpPt", "textbox", "greybox"})
+    for (const std::string before : {"id='", "'#", "url(#"})
+      replaceAll(content, before + name, std::string(before).append(own).append(name));
+  replaceAll(content, " color=\"black\"", "");
+  replaceAll(content, "\"black\"", "\"currentColor\"");
+  replaceAll(content, "'black'", "'currentColor'");
+  replaceAll(content, "\n\n", "\n");
+  return "<svg id=\"" + id + "\" viewBox=\"" + viewBoxOf(document) +
+         "\" role=\"img\" aria-labelledby=\"" + id + "-title " + id +
+         "-description\"><title id=\"" + id + "-title\">" + escaped(title) +
+         "</title><desc id=\"" + id + "-description\">" + escaped(description) +
+         "</desc>" + content + "</svg>";
+}
+
+} // namespace bayesian_icp::html

@@ -1,0 +1,64 @@
+/** \file
+ * \brief Pictures drawn by gnuplot: as files, and as SVG in memory.
+ */
+#pragma once
+
+#include "io/errors.h"
+
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::plot {
+
+/** \brief gnuplot is not there, or does not draw. */
+struct GnuplotError : io::FileError {
+  explicit GnuplotError(const std::string& reason) : io::FileError("gnuplot", reason) {}
+};
+
+/** \brief Whether the program gnuplot is there. */
+bool
+hasGnuplot();
+
+/** \brief For options that cannot do without it.
+ * \param[in] option its name, with dashes
+ * \throws GnuplotError if there is no gnuplot */
+void
+requireGnuplot(const std::string& option);
+
+/** \throws io::FileError */
+void
+makePlotFolder(const std::string& folder);
+
+/** \brief A string of gnuplot's. */
+std::string
+quotedForGnuplot(const std::string& text);
+
+/** \brief Lines that write one picture as SVG and PNG.
+ * \param[in] file without its ending
+ * \param[in] size "width, height" in pixels
+ * \param[in] plot the commands that draw it */
+std::string
+pictures(const std::string& file, const std::string& size, const std::string& plot);
+
+/** \brief Have a script drawn whose pictures are in \p folder.
+ * \throws io::FileError if gnuplot does not draw it */
+void
+runGnuplot(const std::string& script, const std::string& folder);
+
+/** \brief One picture to be drawn as SVG. */
+struct Drawing {
+  /** Of the picture and of its text [pixels]. */
+  int width = 360;
+  int height = 260;
+  int font_size = 12;
+  /** Commands and inline data that draw it; settings of earlier drawings are gone. */
+  std::string script;
+};
+
+/** \brief The drawings as SVG documents, in their order. Backgrounds are transparent;
+ * html/inline_svg.h puts them into pages.
+ * \throws GnuplotError if it does not draw them */
+std::vector<std::string>
+drawSvgs(const std::vector<Drawing>& drawings);
+
+} // namespace bayesian_icp::plot

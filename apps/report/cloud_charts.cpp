@@ -1,0 +1,175 @@
+#include "report/cloud_charts.h"
+
+#include <bayesian_icp/diagnostics.h>
+#include <bayesian_icp/random.h>
+
+#include <algorithm>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+constexpr Eigen::Index max_points = 1800;
+constexpr const char* axis_names[] = {"x", "y", "z"};
+
+/** Finite points of a cloud, chosen at random: every so-manyth point of a scan would be
+ * a pattern. */
+Eigen::Matrix3Xd
+chosenPoints(const io::CloudFile& cloud)
+{
+  std::vector<Eigen::Index> finite;
+  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
+    if (cloud.points.col(i).allFinite())
+      finite.push_back(i);
+  Random random(1, 0);
+  const auto chosen =
+      randomChoice(static_cast<Eigen::Index>(finite.size()), max_points, random);
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(chosen.size()));
+  for (std::size_t i = 0; i < chosen.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) =
+        cloud.points.col(finite[static_cast<std::size_t>(chosen[i])]).cast<double>();
+  return points;
+}
+
+Eigen::Matrix3Xd
+moved(const Eigen::Matrix4d& T_target_source, const Eigen::Matrix3Xd& points)
+{
+  return (T_target_source.topLeftCorner<3, 3>() * points).colwise() +
+         Eigen::Vector3d(T_target_source.topRightCorner<3, 1>());
+}
+
+/** Both clouds in the target frame. */
+struct Scene {
+  Eigen::Matrix3Xd target;
+  Eigen::Matrix3Xd source;
+};
+
+/** What is seen of an axis [m]. */
+struct Range {
+  double low = 0.0;
+  double high = 1.0;
+
+  double
+  span() const
+  {
+    return high - low;
+  }
+};
+
+/** All but a few stray points, with a margin. */
+Range
+rangeOf(const Scene& scene, Eigen::Index axis)
+{
+  constexpr double stray = 0.005, margin = 0.06;
+  Eigen::VectorXd values(scene.target.cols() + scene.source.cols());
+  values << scene.target.row(axis).transpose(), scene.source.row(axis).transpose();
+  const double low = quantile(values, stray), high = quantile(values, 1.0 - stray);
+  const double added = margin * (high - low) + 1e-6;
+  return {low - added, high + added};
+}
+
+Range
+widened(const Range& range, double span)
+{
+  const double added = 0.5 * std::max(0.0, span - range.span());
+  return {range.low - added, range.high + added};
+}
+
+/** A picture's layout in pixels: the plot in it and its margins. */
+constexpr double plot_width = 350.0, max_plot_height = 350.0, min_plot_height = 130.0;
+constexpr double left_margin = 66.0, right_margin = 12.0;
+constexpr double bottom_margin = 50.0, top_margin = 8.0;
+
+std::string
+pointsBlock(const std::string& name, const Eigen::Matrix3Xd& points)
+{
+  std::string block = '$' + name + " << EOD\n";
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    block += plotNumber(points(0, i)) + ' ' + plotNumber(points(1, i)) + ' ' +
+             plotNumber(points(2, i)) + '\n';
+  return block + "EOD\n";
+}
+
+std::string
+marginsScript(double width, double height)
+{
+  return "set lmargin at screen " + plotNumber(left_margin / width) +
+         "\nset rmargin at screen " + plotNumber(1.0 - right_margin / width) +
+         "\nset bmargin at screen " + plotNumber(bottom_margin / height) +
+         "\nset tmargin at screen " + plotNumber(1.0 - top_margin / height) + '\n';
+}
+
+/** One metre is as long on both axes: the picture's height is made to fit, or else what
+ * is seen of one axis is widened. */
+plot::Drawing
+viewOf(const Scene& scene, Eigen::Index horizontal, Eigen::Index vertical)
+{
+  Range x = rangeOf(scene, horizontal), y = rangeOf(scene, vertical);
+  const double plot_height =
+      std::clamp(plot_width * y.span() / x.span(), min_plot_height, max_plot_height);
+  x = widened(x, y.span() * plot_width / plot_height);
+  y = widened(y, x.span() * plot_height / plot_width);
+  const double width = plot_width + left_margin + right_margin;
+  const double height = plot_height + bottom_margin + top_margin;
+  const std::string columns =
+      " using " + std::to_string(horizontal + 1) + ':' + std::to_string(vertical + 1);
+  plot::Drawing drawing;
+  drawing.width = static_cast<int>(width);
+  drawing.height = static_cast<int>(height);
+  drawing.script =
+      pointsBlock("target", scene.target) + pointsBlock("source", scene.source) +
+      chart_style + marginsScript(width, height) + "set border 15\nset xrange " +
+      plotRange(x.low, x.high) + "\nset yrange " + plotRange(y.low, y.high) +
+      "\nset xlabel '" + axis_names[horizontal] + " [m]' offset 0, 0.4\nset ylabel '" +
+      axis_names[vertical] + " [m]' offset 1, 0\nplot " +
+      dots("$target" + columns,
+           x.span(),
+           2.0,
+           std::string("#30") + (target_colour + 1)) +
+      ", " +
+      dots("$source" + columns,
+           x.span(),
+           2.0,
+           std::string("#30") + (source_colour + 1)) +
+      '\n';
+  return drawing;
+}
+
+void
+addViews(const Scene& scene,
+         const std::string& id,
+         const std::string& when,
+         std::vector<Chart>& charts)
+{
+  const Eigen::Index wide =
+      rangeOf(scene, 0).span() >= rangeOf(scene, 1).span() ? 0 : 1;
+  const std::string side = std::string("from the side (") + axis_names[wide] + ", z)";
+  const auto add = [&](const char* view, const std::string& words, auto... axes) {
+    Chart chart;
+    chart.id = "clouds-" + id + '-' + view;
+    chart.title = "Clouds " + when + ", " + words;
+    chart.caption = chart.title + '.';
+    chart.description = "Points of the target in blue and of the source in orange, in "
+                        "metres of the target frame, " +
+                        when + ", " + words + '.';
+    chart.drawing = viewOf(scene, axes...);
+    charts.push_back(std::move(chart));
+  };
+  add("above", "from above (x, y)", 0, 1);
+  add("side", side, wide, 2);
+}
+
+} // namespace
+
+std::vector<Chart>
+cloudCharts(const Run& run)
+{
+  const Eigen::Matrix3Xd target = chosenPoints(run.target);
+  const Eigen::Matrix3Xd source = chosenPoints(run.source);
+  std::vector<Chart> charts;
+  addViews({target, moved(run.settings.guess, source)}, "before", "before", charts);
+  addViews({target, moved(run.result.final_matrix, source)}, "after", "after", charts);
+  return charts;
+}
+
+} // namespace bayesian_icp::app

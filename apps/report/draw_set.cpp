@@ -1,0 +1,122 @@
+#include "report/draw_set.h"
+
+#include "report/coordinates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** Standard deviations below this are shown in millimetres [m]. */
+constexpr double small_deviation = 0.1;
+/** Differences below this are none [m, rad]. */
+constexpr double rounding = 1e-12;
+
+Axis
+axisOf(int k, const CoordinateSummary& coordinate)
+{
+  Axis axis;
+  axis.name = coordinate_names[static_cast<std::size_t>(k)];
+  const bool is_large = coordinate.standard_deviation >= small_deviation;
+  axis.unit = isAngle(k) ? "°" : is_large ? "m" : "mm";
+  axis.factor = isAngle(k) ? degrees_per_radian : is_large ? 1.0 : 1e3;
+  axis.standard_deviation = axis.factor * coordinate.standard_deviation;
+  axis.quantile_2_5 = axis.factor * (coordinate.quantile_2_5 - coordinate.mean);
+  axis.quantile_97_5 = axis.factor * (coordinate.quantile_97_5 - coordinate.mean);
+  return axis;
+}
+
+Eigen::MatrixXd
+errorsOf(const PoseMatrix& draws, const Vector6d& mean, const DrawSet& set)
+{
+  Eigen::MatrixXd errors(draws.rows(), 6);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i) {
+    const Vector6d error =
+        poseError(draws.row(i).transpose(), mean, CovarianceConvention::Parameters);
+    for (int k = 0; k < 6; ++k)
+      errors(i, k) = std::abs(error[k]) < rounding
+                         ? 0.0
+                         : set.axes[static_cast<std::size_t>(k)].factor * error[k];
+  }
+  return errors;
+}
+
+} // namespace
+
+DrawSet
+drawSetOf(const RegistrationResult& result)
+{
+  DrawSet set;
+  for (int k = 0; k < 6; ++k)
+    set.axes[static_cast<std::size_t>(k)] =
+        axisOf(k, result.summary.coordinates[static_cast<std::size_t>(k)]);
+  for (std::size_t i = 0; i < result.chains.size(); ++i) {
+    const Chain& chain = result.chains[i];
+    if (!chain.diverged && chain.draws.rows() > 0)
+      set.chains.push_back(
+          {static_cast<int>(i), errorsOf(chain.draws, result.summary.mean, set)});
+  }
+  return set;
+}
+
+Eigen::VectorXd
+pooledErrors(const DrawSet& draws, int coordinate)
+{
+  Eigen::Index num_draws = 0;
+  for (const ChainDraws& chain : draws.chains)
+    num_draws += chain.errors.rows();
+  Eigen::VectorXd errors(num_draws);
+  Eigen::Index filled = 0;
+  for (const ChainDraws& chain : draws.chains) {
+    errors.segment(filled, chain.errors.rows()) = chain.errors.col(coordinate);
+    filled += chain.errors.rows();
+  }
+  return errors;
+}
+
+std::vector<Eigen::Index>
+evenlySpaced(Eigen::Index num_rows, Eigen::Index max_rows)
+{
+  const Eigen::Index num = std::min(num_rows, std::max<Eigen::Index>(max_rows, 1));
+  std::vector<Eigen::Index> rows(static_cast<std::size_t>(num));
+  for (Eigen::Index i = 0; i < num; ++i)
+    rows[static_cast<std::size_t>(i)] = i * num_rows / num;
+  return rows;
+}
+
+std::vector<Eigen::VectorXd>
+ranksOf(const DrawSet& draws, int coordinate)
+{
+  Eigen::VectorXd sorted = pooledErrors(draws, coordinate);
+  std::sort(sorted.data(), sorted.data() + sorted.size());
+  const auto rankOf = [&sorted](double value) {
+    const auto [first, last] =
+        std::equal_range(sorted.data(), sorted.data() + sorted.size(), value);
+    const auto below = static_cast<double>(first - sorted.data());
+    return below + 0.5 * static_cast<double>(last - first - 1);
+  };
+  std::vector<Eigen::VectorXd> ranks;
+  for (const ChainDraws& chain : draws.chains)
+    ranks.push_back(chain.errors.col(coordinate).unaryExpr(rankOf));
+  return ranks;
+}
+
+double
+kernelWidth(const DrawSet& draws, int coordinate)
+{
+  constexpr double silverman = 1.06;
+  double sum_of_squares = 0.0;
+  Eigen::Index num_draws = 0;
+  for (const ChainDraws& chain : draws.chains) {
+    const auto column = chain.errors.col(coordinate);
+    sum_of_squares += (column.array() - column.mean()).square().sum();
+    num_draws += column.size();
+  }
+  const auto num = static_cast<double>(num_draws);
+  return silverman * std::sqrt(sum_of_squares / num) * std::pow(num, -0.2);
+}
+
+} // namespace bayesian_icp::app

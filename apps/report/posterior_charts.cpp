@@ -1,0 +1,217 @@
+#include "report/posterior_charts.h"
+
+#include <bayesian_icp/diagnostics.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+constexpr Eigen::Index max_density_draws = 4000;
+constexpr Eigen::Index max_pair_draws = 400;
+/** Makes each chain one of gnuplot's data sets. */
+constexpr const char* data_set_separator = "\n\n";
+
+/** \p max_rows draws of all chains in a data block of gnuplot, six columns, with
+ * \p separator behind each chain. */
+std::string
+drawsBlock(const DrawSet& draws, Eigen::Index max_rows, const char* separator)
+{
+  std::string block = "$draws << EOD\n";
+  const Eigen::Index share = std::max<Eigen::Index>(
+      1, max_rows / static_cast<Eigen::Index>(draws.chains.size()));
+  for (const ChainDraws& chain : draws.chains) {
+    for (const Eigen::Index row : evenlySpaced(chain.errors.rows(), share)) {
+      for (int k = 0; k < 6; ++k)
+        block += plotNumber(chain.errors(row, k)) + (k < 5 ? ' ' : '\n');
+    }
+    block += separator;
+  }
+  return block + "EOD\n";
+}
+
+/** Where all but a few stray draws are, with a margin on both sides; 0 is within. */
+std::pair<double, double>
+rangeOf(const DrawSet& draws, int k)
+{
+  constexpr double stray = 0.002, margin = 0.08;
+  const Eigen::VectorXd errors = pooledErrors(draws, k);
+  const double low = std::min(0.0, quantile(errors, stray));
+  const double high = std::max(0.0, quantile(errors, 1.0 - stray));
+  const double added = high > low ? margin * (high - low) : 1.0;
+  return {low - added, high + added};
+}
+
+/** Half of a range about the mean that has all of it. */
+double
+reachOf(const DrawSet& draws, int k)
+{
+  const auto [low, high] = rangeOf(draws, k);
+  return std::max(-low, high);
+}
+
+std::string
+differenceLabel(const Axis& axis)
+{
+  return axis.name + " − mean [" + axis.unit + ']';
+}
+
+std::string
+intervalText(const Axis& axis)
+{
+  constexpr int num_digits = 3;
+  const auto signedText = [](double value) {
+    return (value > 0.0 ? "+" : "") + io::textOf(value, num_digits);
+  };
+  return "95 % from " + signedText(axis.quantile_2_5) + " to " +
+         signedText(axis.quantile_97_5) + ' ' + axis.unit;
+}
+
+/** The curve in the block $density, the interval below it, and the mean. */
+std::string
+densityScript(const DrawSet& draws, int k)
+{
+  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  const auto [low, high] = rangeOf(draws, k);
+  const double width = kernelWidth(draws, k);
+  std::string script = drawsBlock(draws, max_density_draws, "") + chart_style +
+                       "set border 1\nunset ytics\nset xlabel " +
+                       plot::quotedForGnuplot(differenceLabel(axis)) +
+                       "\nset xtics autofreq\nset yrange [0:*]\nset samples 240\n"
+                       "set xrange " +
+                       plotRange(low - 2.0 * width, high + 2.0 * width) + '\n';
+  const std::string mean_line =
+      "set arrow from first 0, graph 0 to first 0, graph 1 nohead dashtype 2\n";
+  if (!(width > 0.0)) // the draws are all alike
+    return script + mean_line + "set yrange [0:1]\nplot NaN\n";
+  const std::string colour = std::string(" linecolor rgb '") + chart_colours[0] + '\'';
+  return script + "set table $density\nplot $draws using " + std::to_string(k + 1) +
+         ":(1) smooth kdensity bandwidth " + plotNumber(width) + "\nunset table\n" +
+         mean_line + "plot $density using 1:($1 >= " + plotNumber(axis.quantile_2_5) +
+         " && $1 <= " + plotNumber(axis.quantile_97_5) +
+         " ? $2 : NaN) with filledcurves y1=0" + colour +
+         ", $density using 1:2 with lines linewidth 2" + colour + '\n';
+}
+
+Chart
+densityChart(const DrawSet& draws, int k)
+{
+  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  Chart chart;
+  chart.id = "density-" + axis.name;
+  chart.title = "Density of " + axis.name;
+  chart.caption = axis.name + ": " +
+                  (std::isfinite(axis.quantile_2_5) ? intervalText(axis)
+                                                    : std::string("no interval"));
+  chart.description = "Curve of the posterior density of " + axis.name +
+                      " about its mean, the 95 % interval filled. " + chart.caption;
+  chart.drawing = {340, 190, 12, densityScript(draws, k)};
+  return chart;
+}
+
+/** Places the next panel of a 6x6 grid. */
+std::string
+placedAt(int row, int column)
+{
+  constexpr double left = 0.085, bottom = 0.075, step = 0.151, size = 0.14;
+  const double x = left + step * column;
+  const double y = bottom + step * (5 - row);
+  return "set lmargin at screen " + plotNumber(x) + "\nset rmargin at screen " +
+         plotNumber(x + size) + "\nset bmargin at screen " + plotNumber(y) +
+         "\nset tmargin at screen " + plotNumber(y + size) + '\n';
+}
+
+/** A panel without axes that says something; darker the stronger. */
+std::string
+textPanel(const std::string& text, int font_size)
+{
+  return "unset border\nunset tics\nunset xlabel\nunset ylabel\nset xrange [0:1]\n"
+         "set yrange [0:1]\nset label 1 " +
+         plot::quotedForGnuplot(text) + " at 0.5, 0.5 center font '," +
+         std::to_string(font_size) + "'\nplot NaN\nunset label 1\n";
+}
+
+std::string
+correlationPanel(const Matrix6d& covariance, int row, int column)
+{
+  const double correlation =
+      covariance(row, column) /
+      std::sqrt(covariance(row, row) * covariance(column, column));
+  return textPanel(std::isfinite(correlation) ? io::fixedTextOf(correlation, 2) : "–",
+                   std::abs(correlation) >= 0.5 ? 20 : 13);
+}
+
+/** Ticks at the mean and on both sides of it. */
+std::string
+ticksOf(const char* which, double reach, bool has_labels)
+{
+  constexpr double share = 0.27;
+  return std::string("set ") + which + "range " + plotRange(-reach, reach) + "\nset " +
+         which + "tics " + plotNumber(roundStep(2.0 * reach, share)) +
+         (has_labels ? " format '%g' font ',10'\n" : " format ''\n");
+}
+
+std::string
+scatterPanel(const DrawSet& draws, int row, int column)
+{
+  const Axis& x = draws.axes[static_cast<std::size_t>(column)];
+  const Axis& y = draws.axes[static_cast<std::size_t>(row)];
+  const double x_reach = reachOf(draws, column), y_reach = reachOf(draws, row);
+  std::string script = "set border 15 linewidth 0.5\n" +
+                       ticksOf("x", x_reach, row == 5) +
+                       ticksOf("y", y_reach, column == 0);
+  script +=
+      row == 5 ? "set xlabel '" + x.name + " [" + x.unit + "]'\n" : "unset xlabel\n";
+  script +=
+      column == 0 ? "set ylabel '" + y.name + " [" + y.unit + "]'\n" : "unset ylabel\n";
+  std::string plots;
+  for (std::size_t i = 0; i < draws.chains.size(); ++i)
+    plots += (i > 0 ? ", " : "plot ") +
+             dots("$draws index " + io::textOf(i) + " using " +
+                      std::to_string(column + 1) + ':' + std::to_string(row + 1),
+                  2.0 * x_reach,
+                  2.2,
+                  std::string("#30") + (colourOf(draws.chains[i].chain) + 1));
+  return script + plots + '\n';
+}
+
+} // namespace
+
+std::vector<Chart>
+densityCharts(const DrawSet& draws)
+{
+  std::vector<Chart> charts(6);
+  for (std::size_t k = 0; k < charts.size(); ++k)
+    charts[k] = densityChart(draws, static_cast<int>(k));
+  return charts;
+}
+
+Chart
+pairChart(const DrawSet& draws, const Matrix6d& covariance)
+{
+  std::string script = drawsBlock(draws, max_pair_draws, data_set_separator) +
+                       chart_style + "set multiplot\n";
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column)
+      script +=
+          placedAt(row, column) +
+          (column == row ? textPanel(draws.axes[static_cast<std::size_t>(row)].name, 16)
+           : column > row ? correlationPanel(covariance, row, column)
+                          : scatterPanel(draws, row, column));
+  Chart chart;
+  chart.id = "pairs-of-coordinates";
+  chart.title = "Pairs of coordinates";
+  chart.caption = "Each pair of coordinates, as differences from their means: up to " +
+                  io::textOf(max_pair_draws) +
+                  " draws, coloured by chain, a few stray ones outside; above the "
+                  "diagonal the correlations of all draws.";
+  chart.description = chart.caption;
+  chart.width = html::FigureWidth::Scrolled;
+  chart.drawing = {860, 860, 12, script + "unset multiplot\n"};
+  return chart;
+}
+
+} // namespace bayesian_icp::app
