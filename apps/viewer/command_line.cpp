@@ -112,9 +112,6 @@ refuseSettings(const po::variables_map& given)
   if (given.count("live") > 0)
     throw io::UsageError(
         "--live: has no effect with a posterior that is there already");
-  if (given.count("config") > 0)
-    throw io::UsageError("--config: has no effect with a posterior that is there "
-                         "already");
   const po::options_description settings = app::describeSettings(app::Settings());
   for (const auto& option : settings.options())
     if (given.count(option->long_name()) > 0)

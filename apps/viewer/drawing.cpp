@@ -1,6 +1,6 @@
 #include "viewer/drawing.h"
 
-#include "viewer/color_bar.h"
+#include "viewer/annotations.h"
 
 #include <pcl/visualization/pcl_visualizer.h>
 #include <pcl/point_cloud.h>
@@ -159,26 +159,29 @@ private:
   Window& window_;
 };
 
-int
-fontSizeFor(const Eigen::Vector2i& size)
+/** Axes of the target frame. PCL's own are drawn by what VTK 9 warns of at length. */
+void
+addAxes(double scale, Window& window)
 {
-  return std::clamp(size.y() / 48, 11, 40);
+  auto& visualizer = window.visualizer();
+  for (std::size_t k = 0; k < 3; ++k) {
+    Color color = {0.0, 0.0, 0.0};
+    color[k] = 1.0;
+    const Eigen::Vector3d end =
+        scale * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(k));
+    const std::string id = "axes/" + std::to_string(k);
+    visualizer.addLine(pointOf(Eigen::Vector3d::Zero(), color),
+                       pointOf(end, color),
+                       color[0],
+                       color[1],
+                       color[2],
+                       id);
+    visualizer.setShapeRenderingProperties(
+        pcl::visualization::PCL_VISUALIZER_LINE_WIDTH, 4, id);
+  }
 }
 
 } // namespace
-
-PictureArea
-areaBeside(std::size_t num_lines, bool has_color_bar, const Window& window)
-{
-  const Eigen::Vector2i size = window.panelSize();
-  const double line = 2.0 * 1.5 * fontSizeFor(size) / size.y();
-  PictureArea area;
-  area.top = 1.0 - line * (static_cast<double>(num_lines) + 1.0);
-  area.bottom = -1.0 + 2.0 * line;
-  area.right = has_color_bar ? 0.72 : 0.95;
-  area.left = -0.95;
-  return area;
-}
 
 PointStyle
 styleOf(Layer layer, const ViewOptions& options)
@@ -212,46 +215,6 @@ addPoints(const Eigen::Matrix3Xd& points,
 }
 
 void
-addLegend(const std::vector<LegendLine>& lines, int viewport, Window& window)
-{
-  const Eigen::Vector2i size = window.panelSize();
-  const int font_size = fontSizeFor(size);
-  int y = size.y() - 2 * font_size;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const Color& color = lines[i].color;
-    window.visualizer().addText(lines[i].text,
-                                font_size,
-                                y,
-                                font_size,
-                                color[0],
-                                color[1],
-                                color[2],
-                                "legend/" + std::to_string(viewport) + "/" +
-                                    std::to_string(i),
-                                viewport);
-    y -= 3 * font_size / 2;
-  }
-}
-
-void
-addStatus(const LegendLine& status, int viewport, Window& window)
-{
-  const Eigen::Vector2i size = window.panelSize();
-  const int font_size = fontSizeFor(size);
-  const Color& color = status.color;
-  const auto width = static_cast<std::size_t>(size.x() / (0.55 * font_size));
-  window.visualizer().addText(wrapped(status.text, width),
-                              font_size,
-                              font_size,
-                              font_size,
-                              color[0],
-                              color[1],
-                              color[2],
-                              "status",
-                              viewport);
-}
-
-void
 drawScene(const Scene& scene,
           const Uncertainty* uncertainty,
           const ViewOptions& options,
@@ -272,7 +235,7 @@ drawScene(const Scene& scene,
     addLegend(lines, viewports[i], window);
   }
   if (options.axes_scale > 0.0)
-    window.visualizer().addCoordinateSystem(options.axes_scale, "axes");
+    addAxes(options.axes_scale, window);
   addStatus(
       {scene.status + ": " + scene.status_message, textColorOn(options.background)},
       viewports.front(),

@@ -31,20 +31,6 @@ addPoints(const Eigen::Matrix3Xd& points,
           int viewport,
           Window& window);
 
-/** \brief Write lines into the upper left corner of a panel, under names that begin
- * with "legend". */
-void
-addLegend(const std::vector<LegendLine>& lines, int viewport, Window& window);
-
-/** \brief What a legend of so many lines, the status and a colour bar leave of a panel.
- */
-PictureArea
-areaBeside(std::size_t num_lines, bool has_color_bar, const Window& window);
-
-/** \brief Write what the registration came to along the lower edge of a panel. */
-void
-addStatus(const LegendLine& status, int viewport, Window& window);
-
 /** \brief Draw all panels of the options; layers that need draws are left out if there
  * are none. Names of what belongs to a layer begin with the layer's.
  * \param[in] uncertainty null if there are no draws */

@@ -1,6 +1,7 @@
 #include "viewer/live_view.h"
 
 #include "register/interrupt.h"
+#include "viewer/annotations.h"
 #include "viewer/drawing.h"
 
 #include <bayesian_icp/random.h>
@@ -91,7 +92,7 @@ private:
     const std::string trace = "trace/" + std::to_string(index);
     auto& visualizer = window_.visualizer();
     if (!visualizer.contains(cloud))
-      addPoints(chain_points_, {color, 2, 0.5}, cloud, 0, window_);
+      addPoints(chain_points_, {color, 3, 0.5}, cloud, 0, window_);
     moveCloud(cloud, matrixOf(track.pose));
     Eigen::Matrix3Xd points(3, track.trace.size());
     for (std::size_t i = 0; i < track.trace.size(); ++i)

@@ -34,8 +34,6 @@ describeGeneral()
   group.add_options()("help,h", "show this text");
   group.add_options()("version", "show the version");
   group.add_options()("quiet", "print nothing but errors, and no progress bar");
-  group.add_options()(
-      "config", text("FILE"), "settings of the registration, as for pcl_bayesian_icp");
   return group;
 }
 

@@ -55,12 +55,14 @@ readScene(const std::string& posterior_file,
   const std::filesystem::path folder =
       std::filesystem::path(posterior_file).parent_path();
   Scene scene;
-  if (source_file.empty())
-    takeClouds(readNamedCloud(posterior.source_file, posterior_file),
-               readNamedCloud(posterior.target_file, posterior_file),
-               scene);
-  else
-    takeClouds(io::readCloud(source_file), io::readCloud(target_file), scene);
+  const bool is_named = source_file.empty();
+  const io::CloudFile source =
+      is_named ? readNamedCloud(posterior.source_file, posterior_file)
+               : io::readCloud(source_file);
+  const io::CloudFile target =
+      is_named ? readNamedCloud(posterior.target_file, posterior_file)
+               : io::readCloud(target_file);
+  takeClouds(source, target, scene);
   std::string note;
   scene.guess = app::readConfigFile(posterior_file, note).guess;
   scene.final_matrix = posterior.final_matrix;

@@ -29,7 +29,7 @@ if(BAYESIAN_ICP_BUILD_VIEWER)
   add_executable(
     pcl_bayesian_icp_viewer
     pcl_bayesian_icp_viewer.cpp
-    viewer/color_bar.cpp
+    viewer/annotations.cpp
     viewer/command_line.cpp
     viewer/display.cpp
     viewer/drawing.cpp

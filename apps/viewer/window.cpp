@@ -70,7 +70,6 @@ Window::makePanels(std::size_t number)
 {
   visualizer_->removeAllPointClouds();
   visualizer_->removeAllShapes();
-  visualizer_->removeAllCoordinateSystems();
   if (number == 1)
     return {0};
   double background[3];

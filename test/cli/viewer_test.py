@@ -182,8 +182,8 @@ class Pictures(ScreenTest):
         plain = self.saved("mug", "--show", "target")
         axes = self.saved("mug", "--show", "target", "-ax", "0.05")
         self.assertGreater(axes.count_hues(0, 10, 0.7), plain.count_hues(0, 10, 0.7) + 50)
-        # Clipping range / focal point / position / up / distance / angle / size / place
-        away = "0.01,10/0,0,2/0,0,1/0,1,0/1/0.5236/480,360/0,0"
+        # Clipping range / focal point / position / up / angle / size / place
+        away = "0.01,10/0,0,2/0,0,1/0,1,0/0.5236/480,360/0,0"
         picture = self.saved("mug", "--show", "deviation", "-cam", away)
         self.assertLess(picture.count_hues(100, 180), plain.width * plain.height // 40)
 
