@@ -4,12 +4,14 @@
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "register/command_line.h"
+#include "register/export_files.h"
 #include "register/interrupt.h"
 #include "register/output_files.h"
 #include "register/posterior_json.h"
 #include "register/progress_bar.h"
 #include "register/report_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -74,16 +76,58 @@ runRegistration(const Request& request)
   return run;
 }
 
-void
+/** Whether the pose is to be printed for other software. */
+bool
+printsExport(const Request& request)
+{
+  return !request.exports.formats.empty() && request.output_folder.empty();
+}
+
+/** \return whether it can be exported */
+bool
+printExport(const Request& request, const Run& run)
+{
+  const ExportFormat format = request.exports.formats.front();
+  try {
+    print(
+        exportText(format, PoseEstimate(run.result.summary), request.exports.options));
+    return true;
+  }
+  catch (const std::invalid_argument& error) {
+    tell(std::string("--export ") + toString(format) + ": " + error.what());
+    return false;
+  }
+}
+
+/** \return whether all that was asked for could be exported */
+bool
+writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
+{
+  const auto refusals =
+      addExports(request.exports, PoseEstimate(run.result.summary), folder);
+  writeOutputFiles(run, folder);
+  for (const std::string& refusal : refusals)
+    tell(refusal);
+  return refusals.empty();
+}
+
+/** \return whether all that was asked for could be exported */
+bool
 report(const Request& request, const Run& run)
 {
-  if (request.is_json)
+  bool is_exported = true;
+  if (printsExport(request))
+    is_exported = printExport(request, run);
+  else if (request.is_json)
     print(posteriorJson(run));
   else if (!request.is_quiet)
     print(reportText(run));
   // The table has the status already.
-  if (run.result.summary.status != Status::Ok && (request.is_json || request.is_quiet))
+  const bool has_table =
+      !printsExport(request) && !request.is_json && !request.is_quiet;
+  if (run.result.summary.status != Status::Ok && !has_table)
     tell(statusText(run.result.summary));
+  return is_exported;
 }
 
 int
@@ -96,14 +140,16 @@ registerAsAsked(const Request& request)
     folder.emplace(request.output_folder);
   const Run run = runRegistration(request);
   const bool has_draws = run.result.summary.num_draws > 0;
+  bool is_exported = true;
   if (folder && has_draws)
-    writeOutputFiles(run, *folder);
+    is_exported = writeFiles(request, run, *folder);
   else if (folder)
     tell("there are no draws, so no files are written");
-  report(request, run);
+  is_exported &= report(request, run);
   if (wasInterrupted())
     return Interrupted;
-  return run.result.summary.status == Status::Ok ? Good : NoPosterior;
+  const bool is_good = run.result.summary.status == Status::Ok && is_exported;
+  return is_good ? Good : NoPosterior;
 }
 
 int

@@ -3,12 +3,15 @@
  */
 #include "batch/batch_command.h"
 #include "batch/batch_file.h"
+#include "batch/batch_line.h"
 #include "batch/batch_run.h"
 #include "batch/ranks.h"
 #include "io/cloud_file.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "register/interrupt.h"
+
+#include <bayesian_icp/summary.h>
 
 #include <iostream>
 #include <optional>
@@ -85,7 +88,7 @@ runToStandardOutput(const BatchRequest& request,
 {
   ProgressLines progress(ranks, pairs.size(), !request.is_quiet);
   runBatch(pairs, runOptionsOf(request), [&](const BatchResult& result) {
-    print(result.line + '\n');
+    print(batchLine(result) + '\n');
     progress.show(result);
   });
   return exitCodeOf(progress.numNotOk() == 0);
@@ -132,9 +135,9 @@ runToFile(const BatchRequest& request,
   ProgressLines progress(ranks, share.size(), !request.is_quiet);
   runBatch(share, runOptionsOf(request), [&](const BatchResult& result) {
     if (file)
-      file->add(result.line);
+      file->add(batchLine(result));
     else
-      part->add(result.line);
+      part->add(batchLine(result));
     progress.show(result);
   });
   part.reset();
@@ -153,7 +156,8 @@ runTool(int argc, char** argv, const Ranks& ranks)
     print(batchHelpText());
     return Good;
   case BatchRequest::Kind::ShowVersion:
-    print("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION "\n");
+    print(std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
+          (Ranks::hasMpi() ? " with MPI\n" : " without MPI\n"));
     return Good;
   case BatchRequest::Kind::Register:
     break;

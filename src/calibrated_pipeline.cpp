@@ -80,20 +80,6 @@ complaintAbout(const CalibratedEstimate& estimate, Eigen::Index num_source_point
   return std::string();
 }
 
-/** Lowers an Ok where there are flags, and puts them into words. */
-void
-judgeData(Summary& summary)
-{
-  const std::vector<std::string> flags = describeFlags(summary.data);
-  if (flags.empty())
-    return;
-  const bool is_doubtful = summary.status == Status::Ok;
-  if (is_doubtful)
-    summary.status = Status::Doubtful;
-  for (std::size_t i = 0; i < flags.size(); ++i)
-    summary.message += (i > 0 ? "; " : is_doubtful ? ", but " : "; also ") + flags[i];
-}
-
 PosteriorEstimate
 estimateAndDraw(const SurfaceScorer& scorer,
                 const Prior& prior,
@@ -120,7 +106,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
     result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data =
       dataReportOf(heaviest, static_cast<std::size_t>(num_points), scorer.model());
-  judgeData(result.summary);
+  addDoubts(describeFlags(result.summary.data), result.summary);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <bayesian_icp/preconditioned_sampler.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace bayesian_icp {
 
@@ -20,6 +21,10 @@ startSpread(const Options& options, const Prior& prior)
     return options.chains.initial_spread;
   return prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread);
 }
+
+/** Least share of Tukey's kernel that the points together make use of: a tenth of them
+ * on the target's surface would. */
+constexpr double min_used_by_kernel = 0.1;
 
 /** Source points on which the energies of modes are compared. */
 constexpr std::size_t fixed_batch_size = 4000;
@@ -87,6 +92,28 @@ sampleExact(const PoseEnergy& energy,
   target.is_thread_safe = energy.target().isThreadSafe();
   return runPreconditionedChains(
       target, samplerOptions(options), options.chains, progress);
+}
+
+std::vector<std::string>
+doubtsAbout(const PoseEnergy& energy, const Vector6d& mean)
+{
+  const ResidualOptions& residual = energy.residual();
+  if (residual.kernel != RobustKernel::Tukey || !mean.allFinite())
+    return {};
+  // The energy of a point beyond the kernel is largest, and the same for all.
+  const double plateau =
+      robustEnergy(residual, residual.kernel_width * residual.kernel_width);
+  const double likelihood = energy.energy(mean) - energy.prior().energy(mean);
+  const double used = 1.0 - likelihood / (energy.weight() * plateau);
+  if (used >= min_used_by_kernel)
+    return {};
+  char text[120];
+  std::snprintf(text,
+                sizeof(text),
+                "the kernel of width %g m leaves out nearly all source points at the "
+                "mean pose",
+                residual.kernel_width);
+  return {text};
 }
 
 } // namespace bayesian_icp

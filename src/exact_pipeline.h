@@ -8,6 +8,8 @@
 #include <bayesian_icp/pose_energy.h>
 
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -23,5 +25,11 @@ sampleExact(const PoseEnergy& energy,
             const Options& options,
             const std::function<bool(const Vector6d&)>& has_diverged,
             const ProgressCallback& progress);
+
+/** \brief What calls for caution about a mean pose: a kernel of Tukey's that leaves out
+ * nearly all points there. On that plateau the prior alone rules, and chains agree.
+ * \param[in] mean pose [m, rad]; nothing is said of one that is not finite */
+std::vector<std::string>
+doubtsAbout(const PoseEnergy& energy, const Vector6d& mean);
 
 } // namespace bayesian_icp

@@ -145,8 +145,10 @@ estimate(const Eigen::Matrix3Xd& source_points,
                             prior,
                             options.likelihood.weight(),
                             options.exact.residual);
-    return estimateOf(
+    PosteriorEstimate result = estimateOf(
         sampleExact(energy, initial_pose, options, has_diverged, progress));
+    addDoubts(doubtsAbout(energy, result.summary.mean), result.summary);
+    return result;
   }
   return estimateOf(samplePaper(
       source_points, search, prior, initial_pose, options, has_diverged, progress));

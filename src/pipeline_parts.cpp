@@ -1,5 +1,7 @@
 #include "pipeline_parts.h"
 
+#include <bayesian_icp/measurement.h>
+
 #include <utility>
 
 namespace bayesian_icp {
@@ -23,6 +25,18 @@ estimateOf(ChainSet chain_set)
   return result;
 }
 
+void
+addDoubts(const std::vector<std::string>& doubts, Summary& summary)
+{
+  if (doubts.empty())
+    return;
+  const bool is_lowered = summary.status == Status::Ok;
+  if (is_lowered)
+    summary.status = Status::Doubtful;
+  for (std::size_t i = 0; i < doubts.size(); ++i)
+    summary.message += (i > 0 ? "; " : is_lowered ? ", but " : "; also ") + doubts[i];
+}
+
 PosteriorEstimate
 checkArguments(const Eigen::Matrix3Xd& source_points,
                const Vector6d& initial_pose,
@@ -43,10 +57,7 @@ makePrior(const PriorOptions& options,
           const Vector6d& initial_pose,
           const Eigen::Matrix3Xd& source_points)
 {
-  const Vector6d& mean = options.mean.allFinite() ? options.mean : initial_pose;
-  if (options.frame == PriorFrame::Origin)
-    return Prior(mean, options.variance);
-  return Prior(mean, options.variance, source_points.rowwise().mean());
+  return priorOf(options, initial_pose, source_points.rowwise().mean());
 }
 
 } // namespace bayesian_icp

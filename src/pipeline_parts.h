@@ -7,6 +7,7 @@
 #include <bayesian_icp/prior.h>
 
 #include <string>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -17,6 +18,10 @@ failure(Status status, const std::string& message);
 /** \brief The draws of a run and their summary. */
 PosteriorEstimate
 estimateOf(ChainSet chain_set);
+
+/** \brief Lower an Ok to Doubtful if there are any, and add them to the message. */
+void
+addDoubts(const std::vector<std::string>& doubts, Summary& summary);
 
 /** \brief What is wrong with the options, the guess or the source; the status is NotRun
  * if nothing is. */

@@ -1,3 +1,4 @@
+#include <bayesian_icp/exports.h>
 #include <bayesian_icp/summary.h>
 
 namespace bayesian_icp {
@@ -28,6 +29,26 @@ toString(Status status)
     return "invalid_input";
   }
   return "unknown";
+}
+
+bool
+readStatus(const std::string& name, Status& status)
+{
+  for (const Status candidate : {Status::NotRun,
+                                 Status::Ok,
+                                 Status::Doubtful,
+                                 Status::NotMixed,
+                                 Status::SeveralModes,
+                                 Status::Diverged,
+                                 Status::Cancelled,
+                                 Status::TooFewCorrespondences,
+                                 Status::InvalidOptions,
+                                 Status::InvalidInput})
+    if (name == toString(candidate)) {
+      status = candidate;
+      return true;
+    }
+  return false;
 }
 
 bool

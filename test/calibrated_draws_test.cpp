@@ -128,6 +128,68 @@ TEST(CalibratedDraws, OfLinearScoresAreTheCalibratedGaussian)
   }
 }
 
+/** Squared Mahalanobis distance from the calibrated mean. */
+MatrixXd
+squaredDistances(const ChainSet& set, const CalibratedEstimate& e)
+{
+  MatrixXd sum = whitenedComponent(set, e, 0).cwiseAbs2();
+  for (int k = 1; k < 6; ++k)
+    sum += whitenedComponent(set, e, k).cwiseAbs2();
+  return sum;
+}
+
+TEST(CalibratedDraws, AreStudentsWithTheDegreesOfFreedomOfTheEstimate)
+{
+  constexpr int nu = 5;
+  StandIn problem(StandIn::Options{});
+  problem.estimate.degrees_of_freedom = nu;
+  const ChainSet set = sample(problem);
+  const MatrixXd distances = squaredDistances(set, problem.estimate);
+  // Vector of six normal numbers over the root of an independent chi-square, of unit
+  // covariance.
+  Random random(6, 0);
+  const auto studentDistance = [&] {
+    double scale = 0.0;
+    for (int i = 0; i < nu; ++i)
+      scale += std::pow(random.normal(), 2);
+    return random.normal6().squaredNorm() * (nu - 2) / scale;
+  };
+  const MatrixXd expected =
+      MatrixXd::NullaryExpr(distances.rows(), distances.cols(), studentDistance);
+  EXPECT_LT(largestDifference(distances, expected),
+            criticalDifference(distances, expected));
+  // The test sees the difference from a Gaussian.
+  problem.estimate.degrees_of_freedom = 0;
+  const MatrixXd gaussian = squaredDistances(sample(problem), problem.estimate);
+  EXPECT_GT(largestDifference(gaussian, expected),
+            criticalDifference(gaussian, expected));
+}
+
+TEST(CalibratedDraws, AreStudentsOnlyWhereTheDataHoldThePose)
+{
+  StandIn::Options options;
+  options.is_yaw_free = true;
+  StandIn problem(options);
+  const ProductCoordinates coordinates(problem.estimate);
+  ASSERT_EQ(coordinates.numPriorOnly(), 1);
+  Random random(7, 0);
+  std::vector<Matrix6Xd> chains(2, Matrix6Xd(6, 3));
+  for (Matrix6Xd& chain : chains)
+    chain = Matrix6Xd::NullaryExpr(6, 3, [&] { return random.normal(); });
+  const std::vector<Matrix6Xd> before = chains;
+  scaleAtRandom(coordinates, 4, random, chains);
+  const Vector6d mean = 0.5 * (before[0].rowwise().mean() + before[1].rowwise().mean());
+  for (std::size_t c = 0; c < 2; ++c)
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      EXPECT_EQ(chains[c](0, i), before[c](0, i));
+      // One factor for all of b.
+      const Vector6d old = before[c].col(i) - mean, scaled = chains[c].col(i) - mean;
+      const double factor = scaled[1] / old[1];
+      EXPECT_GT(std::abs(factor - 1.0), 1e-6);
+      EXPECT_LT((scaled - factor * old).tail<5>().norm(), 1e-12 * old.norm());
+    }
+}
+
 TEST(CalibratedDraws, OfTheProductFormAreTheCalibratedGaussian)
 {
   const StandIn problem(StandIn::Options{});

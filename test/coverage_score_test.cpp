@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/fisher_f.hpp>
+
 #include <cmath>
 
 using namespace bayesian_icp;
@@ -250,10 +252,13 @@ TEST(CoverageSummary, CountsFlagsAmongRunsOutside)
   for (CoverageRun& run : runs) {
     run.score.is_valid = true;
     run.score.nees = 1.0;
+    run.score.region = 0.1;
   }
   runs[0].score.nees = 13.0;
+  runs[0].score.region = 0.97;
   runs[0].score.notes = "prior_only=1;flag:misfit";
   runs[1].score.nees = 12.6;
+  runs[1].score.region = 0.9501;
   runs[2].score.notes = "flag:few_patches";
   runs[3].score.notes = "no flag:here";
   runs[4].score.is_valid = false;
@@ -261,7 +266,52 @@ TEST(CoverageSummary, CountsFlagsAmongRunsOutside)
   EXPECT_EQ(summary.num_runs, 5u);
   EXPECT_EQ(summary.num_valid, 4u);
   EXPECT_DOUBLE_EQ(summary.anees, (13.0 + 12.6 + 2.0) / 24.0);
-  EXPECT_DOUBLE_EQ(summary.coverage.back().value, 0.5); // the limit is 12.592
+  EXPECT_DOUBLE_EQ(summary.coverage.back().value, 0.5);
   EXPECT_DOUBLE_EQ(summary.flagged.value, 0.5);
   EXPECT_DOUBLE_EQ(summary.flagged_outside.value, 0.5);
+}
+
+TEST(CoverageRegion, OfAGaussianIsChiSquares)
+{
+  // Tables: the 50, 95 and 99 % points with six degrees of freedom.
+  EXPECT_NEAR(regionOf(5.348), 0.50, 1e-4);
+  EXPECT_NEAR(regionOf(12.592), 0.95, 1e-5);
+  EXPECT_NEAR(regionOf(16.812), 0.99, 1e-5);
+  EXPECT_NEAR(regionOf(12.592, {20, 0}), 0.95, 1e-5); // the prior holds everything
+  EXPECT_TRUE(std::isnan(regionOf(std::nan(""))));
+}
+
+TEST(CoverageRegion, OfStudentsIsFishersF)
+{
+  // d^2 = 6 F (nu - 2) / nu; the midpoint rule of 64 nodes is good to some 1e-4.
+  for (const double distance : {1.0, 4.0, 8.0, 12.592, 20.0})
+    for (const int nu : {5, 20, 60}) {
+      const boost::math::fisher_f fisher(6, nu);
+      EXPECT_NEAR(regionOf(distance, {nu, 6}),
+                  boost::math::cdf(fisher, distance * nu / (6.0 * (nu - 2))),
+                  1e-3);
+    }
+}
+
+TEST(CoverageRegion, OfStudentsInFourDirectionsIsThatOfItsDraws)
+{
+  constexpr int num_draws = 20000, nu = 8;
+  Random random(1, 0);
+  const double distance = 7.0;
+  int num_inside = 0;
+  for (int i = 0; i < num_draws; ++i) {
+    double chi_squared = 0.0;
+    for (int k = 0; k < nu; ++k)
+      chi_squared += std::pow(random.normal(), 2);
+    const Vector6d z = random.normal6();
+    num_inside +=
+        z.head<4>().squaredNorm() * (nu - 2) / chi_squared + z.tail<2>().squaredNorm() <
+                distance
+            ? 1
+            : 0;
+  }
+  const double share = double(num_inside) / num_draws;
+  EXPECT_NEAR(regionOf(distance, {nu, 4}),
+              share,
+              1e-3 + fourErrors(share * (1.0 - share), num_draws));
 }

@@ -44,6 +44,7 @@ load(const std::string& name)
 void
 useSmallSteps(BayesianIcp& icp)
 {
+  icp.setPreset(bayesian_icp::Preset::Paper);
   icp.setStepSize(1e-5);
   icp.setBurnIn(500);
   icp.setNumberOfSamples(4000);

@@ -164,6 +164,25 @@ TEST(Exact, EveryResidualAndKernelFindsTheTruth)
     }
 }
 
+TEST(Exact, AKernelThatLeavesOutAllPointsIsADoubt)
+{
+  Scans scans;
+  Options options = exactOptions();
+  options.exact.residual.kernel = RobustKernel::Tukey;
+  options.exact.residual.kernel_width = 0.05;
+  const auto estimate =
+      estimatePosterior(scans.source, scans.target, scans.truth, options);
+  EXPECT_EQ(estimate.summary.status, Status::Ok) << estimate.summary.message;
+  // A prior that holds the source far off the target, on the plateau of the kernel.
+  Vector6d far = scans.truth;
+  far[2] += 1.0;
+  options.prior.variance = Vector6d::Constant(1e-4);
+  const auto lost = estimatePosterior(scans.source, scans.target, far, options);
+  EXPECT_EQ(lost.summary.status, Status::Doubtful) << lost.summary.message;
+  EXPECT_NE(lost.summary.message.find("kernel of width 0.05 m"), std::string::npos)
+      << lost.summary.message;
+}
+
 TEST(Exact, DrawsAreBitIdenticalForEveryNumberOfThreads)
 {
   const Scans scans;

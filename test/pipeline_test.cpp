@@ -31,16 +31,17 @@ Options
 quickOptions()
 {
   Options options;
+  options.preset = Preset::Paper;
   options.chains.num_draws = 200;
   options.mini_batch.batch_size = 20;
   return options;
 }
 
-TEST(OptionsValidation, DefaultsAreThePaper)
+TEST(OptionsValidation, DefaultsAreCalibratedAndElseThePapers)
 {
   const Options options;
   EXPECT_EQ(options.validate(), "");
-  EXPECT_EQ(options.preset, Preset::Paper);
+  EXPECT_EQ(options.preset, Preset::Calibrated);
   EXPECT_EQ(options.likelihood.effective_points, 6000.0);
   EXPECT_EQ(options.likelihood.measurement_sigma, 1.0);
   EXPECT_EQ(options.prior.variance, Vector6d(Vector6d::Constant(0.125)));
@@ -152,10 +153,10 @@ TEST(Pipeline, NoOverlapWithinTheGateIsAStatus)
   EXPECT_EQ(
       estimatePosterior(problem.source, search, guess, quickOptions()).summary.status,
       Status::TooFewCorrespondences);
-  EXPECT_EQ(
-      estimatePosterior(Eigen::Matrix3Xd(3, 0), search, Vector6d::Zero(), Options())
-          .summary.status,
-      Status::TooFewCorrespondences);
+  EXPECT_EQ(estimatePosterior(
+                Eigen::Matrix3Xd(3, 0), search, Vector6d::Zero(), quickOptions())
+                .summary.status,
+            Status::TooFewCorrespondences);
 }
 
 TEST(Pipeline, AllPointsLeavingTheGateIsReportedAsDivergence)
@@ -267,6 +268,7 @@ TEST(Pipeline, TheMeanOfManyDrawsIsNearTheTruth)
   const Problem problem = someProblem(300);
   const Vector6d start = problem.truth + Vector6d::Constant(0.01);
   Options options;
+  options.preset = Preset::Paper;
   options.sgld.step_size = 1e-5;
   options.sgld.block_decay_factor = 1.0;
   options.mini_batch.batch_size = 40;

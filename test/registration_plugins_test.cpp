@@ -23,7 +23,7 @@ class PluginTest : public ::testing::Test {
 protected:
   PluginTest()
   {
-    useFewSamples(icp);
+    usePaper(icp);
     icp.setInputSource(scans.source);
     icp.setInputTarget(scans.target);
   }
@@ -42,7 +42,7 @@ TEST_F(PluginTest, IndicesSelectThePointsOfTheEstimate)
   Cloud::Ptr subset(new Cloud);
   copyPointCloud(*scans.source, *indices, *subset);
   BayesianIcp of_subset;
-  useFewSamples(of_subset);
+  usePaper(of_subset);
   of_subset.setInputSource(subset);
   of_subset.setInputTarget(scans.target);
   Cloud subset_output;
@@ -61,7 +61,7 @@ TEST_F(PluginTest, CorrespondencesOfASubsetReferToTheWholeSource)
   struct Exposed : BayesianIcp {
     using BayesianIcp::correspondences_;
   } exposed;
-  useFewSamples(exposed);
+  usePaper(exposed);
   exposed.setInputSource(scans.source);
   exposed.setInputTarget(scans.target);
   IndicesPtr indices(new Indices{10, 20, 30, 40, 50, 60});
@@ -94,7 +94,7 @@ TEST_F(PluginTest, IndicesOfTheEstimationApplyToIcpAndToEveryMiniBatch)
   reference.align(output);
 
   BayesianIcp of_indices;
-  useFewSamples(of_indices);
+  usePaper(of_indices);
   of_indices.setInputSource(scans.source);
   of_indices.setInputTarget(scans.target);
   of_indices.setIndices(indices);
@@ -192,7 +192,7 @@ TEST_F(PluginTest, ARejectorThatRejectsNothingChangesNothing)
       new registration::CorrespondenceRejectorDistance);
   rejector->setMaximumDistance(1e3f);
   BayesianIcp plain;
-  useFewSamples(plain);
+  usePaper(plain);
   plain.setInputSource(scans.source);
   plain.setInputTarget(scans.target);
   plain.align(output);
@@ -209,7 +209,7 @@ TEST_F(PluginTest, ReciprocityIsThatOfTheWholeSourceAlsoWithRejectors)
       new registration::CorrespondenceRejectorDistance);
   rejector->setMaximumDistance(1e3f);
   BayesianIcp plain;
-  useFewSamples(plain);
+  usePaper(plain);
   plain.setUseReciprocalCorrespondences(true);
   plain.setInputSource(scans.source);
   plain.setInputTarget(scans.target);
@@ -247,7 +247,7 @@ TEST_F(PluginTest, ADistanceRejectorActsAsTheGate)
       new registration::CorrespondenceRejectorDistance);
   rejector->setMaximumDistance(0.05f);
   BayesianIcp gated;
-  useFewSamples(gated);
+  usePaper(gated);
   gated.setMaxCorrespondenceDistance(0.05);
   gated.setInputSource(scans.source);
   gated.setInputTarget(scans.target);
@@ -297,7 +297,7 @@ TEST(Plugins, RejectorsThatNeedNormalsGetThoseOfTheMovedMiniBatch)
   Rejector::Ptr rejector(new Rejector);
   rejector->setThreshold(0.5);
   BayesianIterativeClosestPoint<PointNormal, PointNormal> icp;
-  useFewSamples(icp);
+  usePaper(icp);
   icp.addCorrespondenceRejector(rejector);
   icp.setInputSource(scans.source);
   icp.setInputTarget(scans.target);

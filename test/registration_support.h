@@ -68,6 +68,15 @@ useFewSamples(Registration& registration)
   registration.setMiniBatchSize(20);
 }
 
+/** Algorithm 1, which takes its correspondences from what PCL was given. */
+template <typename Registration>
+void
+usePaper(Registration& registration)
+{
+  useFewSamples(registration);
+  registration.setPreset(bayesian_icp::Preset::Paper);
+}
+
 /** Silences PCL's messages for the lifetime of this object (the test provokes them). */
 class QuietConsole {
 public:

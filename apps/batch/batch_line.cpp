@@ -11,20 +11,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string
-textOf(const ordered_json& line)
-{
-  // Names of files need not be UTF-8.
-  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
-ordered_json
-headOf(const BatchPair& pair, const std::string& status, std::string message)
-{
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  return {{"name", pair.name}, {"status", status}, {"message", message}};
-}
-
 ordered_json
 covariancesOf(const Summary& summary)
 {
@@ -36,49 +22,50 @@ covariancesOf(const Summary& summary)
 }
 
 void
-addTail(const BatchPair& pair, double seconds, ordered_json time, ordered_json& line)
-{
-  time["total_s"] = seconds;
-  line["time"] = std::move(time);
-  line["seed"] = pair.settings.options.chains.seed;
-  line["settings_id"] = pair.settings_id;
-}
-
-} // namespace
-
-std::string
-batchLine(const BatchPair& pair, const Run& run, double seconds)
+addPosterior(const Run& run, ordered_json& line)
 {
   const RegistrationResult& result = run.result;
-  const Summary& summary = result.summary;
-  ordered_json line = headOf(pair, toString(summary.status), summary.message);
-  line["mean"] = meanJson(summary.mean);
-  line["covariances"] = covariancesOf(summary);
+  line["mean"] = meanJson(result.summary.mean);
+  line["covariances"] = covariancesOf(result.summary);
   line["final_transformation"] = finalTransformationJson(result);
   line["icp"] = icpJson(result);
-  line["draws"] = summary.num_draws;
+  line["draws"] = result.summary.num_draws;
   line["source"] = cloudJson(run.source);
   line["target"] = cloudJson(run.target);
-  addTail(pair,
-          seconds,
-          {{"reading_s", run.reading_seconds},
-           {"icp_s", result.icp_seconds},
-           {"sampling_s", result.sampling_seconds}},
-          line);
-  return textOf(line);
+  line["time"] = {{"reading_s", run.reading_seconds},
+                  {"icp_s", result.icp_seconds},
+                  {"sampling_s", result.sampling_seconds}};
 }
 
-std::string
-batchErrorLine(const BatchPair& pair, const std::string& message, double seconds)
+void
+addNothing(const BatchPair& pair, ordered_json& line)
 {
-  ordered_json line = headOf(pair, error_status, message);
   for (const char* const key : {"mean", "covariances", "final_transformation", "icp"})
     line[key] = nullptr;
   line["draws"] = 0;
   line["source"] = {{"file", pair.source_file}};
   line["target"] = {{"file", pair.target_file}};
-  addTail(pair, seconds, ordered_json::object(), line);
-  return textOf(line);
+  line["time"] = ordered_json::object();
+}
+
+} // namespace
+
+std::string
+batchLine(const BatchResult& result)
+{
+  std::string message = result.message;
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  ordered_json line = {
+      {"name", result.pair.name}, {"status", result.status}, {"message", message}};
+  if (result.run != nullptr)
+    addPosterior(*result.run, line);
+  else
+    addNothing(result.pair, line);
+  line["time"]["total_s"] = result.seconds;
+  line["seed"] = result.pair.settings.options.chains.seed;
+  line["settings_id"] = result.pair.settings_id;
+  // Names of files need not be UTF-8.
+  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
 FinishedPair

@@ -3,25 +3,17 @@
  */
 #pragma once
 
-#include "batch/manifest.h"
-#include "register/run.h"
+#include "batch/batch_run.h"
 
 #include <string>
 
 namespace bayesian_icp::app {
 
-/** \brief The status of a pair that could not be registered. */
-constexpr const char* error_status = "error";
-
-/** \brief The line of a pair that has been registered, without a line break. The parts
- * are those of posterior.json; of the covariances, `parameters` and `right_se3`.
- * \param[in] seconds from reading the clouds to the posterior */
+/** \brief The line of a pair, without a line break. The parts are those of
+ * posterior.json; of the covariances, `parameters` and `right_se3`. A pair that could
+ * not be registered has status "error" and the same keys. */
 std::string
-batchLine(const BatchPair& pair, const Run& run, double seconds);
-
-/** \brief The line of a pair that could not be registered, with the same keys. */
-std::string
-batchErrorLine(const BatchPair& pair, const std::string& message, double seconds);
+batchLine(const BatchResult& result);
 
 /** \brief What a batch that goes on reads of a line. */
 struct FinishedPair {

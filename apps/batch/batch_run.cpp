@@ -1,7 +1,6 @@
 #include "batch/batch_run.h"
 
-#include "batch/batch_line.h"
-#include "register/guess.h"
+#include "io/motion.h"
 #include "register/interrupt.h"
 #include "register/output_files.h"
 
@@ -72,7 +71,7 @@ private:
   {
     Settings settings = pair.settings;
     if (!pair.guess_file.empty())
-      settings.guess = readMatrixFile(pair.guess_file);
+      settings.guess = io::readMotion("guess", pair.guess_file);
     Run run = readRun(pair.source_file, pair.target_file, settings);
     registerClouds([this](const Progress&) { return !isStopped(); }, run);
     return run;
@@ -98,7 +97,7 @@ private:
       complaint = error.what();
     }
     if (!run)
-      give({pair, batchErrorLine(pair, complaint, seconds()), error_status, seconds()});
+      give({pair, nullptr, error_status, complaint, seconds()});
     else if (run->result.summary.status != Status::Cancelled)
       give(pair, *run, seconds());
   }
@@ -113,7 +112,7 @@ private:
       addPosteriorFiles(run, folder);
       folder.commit();
     }
-    give({pair, batchLine(pair, run, seconds), toString(summary.status), seconds});
+    give({pair, &run, toString(summary.status), summary.message, seconds});
   }
 
   void
@@ -146,6 +145,7 @@ runBatch(const std::vector<BatchPair>& pairs,
       static_cast<int>(std::min(pairs.size(), static_cast<std::size_t>(num_threads)));
   Batch batch(pairs, options, take);
   std::vector<std::thread> workers;
+  workers.reserve(static_cast<std::size_t>(num_workers));
   for (int i = 0; i < num_workers; ++i)
     workers.emplace_back([&batch, i, num_threads, num_workers] {
       omp_set_num_threads(num_threads / num_workers +

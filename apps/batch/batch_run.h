@@ -4,6 +4,7 @@
 #pragma once
 
 #include "batch/manifest.h"
+#include "register/run.h"
 
 #include <functional>
 #include <string>
@@ -20,13 +21,18 @@ struct BatchRunOptions {
   std::string output_folder;
 };
 
+/** \brief The status of a pair that could not be registered. */
+constexpr const char* error_status = "error";
+
 /** \brief A pair that has ended. */
 struct BatchResult {
   const BatchPair& pair;
-  /** Line without line break, see batchLine(). */
-  std::string line;
-  /** Short name of the Status, or error_status. */
+  /** Null if it could not be registered. */
+  const Run* run;
+  /** Short name of the Status, or error_status; and in words. */
   std::string status;
+  std::string message;
+  /** From reading the clouds to the posterior. */
   double seconds;
 };
 

@@ -44,7 +44,7 @@ textAt(const json& object, const char* key)
 std::string
 nameOf(const json& entry)
 {
-  const std::string name = textAt(entry, "name");
+  std::string name = textAt(entry, "name");
   bool is_good = name.size() <= max_name_size && name.front() != '.';
   for (const char character : name)
     is_good &= character != '/' && static_cast<unsigned char>(character) >= 0x20;

@@ -17,6 +17,10 @@ public:
   Ranks&
   operator=(const Ranks&) = delete;
 
+  /** \brief Whether the program has been built with MPI. */
+  static bool
+  hasMpi();
+
   /** \brief Number of this process, from 0 on. */
   int
   rank() const

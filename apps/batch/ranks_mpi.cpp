@@ -1,5 +1,8 @@
 #include "batch/ranks.h"
 
+// The C functions only.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
 
 #include <chrono>
@@ -48,6 +51,12 @@ Ranks::~Ranks()
   MPI_Initialized(&is_initialized);
   if (is_initialized != 0)
     MPI_Finalize();
+}
+
+bool
+Ranks::hasMpi()
+{
+  return true;
 }
 
 std::string

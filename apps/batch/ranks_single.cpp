@@ -6,6 +6,12 @@ Ranks::Ranks() = default;
 
 Ranks::~Ranks() = default;
 
+bool
+Ranks::hasMpi()
+{
+  return false;
+}
+
 std::string
 Ranks::broadcast(const std::string& text) const
 {

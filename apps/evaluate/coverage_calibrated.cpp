@@ -71,6 +71,8 @@ resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
   result.mean = movedBy(estimate.mean, estimate.centre, estimate.mode);
   result.covariance = estimate.covariance;
   result.centre = estimate.centre;
+  result.shape = {estimate.degrees_of_freedom,
+                  static_cast<int>((estimate.keep.array() > 0.0).count())};
   result.notes =
       notesOf(dataReportOf(estimate,
                            static_cast<std::size_t>(scorer.sourcePoints().cols()),

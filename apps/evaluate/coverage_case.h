@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "coverage_region.h"
+
 #include <bayesian_icp/pose.h>
 
 #include <Eigen/Geometry>
@@ -42,6 +44,8 @@ struct MethodResult {
   /** Of left twists (v, w) about \p centre, target frame [m, rad]. */
   Matrix6d covariance = Matrix6d::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  /** What the posterior is about its mean, if not a Gaussian. */
+  RegionShape shape;
   /** Draws, one pose a row, of methods that have any; they then take the place of the
    * Gaussian in every score. */
   PoseMatrix draws;

@@ -10,12 +10,12 @@ namespace bayesian_icp::evaluate {
 namespace {
 
 constexpr char header[] =
-    "scene,condition,seed,method,valid,nees,log_score,energy_score,"
+    "scene,condition,seed,method,valid,nees,region,log_score,energy_score,"
     "pit_vx,pit_vy,pit_vz,pit_wx,pit_wy,pit_wz,z_vx,z_vy,z_vz,z_wx,z_wy,z_wz,"
     "relative_sd_vx,relative_sd_vy,relative_sd_vz,"
     "relative_sd_wx,relative_sd_wy,relative_sd_wz,"
     "translation_error_m,rotation_error_rad,seconds,queries,notes";
-constexpr std::size_t num_columns = 31;
+constexpr std::size_t num_columns = 32;
 
 /** Numbers of a score in the order of the columns from nees to queries. */
 template <typename ScoreType, typename Visit>
@@ -23,6 +23,7 @@ void
 forEachNumber(ScoreType& score, const Visit& visit)
 {
   visit(score.nees);
+  visit(score.region);
   visit(score.log_score);
   visit(score.energy_score);
   for (auto* vector : {&score.pit, &score.z, &score.relative_sd})

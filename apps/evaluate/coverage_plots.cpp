@@ -36,7 +36,7 @@ coverageData(const Runs& runs)
 {
   std::vector<double> regions;
   for (const CoverageRun& run : runs)
-    regions.push_back(regionOf(run.score.nees));
+    regions.push_back(run.score.region);
   std::sort(regions.begin(), regions.end());
   std::string lines = "0 0\n";
   for (std::size_t i = 0; i < regions.size(); ++i)

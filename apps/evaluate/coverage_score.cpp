@@ -135,11 +135,13 @@ void
 addGaussianScores(const CoverageCase& problem,
                   const TwistPosterior& posterior,
                   const Matrix6d& factor,
+                  const RegionShape& shape,
                   CoverageScore& score)
 {
   const Vector6d deviation = posterior.truth - posterior.moments.mean;
   const Vector6d sd = posterior.moments.covariance.diagonal().cwiseSqrt();
   score.nees = factor.triangularView<Eigen::Lower>().solve(deviation).squaredNorm();
+  score.region = regionOf(score.nees, shape);
   score.relative_sd = sd.cwiseQuotient(problem.prior_sd);
   score.z = deviation.cwiseQuotient(sd);
   const double log_determinant =
@@ -195,7 +197,7 @@ coverageScoreOf(const CoverageCase& problem, const MethodResult& result)
     return score;
   }
   score.is_valid = true;
-  addGaussianScores(problem, posterior, *factor, score);
+  addGaussianScores(problem, posterior, *factor, result.shape, score);
   score.pit = pitOf(posterior);
   const auto scale = problem.prior_sd.cwiseInverse().asDiagonal();
   score.energy_score = energyScore(

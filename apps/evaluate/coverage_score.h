@@ -25,6 +25,9 @@ struct CoverageScore {
   /** Squared Mahalanobis distance of the truth to the mean; chi-square with 6 degrees
    * of freedom if the posterior is right. */
   double nees = std::numeric_limits<double>::quiet_NaN();
+  /** Probability of the smallest region about the mean that has the truth, regionOf();
+   * uniform if the posterior is right. */
+  double region = std::numeric_limits<double>::quiet_NaN();
   /** log density of the Gaussian of the posterior's moments at the truth, in
    * coordinates in units of the prior's standard deviations [nats]. */
   double log_score = std::numeric_limits<double>::quiet_NaN();

@@ -2,7 +2,6 @@
 
 #include "draw_statistics.h"
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
@@ -60,7 +59,7 @@ outside(const Scores& scores, double level)
 {
   Scores found;
   for (const CoverageScore& score : scores)
-    if (regionOf(score.nees) > level)
+    if (score.region > level)
       found.push_back(score);
   return found;
 }
@@ -81,12 +80,6 @@ shareOf(std::size_t num_hits, std::size_t num_trials)
       std::sqrt(share * (1.0 - share) / n + z * z / (4.0 * n * n));
   return {
       share, std::max(0.0, centre - half_width), std::min(1.0, centre + half_width)};
-}
-
-double
-regionOf(double nees)
-{
-  return boost::math::cdf(boost::math::chi_squared(6.0), nees);
 }
 
 CoverageSummary

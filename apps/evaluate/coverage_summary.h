@@ -24,11 +24,6 @@ struct Share {
 Share
 shareOf(std::size_t num_hits, std::size_t num_trials);
 
-/** \brief Probability that a chi-square variable with 6 degrees of freedom is smaller:
- * of the smallest region about the mean of a Gaussian posterior that has the truth. */
-double
-regionOf(double nees);
-
 /** \brief Shares, means and medians are over the valid runs; NaN without any. */
 struct CoverageSummary {
   std::size_t num_runs = 0;

@@ -22,21 +22,6 @@ namespace {
 
 using Blob = pcl::PCLPointCloud2;
 
-enum class CloudFormat { Pcd, Ply };
-
-CloudFormat
-formatOf(const std::string& name)
-{
-  std::string extension = std::filesystem::path(name).extension().string();
-  for (char& letter : extension)
-    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  if (extension == ".pcd")
-    return CloudFormat::Pcd;
-  if (extension == ".ply")
-    return CloudFormat::Ply;
-  throw FileError(name, "is neither .pcd nor .ply");
-}
-
 /** PCL's own reader. */
 void
 readBlob(const std::string& name, CloudFormat format, Blob& blob, CloudFile& cloud)
@@ -77,7 +62,52 @@ copyPoints(const Blob& blob, const FieldTriple& xyz, CloudFile& cloud)
   }
 }
 
+Eigen::Quaternionf
+orientationOf(const CloudFile& cloud)
+{
+  const Eigen::Vector4f& q = cloud.sensor_orientation;
+  return {q[0], q[1], q[2], q[3]};
+}
+
+/** PCL does not notice a full disk. */
+void
+requireComplete(CloudFormat format, const std::string& path)
+{
+  try {
+    InputFile file = openInput(path);
+    format == CloudFormat::Pcd ? checkPcd(file) : checkPly(file);
+  }
+  catch (const FileError&) {
+    throw std::runtime_error("only a part of it could be written");
+  }
+}
+
+void
+moveViewpoint(const Eigen::Affine3d& move, CloudFile& cloud)
+{
+  const Eigen::Vector3d origin = cloud.sensor_origin.head<3>().cast<double>();
+  cloud.sensor_origin.head<3>() = (move * origin).cast<float>();
+  const Eigen::Quaterniond turned =
+      (Eigen::Quaterniond(move.linear()) * orientationOf(cloud).cast<double>())
+          .normalized();
+  cloud.sensor_orientation =
+      Eigen::Vector4d(turned.w(), turned.x(), turned.y(), turned.z()).cast<float>();
+}
+
 } // namespace
+
+CloudFormat
+formatOf(const std::string& name)
+{
+  std::string extension = std::filesystem::path(name).extension().string();
+  for (char& letter : extension)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  if (extension == ".pcd")
+    return CloudFormat::Pcd;
+  if (extension == ".ply")
+    return CloudFormat::Ply;
+  throw FileError(name, "is neither .pcd nor .ply");
+}
 
 void
 silencePcl()
@@ -114,32 +144,57 @@ readCloud(const std::string& name)
   return cloud;
 }
 
+CloudFile
+movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion)
+{
+  const Eigen::Affine3d move(motion);
+  CloudFile result = cloud;
+  const auto blob = std::make_shared<Blob>(*cloud.blob);
+  const FieldTriple xyz = findFields(*blob, {"x", "y", "z"});
+  const FieldTriple normal = findFields(*blob, {"normal_x", "normal_y", "normal_z"});
+  const std::size_t num_points = std::size_t(blob->width) * blob->height;
+  for (std::size_t i = 0; i < num_points; ++i) {
+    const Eigen::Vector3d point = xyz.get(*blob, i);
+    if (point.allFinite())
+      xyz.set(*blob, i, move * point);
+    if (!normal.isComplete())
+      continue;
+    const Eigen::Vector3d direction = normal.get(*blob, i);
+    if (direction.allFinite())
+      normal.set(*blob, i, move.linear() * direction);
+  }
+  result.num_finite = 0;
+  result.largest_coordinate = 0.0;
+  copyPoints(*blob, xyz, result);
+  moveViewpoint(move, result);
+  result.blob = blob;
+  return result;
+}
+
 void
 writeAligned(const CloudFile& source,
              const CloudFile& target,
              const Eigen::Matrix4d& T_target_source,
              std::ostream& stream)
 {
-  Blob aligned = *source.blob;
-  const Eigen::Affine3d motion(T_target_source);
-  const FieldTriple xyz = findFields(aligned, {"x", "y", "z"});
-  const FieldTriple normal = findFields(aligned, {"normal_x", "normal_y", "normal_z"});
-  const std::size_t num_points = std::size_t(aligned.width) * aligned.height;
-  for (std::size_t i = 0; i < num_points; ++i) {
-    const Eigen::Vector3d point = xyz.get(aligned, i);
-    if (point.allFinite())
-      xyz.set(aligned, i, motion * point);
-    if (!normal.isComplete())
-      continue;
-    const Eigen::Vector3d direction = normal.get(aligned, i);
-    if (direction.allFinite())
-      normal.set(aligned, i, motion.linear() * direction);
-  }
-  const Eigen::Vector4f& q = target.sensor_orientation;
-  const int result = pcl::PCDWriter().writeBinaryCompressed(
-      stream, aligned, target.sensor_origin, {q[0], q[1], q[2], q[3]});
-  if (result < 0)
+  const CloudFile aligned = movedCloud(source, T_target_source);
+  if (pcl::PCDWriter().writeBinaryCompressed(
+          stream, *aligned.blob, target.sensor_origin, orientationOf(target)) < 0)
     throw std::runtime_error("PCL cannot write the aligned cloud");
+}
+
+void
+writeCloud(const CloudFile& cloud, CloudFormat format, const std::string& path)
+{
+  const Eigen::Quaternionf orientation = orientationOf(cloud);
+  const int result = format == CloudFormat::Pcd
+                         ? pcl::PCDWriter().writeBinaryCompressed(
+                               path, *cloud.blob, cloud.sensor_origin, orientation)
+                         : pcl::PLYWriter().writeBinary(
+                               path, *cloud.blob, cloud.sensor_origin, orientation);
+  if (result < 0)
+    throw std::runtime_error("PCL cannot write it");
+  requireComplete(format, path);
 }
 
 } // namespace bayesian_icp::io

@@ -40,16 +40,32 @@ struct CloudFile {
 CloudFile
 readCloud(const std::string& name);
 
+/** \brief The same cloud in another frame: x, y, z are moved and normal_x, normal_y,
+ * normal_z turned where they are finite, and the viewpoint with them. All other fields
+ * and the order of the points are kept. */
+CloudFile
+movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion);
+
 /** \brief Write \p source, moved into the frame of \p target, as a compressed PCD.
  *
- * All fields and the order of the source are kept; x, y, z are moved and normal_x,
- * normal_y, normal_z turned where they are finite. The viewpoint is the target's, so
- * that viewers, which apply it, put both clouds in one place. \throws std::exception if
- * it cannot be encoded */
+ * As movedCloud(), but the viewpoint is the target's, so that viewers, which apply it,
+ * put both clouds in one place. \throws std::exception if it cannot be encoded */
 void
 writeAligned(const CloudFile& source,
              const CloudFile& target,
              const Eigen::Matrix4d& T_target_source,
              std::ostream& stream);
+
+enum class CloudFormat { Pcd, Ply };
+
+/** \brief What the name of a file ends in, in capitals or not.
+ * \throws FileError if it is neither .pcd nor .ply */
+CloudFormat
+formatOf(const std::string& name);
+
+/** \brief Write a cloud as a compressed PCD or a binary PLY to the file \p path.
+ * \throws std::exception if it cannot be encoded or written */
+void
+writeCloud(const CloudFile& cloud, CloudFormat format, const std::string& path);
 
 } // namespace bayesian_icp::io

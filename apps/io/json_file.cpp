@@ -35,8 +35,8 @@ readJson(const std::string& name, std::uint64_t max_size)
   const auto limit_depth = [&name](int depth, json::parse_event_t, const json&) {
     if (depth > max_json_depth)
       throw FileError(name,
-                      "its JSON is nested more than " + std::to_string(max_json_depth) +
-                          " levels deep");
+                      "broken JSON: nested more than " +
+                          std::to_string(max_json_depth) + " levels deep");
     return true;
   };
   try {

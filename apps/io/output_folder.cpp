@@ -60,24 +60,36 @@ OutputFolder::~OutputFolder()
 }
 
 void
-OutputFolder::add(const std::string& name,
-                  const std::function<void(std::ostream&)>& write)
+OutputFolder::addByName(const std::string& name,
+                        const std::function<void(const std::string& path)>& write)
 {
   const std::string path = (fs::path(folder_) / name).string();
   if (fs::is_directory(path))
     throw FileError(path, "is a directory");
   files_.push_back({makeTemporaryFile(path), path});
-  errno = 0;
-  std::ofstream stream(files_.back().temporary_name, std::ios::binary);
   try {
-    write(stream);
+    write(files_.back().temporary_name);
+  }
+  catch (const FileError&) {
+    throw;
   }
   catch (const std::exception& error) {
     throw FileError(path, std::string("cannot be written: ") + error.what());
   }
-  stream.close();
-  if (!stream)
-    throw FileError(path, reasonOf(errno));
+}
+
+void
+OutputFolder::add(const std::string& name,
+                  const std::function<void(std::ostream&)>& write)
+{
+  addByName(name, [&](const std::string& path) {
+    errno = 0;
+    std::ofstream stream(path, std::ios::binary);
+    write(stream);
+    stream.close();
+    if (!stream)
+      throw FileError((fs::path(folder_) / name).string(), reasonOf(errno));
+  });
 }
 
 void

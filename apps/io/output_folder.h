@@ -27,6 +27,12 @@ public:
   void
   add(const std::string& name, const std::function<void(std::ostream&)>& write);
 
+  /** \brief Let \p write fill the file of the name that it is given.
+   * \throws FileError if that fails */
+  void
+  addByName(const std::string& name,
+            const std::function<void(const std::string& path)>& write);
+
   /** \brief Rename what was added, replacing older files of these names.
    * \throws FileError if that fails */
   void

@@ -133,8 +133,6 @@ refuseWhatIsMissing(const json& document)
   if (name != "preconditioned_sgld")
     throw io::UsageError("the method '" + name +
                          "' is not available in this version; preconditioned_sgld is");
-  if (flagOf("normalize-cloud", document.value("normalize-cloud", json(false))))
-    throw io::UsageError("normalize-cloud is not available in this version");
 }
 
 void
@@ -186,6 +184,8 @@ settingsOfAuthorsConfig(const json& document, std::string& note)
   settings.options.prior.variance.setConstant(numberAt(document, "prior", "variance"));
   settings.max_distance = numberAt(document, "icp", "max-matching-distance");
   settings.is_one_to_one = flagOf("icp.filter", at(document, "icp", "filter"));
+  settings.is_normalized = settings.are_lengths_scaled =
+      flagOf("normalize-cloud", document.value("normalize-cloud", json(false)));
   settings.is_step_size_times_points = true;
   settings.is_effective_points_source_size = true;
   takeSampler(document, settings.options);

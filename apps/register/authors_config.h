@@ -6,8 +6,9 @@
  * step-size over the number of source points; N the number of source points; noise
  * variance adjust_noise alpha A; beta = decay-rate; one prior variance for all
  * coordinates; mini-batches from a shuffled source; icp.max-matching-distance as the
- * gate; icp.filter rejects repeated matches of one target point. Its convergence limits
- * concern its optimisers only.
+ * gate; normalize-cloud scales both clouds, and all lengths of the file are then in
+ * scaled units; icp.filter rejects repeated matches of one target point. Its
+ * convergence limits concern its optimisers only.
  */
 #pragma once
 

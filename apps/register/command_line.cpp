@@ -1,6 +1,8 @@
 #include "register/command_line.h"
 
 #include "io/errors.h"
+#include "io/numbers.h"
+#include "register/export_options.h"
 #include "register/option_descriptions.h"
 #include "register/settings_options.h"
 
@@ -27,6 +29,19 @@ takeClouds(const po::variables_map& given, Request& request)
   request.target_file = clouds[1];
 }
 
+void
+takeExports(const po::variables_map& given, Request& request)
+{
+  request.exports = readExportOptions(given);
+  if (request.exports.formats.empty() || !request.output_folder.empty())
+    return;
+  if (request.exports.formats.size() > 1)
+    throw io::UsageError("--export: several formats need a folder, --output");
+  if (request.is_json || request.is_quiet)
+    throw io::UsageError(
+        "--export without --output prints, which excludes --json and --quiet");
+}
+
 } // namespace
 
 Request
@@ -46,6 +61,7 @@ parseCommandLine(int argc, const char* const* argv)
   request.is_quiet = given.count("quiet") > 0;
   if (request.is_json && request.is_quiet)
     throw io::UsageError("--json and --quiet exclude each other");
+  takeExports(given, request);
   request.settings = settingsFrom(given, Settings(), request.note);
   return request;
 }

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "register/export_files.h"
 #include "register/settings.h"
 
 #include <string>
@@ -17,6 +18,8 @@ struct Request {
   std::string target_file;
   /** Empty if no files are wanted. */
   std::string output_folder;
+  /** Without formats if nothing is to be exported. */
+  ExportRequest exports;
   bool is_json = false;
   bool is_quiet = false;
   Settings settings;

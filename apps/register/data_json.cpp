@@ -44,6 +44,7 @@ dataJson(const DataReport& report)
       {"noise_scale_m", jsonOf(report.noise_scale)},
       {"noise_scale_in_units_of_the_target", jsonOf(report.residual_scale)},
       {"effective_patches", jsonOf(report.effective_patches)},
+      {"degrees_of_freedom", report.degrees_of_freedom},
       {"correlation_factor", jsonOf(report.correlation_factor)},
       {"active_fraction", jsonOf(report.active_fraction)},
       {"basin_distance_in_standard_deviations", jsonOf(report.basin_distance)},

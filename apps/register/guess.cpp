@@ -1,73 +1,13 @@
 #include "register/guess.h"
 
-#include "io/errors.h"
-#include "io/input_file.h"
-#include "io/numbers.h"
-
-#include <bayesian_icp/pose.h>
-
-#include <Eigen/LU>
-
-#include <filesystem>
+#include "io/motion.h"
 
 namespace bayesian_icp::app {
-
-namespace {
-
-/** Matrices printed with four digits are still rotations. */
-constexpr double rotation_tolerance = 1e-3;
-constexpr std::uint64_t max_matrix_file_size = 1 << 16;
-
-} // namespace
-
-Eigen::Matrix4d
-readMatrixFile(const std::string& file)
-{
-  const std::string text = io::readText(file, max_matrix_file_size);
-  const auto items = io::words(text, " \t\r\n,;");
-  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix;
-  if (items.size() != 16)
-    throw io::FileError(file,
-                        "has " + std::to_string(items.size()) +
-                            " numbers in place of the 16 of a 4x4 matrix");
-  for (std::size_t i = 0; i < 16; ++i)
-    if (!io::readNumber(items[i], matrix.data()[i]))
-      throw io::FileError(file, io::quoted(items[i]) + " is not a number");
-  const std::string complaint = complaintAboutMotion(matrix);
-  if (!complaint.empty())
-    throw io::FileError(file, complaint);
-  return matrix;
-}
-
-std::string
-complaintAboutMotion(const Eigen::Matrix4d& matrix)
-{
-  if (!matrix.allFinite())
-    return "the matrix is not finite";
-  if (matrix.row(3) != Eigen::RowVector4d::UnitW())
-    return "the last row of the matrix is not 0 0 0 1";
-  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  if (!(R * R.transpose()).isIdentity(rotation_tolerance) || R.determinant() < 0.0)
-    return "the upper left of the matrix is not a rotation";
-  return "";
-}
 
 Eigen::Matrix4d
 readGuess(const std::string& text)
 {
-  const auto items = io::splitAt(',', text);
-  Vector6d pose;
-  bool is_pose = items.size() == 6;
-  for (std::size_t k = 0; is_pose && k < 6; ++k)
-    is_pose = io::readNumber(items[k], pose[static_cast<Eigen::Index>(k)]);
-  if (is_pose)
-    return matrixOf(pose);
-  if (items.size() > 1 && !std::filesystem::exists(text))
-    throw io::UsageError(
-        "--guess: " + io::quoted(text) +
-        " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad] nor "
-        "a file");
-  return readMatrixFile(text);
+  return io::readMotion("guess", text);
 }
 
 } // namespace bayesian_icp::app

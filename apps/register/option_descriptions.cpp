@@ -3,6 +3,7 @@
 #include "io/numbers.h"
 #include "register/choices.h"
 #include "register/command_line.h"
+#include "register/export_options.h"
 #include "register/setting_fields.h"
 
 #include <boost/program_options/value_semantic.hpp>
@@ -123,7 +124,9 @@ po::options_description
 describeOptions()
 {
   po::options_description all;
-  all.add(describeGeneral()).add(describeSettings(Settings()));
+  all.add(describeGeneral())
+      .add(describeExportOptions())
+      .add(describeSettings(Settings()));
   return all;
 }
 
@@ -172,7 +175,9 @@ helpText()
          "  0    the posterior is there and can be trusted\n"
          "  1    the registration failed, the chains have not mixed, they are in "
          "several\n"
-         "       modes, or the clouds call for doubt (preset calibrated)\n"
+         "       modes, the clouds call for doubt (preset calibrated), or an export is "
+         "not\n"
+         "       possible\n"
          "  2    wrong usage\n"
          "  3    a file cannot be read, used or written\n"
          "  130  interrupted (Ctrl-C); what was drawn until then is written\n"

@@ -159,8 +159,8 @@ posteriorOf(const RegistrationResult& result)
           {"modes", modesJson(result.summary.modes)},
           {"modes_note",
            "weights are estimates, good to a factor of a few; mean and covariances of "
-           "the whole posterior mix modes in proportion to their chains; presets paper "
-           "and calibrated look for no modes"},
+           "the whole posterior mix modes in proportion to their chains; preset paper "
+           "looks for no modes"},
           {"chains", chainsJson(result.chains)}};
 }
 

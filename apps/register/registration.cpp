@@ -1,5 +1,7 @@
 #include "register/registration.h"
 
+#include "register/normalization.h"
+
 #include <bayesian_icp/pose.h>
 
 #include <pcl/registration/bayesian_icp.h>
@@ -105,6 +107,8 @@ registerClouds(const Eigen::Matrix3Xf& source,
                const ProgressCallback& progress,
                const IcpCallback& icp_progress)
 {
+  if (isNormalized(settings))
+    return registerNormalized(source, target, settings, progress);
   Icp icp;
   configure(settings, icp);
   icp.setInputSource(cloudOf(source));

@@ -1,5 +1,6 @@
 #include "register/run.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace bayesian_icp::app {
@@ -16,7 +17,9 @@ readRun(const std::string& source_file,
   run.target = io::readCloud(target_file);
   run.reading_seconds = std::chrono::duration<double>(Clock::now() - start).count();
   run.settings = settings;
-  run.settings.scaleToSource(run.source.num_finite);
+  run.settings.scaleToClouds(
+      run.source.num_finite,
+      std::max(run.source.largest_coordinate, run.target.largest_coordinate));
   return run;
 }
 

@@ -59,6 +59,15 @@ visitRegistration(SettingsT& settings, Visitor& visit)
         settings.is_one_to_one);
   visit(
       {group,
+       "normalize_cloud",
+       "normalize-cloud",
+       "",
+       "divide both clouds by their largest |x|, |y|, |z| before they are registered, "
+       "with preset paper only: --sigma (1), --step-size and --lambda-rms are then in "
+       "units of that length, everything else and all results in metres"},
+      settings.is_normalized);
+  visit(
+      {group,
        "use_mean",
        "mean",
        "",

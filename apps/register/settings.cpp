@@ -62,8 +62,21 @@ lacksNormals(const Settings& settings)
 } // namespace
 
 void
-Settings::scaleToSource(std::size_t num_points)
+Settings::scaleLengths(double factor)
 {
+  guess.topRightCorner<3, 1>() *= factor;
+  max_distance *= factor;
+  options.prior.mean.head<3>() *= factor;
+  options.prior.variance.head<3>() *= factor * factor;
+  options.chains.initial_spread.head<3>() *= factor;
+}
+
+void
+Settings::scaleToClouds(std::size_t num_points, double largest_coordinate)
+{
+  if (are_lengths_scaled)
+    scaleLengths(largest_coordinate);
+  are_lengths_scaled = false;
   const auto size = static_cast<double>(num_points);
   if (is_step_size_times_points)
     options.sgld.step_size /= size;

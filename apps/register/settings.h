@@ -27,15 +27,29 @@ struct Settings {
   /** Whether the posterior mean, not ICP's result, is the final transformation. */
   bool use_mean = false;
 
+  /** Whether both clouds are scaled so that their largest |x|, |y|, |z| is 1 before
+   * they are registered (preset `paper`). measurement_sigma, step_size and lambda_rms
+   * are then in scaled units; all other lengths here stay in metres. */
+  bool is_normalized = false;
+
+  /** \brief Set by the authors' configuration files with normalize-cloud: guess, prior,
+   * max_distance and initial_spread are still in scaled units. */
+  bool are_lengths_scaled = false;
   /** \brief Set by the authors' configuration files: step_size is still to be divided
    * by the number of finite source points, which effective_points is to become. */
   bool is_step_size_times_points = false;
   bool is_effective_points_source_size = false;
 
-  /** \brief Carry out what the two flags above say.
-   * \param[in] num_points finite points of the source */
+  /** \brief Carry out what the flags above say.
+   * \param[in] num_points finite points of the source
+   * \param[in] largest_coordinate of both clouds [m] */
   void
-  scaleToSource(std::size_t num_points);
+  scaleToClouds(std::size_t num_points, double largest_coordinate);
+
+  /** \brief Multiply guess, prior, max_distance and initial_spread by \p factor where
+   * they are lengths. */
+  void
+  scaleLengths(double factor);
 
   /** \brief What is wrong with the first bad setting, with its command line option;
    * empty if all is well. */

@@ -1,8 +1,8 @@
 #include "register/settings_json.h"
 
 #include "io/errors.h"
+#include "io/motion.h"
 #include "register/choices.h"
-#include "register/guess.h"
 #include "register/json_values.h"
 #include "register/setting_fields.h"
 
@@ -112,7 +112,7 @@ public:
               4,
               expected,
               [&](Eigen::Index k, double x) { value(row, k) = x; });
-    const std::string complaint = complaintAboutMotion(value);
+    const std::string complaint = io::complaintAboutMotion(value);
     if (!complaint.empty())
       throw io::UsageError(path_ + ": " + complaint);
   }

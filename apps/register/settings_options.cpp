@@ -14,14 +14,14 @@ namespace bayesian_icp::app {
 
 namespace po = boost::program_options;
 
-namespace {
-
-[[noreturn]] void
+void
 refuse(const std::string& option, const std::string& value, const std::string& expected)
 {
   throw io::UsageError("--" + option + ": " + io::quoted(value) + " is not " +
                        expected);
 }
+
+namespace {
 
 void
 convert(const std::string& option, const std::string& text, double& value)
@@ -117,6 +117,17 @@ struct UnusedOptionRefuser {
   }
 };
 
+void
+refuseLengths(const po::variables_map& given, const std::string& config)
+{
+  for (const char* option :
+       {"guess", "max-distance", "prior-mean", "prior-variance", "initial-spread"})
+    if (given.count(option) > 0)
+      throw io::UsageError(std::string("--") + option +
+                           ": is in metres, but with normalize-cloud the lengths of " +
+                           config + " are in units of the clouds");
+}
+
 } // namespace
 
 po::variables_map
@@ -169,6 +180,8 @@ settingsFrom(const po::variables_map& given,
     settings = readConfigFile(config, note);
   SettingsReader reader{given};
   visitSettings(settings, reader);
+  if (settings.are_lengths_scaled)
+    refuseLengths(given, config);
   if (given.count("step-size") > 0)
     settings.is_step_size_times_points = false;
   if (given.count("effective-points") > 0)

@@ -12,6 +12,13 @@
 
 namespace bayesian_icp::app {
 
+/** \brief Refuse the value of an option: "--option: 'value' is not ...".
+ * \throws io::UsageError */
+[[noreturn]] void
+refuse(const std::string& option,
+       const std::string& value,
+       const std::string& expected);
+
 /** \brief Take a command line apart; options begin with one dash or two.
  * \param[in] positional_name option under which the arguments without a dash are found,
  *            as a std::vector<std::string>

@@ -32,6 +32,8 @@ bool
 isUnused(const Field& field, Preset preset)
 {
   const std::string group = field.group, key = field.key;
+  if (key == "normalize_cloud")
+    return preset != Preset::Paper;
   if (preset != Preset::Calibrated)
     return group == "calibrated";
   return group == "exact" || group == "sgld" || group == "mini_batch" ||

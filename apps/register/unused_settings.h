@@ -10,9 +10,9 @@
 
 namespace bayesian_icp::app {
 
-/** \brief Whether preset `calibrated` is concerned and the setting has no effect:
- * `calibrated` finds scale, steps and starts itself, and its own settings are not for
- * the others. */
+/** \brief Whether a setting has no effect with a preset: `calibrated` finds scale,
+ * steps and starts itself, and its own settings are not for the others; only `paper`
+ * has an implicit scale, which normalised clouds change. */
 bool
 isUnused(const Field& field, Preset preset);
 

@@ -35,6 +35,11 @@ struct BAYESIAN_ICP_EXPORT PoseEstimate {
   covariance(CovarianceConvention convention) const;
 };
 
+/** \brief The status of this short name, as posterior.json has it.
+ * \return whether there is one; \p status is unchanged if not */
+BAYESIAN_ICP_EXPORT bool
+readStatus(const std::string& name, Status& status);
+
 /** \brief What the formats want to know beside the pose. */
 struct ExportOptions {
   /** Names of the frames: one or more characters of A-Z a-z 0-9 _ - . / */
@@ -48,6 +53,11 @@ struct ExportOptions {
   /** Also export a posterior that has not mixed, has several modes, lost chains or was
    * cancelled, as long as its numbers are there. */
   bool accept_unreliable = false;
+
+  /** \brief What is wrong with the first bad field, with its name; empty if all is
+   * well. */
+  BAYESIAN_ICP_EXPORT std::string
+  validate() const;
 };
 
 /** \brief Why \p estimate cannot be exported, as a part of a sentence; empty if it can.
@@ -79,7 +89,7 @@ gtsamCovariance(const Matrix6d& right_se3);
 
 /** \brief "EDGE_SE3:QUAT i j x y z qx qy qz qw" and the upper triangle of the
  * information, row by row; i is the target's vertex, j the source's.
- * \throws std::invalid_argument with complaintAboutExport(), or about the vertices */
+ * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 g2oEdge(const PoseEstimate& estimate, const ExportOptions& options);
 
@@ -88,32 +98,32 @@ g2oEdge(const PoseEstimate& estimate, const ExportOptions& options);
 BAYESIAN_ICP_EXPORT std::string
 g2oVertex(const Eigen::Matrix4d& pose, int id);
 
-/** \brief For numpy.loadtxt or an std::istream after skipping lines that begin with #:
- * the 4x4 matrix of the pose, GTSAM's 6x6 covariance and the 6x6 information.
- * \throws std::invalid_argument with complaintAboutExport() */
+/** \brief Rows of numbers below lines that begin with #: the 4x4 matrix of the pose,
+ * GTSAM's 6x6 covariance and the 6x6 information.
+ * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 gtsamText(const PoseEstimate& estimate, const ExportOptions& options);
 
 /** \brief A geometry_msgs/msg/PoseWithCovarianceStamped as the YAML that `ros2 topic
  * pub` takes: frame_id is the target's, covariance of CovarianceConvention::R3xSO3.
- * \throws std::invalid_argument with complaintAboutExport(), or about frame or time */
+ * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 rosYaml(const PoseEstimate& estimate, const ExportOptions& options);
 
 /** \brief A line of a TUM trajectory: "timestamp x y z qx qy qz qw".
- * \throws std::invalid_argument with complaintAboutExport(), or about the time */
+ * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 tumLine(const PoseEstimate& estimate, const ExportOptions& options);
 
 /** \brief The covariance that belongs to tumLine(): the same timestamp, then 36
  * numbers, row by row, of CovarianceConvention::R3xSO3. \throws std::invalid_argument
- * with complaintAboutExport(), or about the time */
+ * with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 tumCovarianceLine(const PoseEstimate& estimate, const ExportOptions& options);
 
 /** \brief A header with units and a row: timestamp, frames, status, the six parameters
  * and the upper triangle of their covariance, CovarianceConvention::Parameters.
- * \throws std::invalid_argument with complaintAboutExport(), or about frames or time */
+ * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 csvText(const PoseEstimate& estimate, const ExportOptions& options);
 

@@ -30,7 +30,7 @@ enum class Preset {
 };
 
 /** \brief The preset of whoever does not choose one. */
-constexpr Preset default_preset = Preset::Paper;
+constexpr Preset default_preset = Preset::Calibrated;
 
 /** \brief Short name: "paper", "exact", "calibrated". */
 BAYESIAN_ICP_EXPORT const char*

@@ -19,8 +19,9 @@ enum class Status {
   NotRun,
   /** Every R-hat <= 1.01 and every bulk and tail ESS >= 400. */
   Ok,
-  /** As Ok, but something in the clouds calls for caution: see Summary::data (preset
-   * `calibrated`). The draws are good ones of a posterior that may be wrong. */
+  /** As Ok, but something calls for caution: see Summary::data (preset `calibrated`),
+   * or the kernel leaves out nearly all points (`exact`). The draws are good ones of a
+   * posterior that may be wrong. */
   Doubtful,
   /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them undefined: mean
    * and covariance describe the draws, but not reliably the posterior. */

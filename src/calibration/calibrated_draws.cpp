@@ -14,8 +14,10 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Of the plan's random numbers; chains have streams 0, 1, ... */
+/** Of the plans' random numbers, downwards, and of the draws' scales; chains have
+ * streams 0, 1, ... */
 constexpr std::uint64_t plan_stream = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t scale_stream = plan_stream - (std::uint64_t(1) << 32);
 
 /** What is drawn at one mode. */
 struct ModeRun {
@@ -60,10 +62,16 @@ public:
     });
     ChainSet result;
     auto chain = chains_.begin();
+    Random random(options_.seed, scale_stream);
     for (const auto& mode : modes_) {
-      spreadAsEstimated(mode->model.coordinates, mode->positions);
+      const ProductCoordinates& coordinates = mode->model.coordinates;
+      spreadAsEstimated(coordinates, mode->positions);
+      scaleAtRandom(coordinates,
+                    mode->model.estimate.degrees_of_freedom,
+                    random,
+                    mode->positions);
       for (const Matrix6Xd& positions : mode->positions)
-        (chain++)->draws = posesOf(mode->model.coordinates, positions);
+        (chain++)->draws = posesOf(coordinates, positions);
     }
     result.chains = std::move(chains_);
     result.cancelled = run_.cancelled();

@@ -39,6 +39,10 @@ constexpr double min_step_to_noise = 0.7;
  * only. */
 constexpr double min_relative_information = 0.02;
 
+/** As uncertain as the information is: J comes from 12 to 96 clusters, H from noisy
+ * secants. Chosen on simulated scans, docs/calibration.md. */
+constexpr int information_degrees_of_freedom = 20;
+
 /** Two ends of starts, and which is the mode. */
 struct Ends {
   RobustFit best;
@@ -133,6 +137,7 @@ finish(const Secants& secants, const DebitedInformation& debited, CalibratedEsti
   }
   e.covariance = (e.information + e.prior.precision).inverse();
   e.covariance = (0.5 * (e.covariance + e.covariance.transpose())).eval();
+  e.degrees_of_freedom = information_degrees_of_freedom;
   e.mean =
       -e.covariance * (e.transfer.transpose() * e.curvature * J.solve(e.scores.total) +
                        e.prior.gradient);

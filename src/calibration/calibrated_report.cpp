@@ -147,6 +147,7 @@ dataReportOf(const CalibratedEstimate& estimate,
   report.active_fraction = static_cast<double>(estimate.scores.num_active) /
                            static_cast<double>(num_source_points);
   report.correlation_factor = estimate.kappa_inf;
+  report.degrees_of_freedom = estimate.degrees_of_freedom;
   report.other_cost_ratio = estimate.other_cost_ratio;
   report.centre = estimate.centre;
   report.directions = directionsOf(estimate);

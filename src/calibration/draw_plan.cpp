@@ -90,6 +90,36 @@ mapBetween(const MatrixXd& covariance, const MatrixXd& wanted)
          ratio.eigenvectors().transpose() * inverse;
 }
 
+Index
+numDrawsOf(const std::vector<Matrix6Xd>& positions)
+{
+  Index num_draws = 0;
+  for (const Matrix6Xd& chain : positions)
+    num_draws += chain.cols();
+  return num_draws;
+}
+
+/** Mean of b, the last rows, over all chains. */
+VectorXd
+meanOfHeld(const std::vector<Matrix6Xd>& positions, Index num_held)
+{
+  VectorXd sum = VectorXd::Zero(num_held);
+  for (const Matrix6Xd& chain : positions)
+    sum += chain.bottomRows(num_held).rowwise().sum();
+  return sum / static_cast<double>(numDrawsOf(positions));
+}
+
+double
+chiSquared(int degrees_of_freedom, Random& random)
+{
+  double sum = 0.0;
+  for (int i = 0; i < degrees_of_freedom; ++i) {
+    const double z = random.normal();
+    sum += z * z;
+  }
+  return sum;
+}
+
 } // namespace
 
 DrawPlan
@@ -122,15 +152,10 @@ spreadAsEstimated(const ProductCoordinates& coordinates,
                   std::vector<Matrix6Xd>& positions)
 {
   const Index num_held = 6 - coordinates.numPriorOnly();
-  Index num_draws = 0;
-  VectorXd mean = VectorXd::Zero(num_held);
-  for (const Matrix6Xd& chain : positions) {
-    num_draws += chain.cols();
-    mean += chain.bottomRows(num_held).rowwise().sum();
-  }
+  const Index num_draws = numDrawsOf(positions);
   if (num_held == 0 || num_draws <= num_held)
     return;
-  mean /= static_cast<double>(num_draws);
+  const VectorXd mean = meanOfHeld(positions, num_held);
   MatrixXd covariance = MatrixXd::Zero(num_held, num_held);
   for (Matrix6Xd& chain : positions) {
     chain.bottomRows(num_held).colwise() -= mean;
@@ -144,6 +169,25 @@ spreadAsEstimated(const ProductCoordinates& coordinates,
   for (Matrix6Xd& chain : positions)
     chain.bottomRows(num_held) =
         ((map * chain.bottomRows(num_held)).colwise() + mean).eval();
+}
+
+void
+scaleAtRandom(const ProductCoordinates& coordinates,
+              int degrees_of_freedom,
+              Random& random,
+              std::vector<Matrix6Xd>& positions)
+{
+  const Index num_held = 6 - coordinates.numPriorOnly();
+  if (degrees_of_freedom == 0 || num_held == 0 || numDrawsOf(positions) == 0)
+    return;
+  const VectorXd mean = meanOfHeld(positions, num_held);
+  for (Matrix6Xd& chain : positions)
+    for (Index i = 0; i < chain.cols(); ++i) {
+      const double scale =
+          std::sqrt((degrees_of_freedom - 2) / chiSquared(degrees_of_freedom, random));
+      auto held = chain.col(i).tail(num_held);
+      held = (mean + scale * (held - mean)).eval();
+    }
 }
 
 PoseMatrix

@@ -35,6 +35,15 @@ void
 spreadAsEstimated(const ProductCoordinates& coordinates,
                   std::vector<Matrix6Xd>& positions);
 
+/** \brief Make b Student's t about its mean over all chains: the deviation of each draw
+ * times sqrt((nu - 2) / chi^2_nu) of its own, which leaves the covariance as it is.
+ * \param[in] degrees_of_freedom nu; 0 changes nothing */
+void
+scaleAtRandom(const ProductCoordinates& coordinates,
+              int degrees_of_freedom,
+              Random& random,
+              std::vector<Matrix6Xd>& positions);
+
 /** \brief The poses of draws of (a, b). */
 PoseMatrix
 posesOf(const ProductCoordinates& coordinates, const Matrix6Xd& positions);

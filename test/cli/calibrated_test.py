@@ -57,6 +57,7 @@ class DataSection(ToolTest):
         "active_fraction",
         "basin_distance_in_standard_deviations",
         "other_start_cost_ratio",
+        "degrees_of_freedom",
         "flags",
         "flag_messages",
         "centre_m",

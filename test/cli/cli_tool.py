@@ -14,7 +14,7 @@ DATA = pathlib.Path(os.environ["PCL_BAYESIAN_ICP_DATA"])
 
 # The pose that brings the source of small_pair() onto its target.
 SMALL_PAIR_POSE = (0.01, -0.02, 0.015, 0.05, -0.04, 0.08)
-FAST = ["--samples", "60", "--chains", "2", "--step-size", "1e-6"]
+FAST = ["--preset", "paper", "--samples", "60", "--chains", "2", "--step-size", "1e-6"]
 
 
 def run(*arguments, **options):

@@ -229,7 +229,7 @@ class CommittedScans(ToolTest):
         """With a small step the posterior holds the truth within four deviations; where
         the translation is observable, ICP halves the error of the guess at least."""
         pair = (folder / "source.pcd", folder / "target.pcd")
-        _, document = self.run_to_files(*pair, "--step-size", "1e-5")
+        _, document = self.run_to_files(*pair, "--preset", "paper", "--step-size", "1e-5")
         header = (folder / "source.pcd").read_bytes()[:400]
         num_points = int(header.split(b"POINTS ")[1].split(b"\n")[0])
         self.assertEqual(document["source"]["points"], num_points)

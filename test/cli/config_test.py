@@ -197,8 +197,6 @@ class AuthorsLayout(ConfigTest):
         for method in ("preconditioned_sgld2", "fixed", "adam", "adadelta", "momentum", "rmsprop"):
             content = self.changed(method=method)
             self.refuse(2, content, f"'{method}' is not available in this version")
-        content = self.changed(normalize_cloud=True)
-        self.refuse(2, content, "normalize-cloud is not available in this version")
 
     def test_mistakes(self):
         self.refuse(2, self.changed(method="sgd"), "unknown method 'sgd'")
@@ -220,6 +218,7 @@ class AuthorsLayout(ConfigTest):
 
 class Repeatability(ConfigTest):
     OPTIONS = [
+        "--preset=paper",
         "--guess=0.001,0.002,0.003,0.01,0.02,0.03",
         "--max-distance=0.5",
         "--prior-variance=0.1,0.2,0.3,0.4,0.5,inf",

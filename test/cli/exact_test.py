@@ -145,7 +145,7 @@ class Modes(ExactTest):
         self.assertEqual(mode["covariance"], posterior["covariances"][0])
 
     def test_paper_looks_for_none(self):
-        _, document = self.run_to_files(*self.small_pair(), "--samples=60")
+        _, document = self.run_to_files(*self.small_pair(), "--preset=paper", "--samples=60")
         self.assertEqual(document["posterior"]["modes"], [])
 
     def test_several_modes_are_told_apart(self):

@@ -11,7 +11,7 @@ import unittest
 from cli_tool import DATA, FAST, TOOL, ToolTest, run, strict_json
 
 # Minutes of work, of which each chain keeps a draw about every 50 ms.
-ENDLESS = ["--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
+ENDLESS = ["--preset", "paper", "--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
 
 
 class UnwritableOutput(ToolTest):

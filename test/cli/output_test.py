@@ -36,7 +36,7 @@ def floats(*values):
 
 class Files(ToolTest):
     def test_samples_csv(self):
-        options = ["--samples=61", "--chains=2", "--step-size=1e-6"]
+        options = ["--preset=paper", "--samples=61", "--chains=2", "--step-size=1e-6"]
         samples, document = self.run_to_files(*self.small_pair(), *options)
         lines = samples.splitlines()
         self.assertEqual(lines[0], "chain,draw,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad")
@@ -119,7 +119,7 @@ class Files(ToolTest):
         for variance in ("1e-3", "5e-4", "2e-4", "1e-4", "5e-5"):
             for seed in range(6):
                 shutil.rmtree(output, ignore_errors=True)
-                options = ["--step-size=1e-5", "--samples=400", f"--seed={seed}"]
+                options = ["--preset=paper", "--step-size=1e-5", "--samples=400", f"--seed={seed}"]
                 options += [f"--prior-variance={variance}", "--json", "-o", output]
                 result = run(*pair, *options)
                 document = strict_json(result.stdout)
@@ -140,7 +140,7 @@ class Files(ToolTest):
 
     def test_no_draws_no_files(self):
         output = self.folder / "output"
-        options = ["--step-size=10", "--samples=400", "-o", output]
+        options = ["--preset=paper", "--step-size=10", "--samples=400", "-o", output]
         result = run(*self.small_pair(), *options)
         self.assertEqual(result.returncode, 1)
         self.assertIn("no files are written", result.stderr)
@@ -244,8 +244,8 @@ class Printed(ToolTest):
         self.assertIn("ICP:    converged", text)
 
     def test_good_posterior_has_exit_code_0(self):
-        options = ["--step-size=5e-6", "--effective-points=60000", "--prior-variance=0.01"]
-        options += ["--batch-size=20", "--burn-in=1000", "--thinning=50", "--samples=4000"]
+        options = ["--preset=paper", "--step-size=5e-6", "--effective-points=60000"]
+        options += ["--prior-variance=0.01", "--batch-size=20", "--burn-in=1000", "--thinning=50", "--samples=4000"]
         result = run(*self.small_pair(), *options, "--block-decay-factor=1")
         self.assertIn("Status: ok", result.stdout)
         self.assertEqual((result.returncode, result.stderr), (0, ""))

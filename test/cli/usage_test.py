@@ -35,7 +35,7 @@ class Usage(ToolTest):
             "sigma": "1",
             "prior-variance": "0.125",
             "prior-frame": "origin",
-            "preset": "paper",
+            "preset": "calibrated",
             "residual": "point-to-point",
             "kernel": "none",
             "kernel-width": "0.01",

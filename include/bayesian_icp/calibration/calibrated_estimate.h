@@ -40,6 +40,10 @@ struct CalibratedEstimate {
   Matrix6d covariance = Matrix6d::Identity();
   /** Twist from the mode to the posterior mean. */
   Vector6d mean = Vector6d::Zero();
+  /** nu: along the directions that the data hold, the posterior is Student's t with so
+   * many degrees of freedom and the covariance above, since the information is itself
+   * an estimate. At least 3, or 0 for a Gaussian. */
+  int degrees_of_freedom = 0;
   /** Ratio of the score's covariance to that of independent points: for patches of
    * about 1/48 of the source, and extrapolated to patches that are independent. */
   double kappa_48 = 1.0;

@@ -18,17 +18,18 @@ namespace pcl {
  * output, convergence and correspondences are its own. Then it samples the posterior of
  * the source-to-target pose from the same guess, by preconditioned SGLD over
  * mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty with
- * Bayesian ICP, ICRA 2020), with the correspondence estimation, rejectors, search tree
- * and maximum correspondence distance that the object was given. With
- * setPreset(Preset::Exact) the sampler is one whose draws are right for the stated
+ * Bayesian ICP, ICRA 2020). By default, Preset::Calibrated, it finds the scale from the
+ * clouds, and getSummary().data says how well they hold the pose in each direction. It
+ * measures distances to the surface of the target points that the object searches (all,
+ * those of the indices set on its estimation, or those of a ready tree); rejectors,
+ * reciprocity, an own estimation and the maximum correspondence distance are for ICP
+ * alone then, as each source point is judged in units of the noise.
+ *
+ * With setPreset(Preset::Exact) the sampler is one whose draws are right for the stated
  * measurement sigma, effective points, gate and prior; it takes its own search tree
- * unless a search of the user's own is installed. setPreset(Preset::Calibrated) finds
- * the scale from the clouds, and getSummary().data says how well they hold the pose in
- * each direction. It measures distances to the surface of the target points that the
- * object searches (all, those of the indices set on its estimation, or those of a ready
- * tree); rejectors, reciprocity, an own estimation and the maximum correspondence
- * distance are for ICP alone then, as each source point is judged in units of the
- * noise.
+ * unless a search of the user's own is installed. setPreset(Preset::Paper) is the
+ * paper's Algorithm 1, literally. Both take the correspondence estimation, rejectors,
+ * search tree and maximum correspondence distance that the object was given.
  *
  * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
  * transformation, guess included; translation in the target frame, R = Rz(yaw)

@@ -1,0 +1,24 @@
+/** \file
+ * \brief A rigid motion as users give it: a pose in words, or a file with a matrix.
+ */
+#pragma once
+
+#include <Eigen/Core>
+
+#include <string>
+
+namespace bayesian_icp::io {
+
+/** \brief What is wrong with \p matrix as a rigid motion; empty if it is one, up to
+ * what a few printed digits allow. */
+std::string
+complaintAboutMotion(const Eigen::Matrix4d& matrix);
+
+/** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], or of a text file with the 16
+ * numbers of the matrix row by row.
+ * \param[in] option its name in errors, without the dashes
+ * \throws UsageError if it is neither, FileError if the file has something else */
+Eigen::Matrix4d
+readMotion(const std::string& option, const std::string& text);
+
+} // namespace bayesian_icp::io

@@ -1,0 +1,93 @@
+/** \file
+ * \brief pcl_bayesian_icp_pose_graph: consecutive scans in, a pose graph for g2o out.
+ */
+#include "io/cloud_file.h"
+#include "io/errors.h"
+#include "io/output_folder.h"
+#include "pose_graph/graph_command.h"
+#include "register/interrupt.h"
+
+#include <filesystem>
+#include <iostream>
+
+namespace bayesian_icp::app {
+namespace {
+
+enum ExitCode { Good = 0, NotAllOk = 1, BadUsage = 2, BadFile = 3, Interrupted = 130 };
+
+void
+tell(const std::string& message)
+{
+  std::cerr << "pcl_bayesian_icp_pose_graph: " + message + '\n';
+}
+
+void
+print(const std::string& text)
+{
+  std::cout << text << std::flush;
+  if (!std::cout)
+    throw io::FileError("standard output", "cannot be written");
+}
+
+int
+makeGraph(const GraphCommand& command)
+{
+  if (!command.note.empty() && !command.is_quiet)
+    tell("note: " + command.note);
+  io::silencePcl();
+  const std::filesystem::path path(command.output_file);
+  io::OutputFolder folder(path.has_parent_path() ? path.parent_path().string() : ".");
+  ScanGraph graph(command.request, [&](bool is_ok, const std::string& line) {
+    if (!is_ok || !command.is_quiet)
+      tell(line);
+  });
+  catchInterrupt();
+  graph.registerScans();
+  if (wasInterrupted())
+    return Interrupted;
+  folder.add(path.filename().string(),
+             [&](std::ostream& stream) { stream << graph.g2oText(); });
+  folder.commit();
+  return graph.numNotOk() == 0 ? Good : NotAllOk;
+}
+
+int
+runTool(int argc, char** argv)
+{
+  const GraphCommand command = parseGraphCommand(argc, argv);
+  switch (command.kind) {
+  case GraphCommand::Kind::ShowHelp:
+    print(graphHelpText());
+    return Good;
+  case GraphCommand::Kind::ShowVersion:
+    print("pcl_bayesian_icp_pose_graph " BAYESIAN_ICP_VERSION "\n");
+    return Good;
+  case GraphCommand::Kind::MakeGraph:
+    break;
+  }
+  return makeGraph(command);
+}
+
+} // namespace
+} // namespace bayesian_icp::app
+
+int
+main(int argc, char** argv)
+{
+  using namespace bayesian_icp;
+  try {
+    return app::runTool(argc, argv);
+  }
+  catch (const io::UsageError& error) {
+    app::tell(std::string(error.what()) + " (see --help)");
+    return app::BadUsage;
+  }
+  catch (const io::FileError& error) {
+    app::tell(error.what());
+    return app::BadFile;
+  }
+  catch (const std::exception& error) {
+    app::tell(std::string("failed: ") + error.what());
+    return app::NotAllOk;
+  }
+}

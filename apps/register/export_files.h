@@ -1,0 +1,65 @@
+/** \file
+ * \brief The pose for other software: what --export asks for.
+ */
+#pragma once
+
+#include "io/output_folder.h"
+
+#include <bayesian_icp/exports.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+enum class ExportFormat { Ros, G2o, Gtsam, Tum, Csv };
+
+/** \brief "ros", "g2o", "gtsam", "tum", "csv". */
+const char*
+toString(ExportFormat format);
+
+inline std::array<ExportFormat, 5>
+choicesOf(ExportFormat)
+{
+  return {ExportFormat::Ros,
+          ExportFormat::G2o,
+          ExportFormat::Gtsam,
+          ExportFormat::Tum,
+          ExportFormat::Csv};
+}
+
+/** \brief What --export and the options that go with it say. */
+struct ExportRequest {
+  std::vector<ExportFormat> formats;
+  ExportOptions options;
+};
+
+/** \brief The formats of a list with commas, each once.
+ * \throws io::UsageError if there is another name in it */
+std::vector<ExportFormat>
+readExportFormats(const std::string& list);
+
+/** \brief Nanoseconds of a decimal number of seconds, without loss.
+ * \throws io::UsageError if it is none, or has more than nine decimals */
+std::int64_t
+readTimestamp(const std::string& seconds);
+
+/** \brief The text of one format, of TUM without the covariance.
+ * \throws std::invalid_argument if the posterior cannot be exported to it */
+std::string
+exportText(ExportFormat format,
+           const PoseEstimate& estimate,
+           const ExportOptions& options);
+
+/** \brief Add pose_ros.yaml, pose.g2o, pose_gtsam.txt, pose_tum.txt with
+ * pose_tum_covariance.txt, and pose.csv, as asked for.
+ * \return the formats to which the posterior cannot be exported, with the reason, one
+ *         message each
+ * \throws io::FileError if a file cannot be written */
+std::vector<std::string>
+addExports(const ExportRequest& request,
+           const PoseEstimate& estimate,
+           io::OutputFolder& folder);
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,113 @@
+/** \file
+ * \brief pcl_bayesian_icp_transform: moves a cloud by a pose that was found.
+ */
+#include "io/cloud_file.h"
+#include "io/errors.h"
+#include "io/motion.h"
+#include "io/output_folder.h"
+#include "io/posterior_file.h"
+#include "transform/command_line.h"
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <iostream>
+
+namespace bayesian_icp::transform {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum ExitCode { Good = 0, Failed = 1, BadUsage = 2, BadFile = 3 };
+
+void
+tell(const std::string& message)
+{
+  std::cerr << "pcl_bayesian_icp_transform: " << message << '\n';
+}
+
+void
+print(const std::string& text)
+{
+  std::cout << text << std::flush;
+  if (!std::cout)
+    throw io::FileError("standard output", "cannot be written");
+}
+
+Eigen::Matrix4d
+motionOf(const Request& request)
+{
+  if (fs::path(request.pose).extension() != ".json")
+    return io::readMotion("pose", request.pose);
+  const io::PosteriorFile posterior = io::readPosterior(request.pose);
+  Eigen::Matrix4d motion = request.choice == PoseChoice::Mean ? matrixOf(posterior.mean)
+                                                              : posterior.final_matrix;
+  const std::string complaint = io::complaintAboutMotion(motion);
+  if (!complaint.empty())
+    throw io::FileError(request.pose, complaint);
+  return motion;
+}
+
+void
+transformCloud(const Request& request)
+{
+  const io::CloudFormat format = io::formatOf(request.output_file);
+  std::error_code ignored;
+  if (!request.may_overwrite_input &&
+      fs::equivalent(request.input_file, request.output_file, ignored))
+    throw io::UsageError(request.output_file +
+                         " is the input; --overwrite replaces it all the same");
+  const Eigen::Affine3d motion(motionOf(request));
+  const io::CloudFile cloud = io::readCloud(request.input_file);
+  const fs::path output(request.output_file);
+  io::OutputFolder folder(output.has_parent_path() ? output.parent_path().string()
+                                                   : ".");
+  folder.addByName(output.filename().string(), [&](const std::string& path) {
+    const Eigen::Affine3d applied = request.is_inverse ? motion.inverse() : motion;
+    io::writeCloud(io::movedCloud(cloud, applied.matrix()), format, path);
+  });
+  folder.commit();
+}
+
+int
+runTool(int argc, char** argv)
+{
+  const Request request = parseCommandLine(argc, argv);
+  switch (request.kind) {
+  case Request::Kind::ShowHelp:
+    print(helpText());
+    break;
+  case Request::Kind::ShowVersion:
+    print("pcl_bayesian_icp_transform " BAYESIAN_ICP_VERSION "\n");
+    break;
+  case Request::Kind::Transform:
+    io::silencePcl();
+    transformCloud(request);
+    break;
+  }
+  return Good;
+}
+
+} // namespace
+} // namespace bayesian_icp::transform
+
+int
+main(int argc, char** argv)
+{
+  using namespace bayesian_icp;
+  try {
+    return transform::runTool(argc, argv);
+  }
+  catch (const io::UsageError& error) {
+    transform::tell(std::string(error.what()) + " (see --help)");
+    return transform::BadUsage;
+  }
+  catch (const io::FileError& error) {
+    transform::tell(error.what());
+    return transform::BadFile;
+  }
+  catch (const std::exception& error) {
+    transform::tell(std::string("failed: ") + error.what());
+    return transform::Failed;
+  }
+}

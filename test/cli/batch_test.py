@@ -1,0 +1,403 @@
+"""pcl_bayesian_icp_batch: lines of JSON, failures, resuming after kills, MPI ranks."""
+
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+import cloud_files
+from cli_tool import FAST, ToolTest, run, strict_json
+
+BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
+# About 0.1 s a pair.
+SLOW = ["--preset", "paper", "--samples", "200", "--chains", "2", "--thinning", "10"]
+SLOW += ["--step-size", "1e-6"]
+
+
+def run_batch(*arguments, launcher=(), **options):
+    options.setdefault("stdout", subprocess.PIPE)
+    command = [*launcher, BATCH, *map(str, arguments)]
+    return subprocess.run(
+        command, stderr=subprocess.PIPE, text=True, timeout=120, check=False, **options
+    )
+
+
+def results_of(text):
+    """The lines by name; each name once, each line complete."""
+    assert text == "" or text.endswith("\n"), text[-80:]
+    lines = [strict_json(line) for line in text.splitlines()]
+    results = {line["name"]: line for line in lines}
+    assert len(results) == len(lines), [line["name"] for line in lines]
+    return results
+
+
+def without_times(results):
+    return {
+        name: {key: value for key, value in line.items() if key != "time"}
+        for name, line in results.items()
+    }
+
+
+class BatchTest(ToolTest):
+    def manifest(self, pairs):
+        return self.file("manifest.json", json.dumps(pairs))
+
+    def seeds(self, count):
+        """A manifest of one small pair with several seeds."""
+        self.small_pair()
+        return self.manifest(
+            [
+                {
+                    "name": f"seed {seed}",
+                    "source": "source.pcd",
+                    "target": "target.pcd",
+                    "settings": {"chains": {"seed": seed}},
+                }
+                for seed in range(count)
+            ]
+        )
+
+    def assert_batch_refused(self, exit_code, result, *parts):
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        self.assertEqual(result.stdout, "")
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("pcl_bayesian_icp_batch: "), result.stderr)
+        for part in parts:
+            self.assertIn(str(part), lines[0])
+
+
+class BatchResults(BatchTest):
+    def test_a_line_says_what_the_single_program_says(self):
+        source, target = self.small_pair()
+        pose = [0.01, -0.02, 0.01, 0.05, -0.04, 0.08]
+        manifest = self.manifest(
+            [{"name": "box", "source": "source.pcd", "target": "target.pcd", "guess": pose}]
+        )
+        output = self.folder / "files"
+        batch = run_batch(manifest, *FAST, "--seed", 7, "-o", output)
+        guess = ",".join(map(str, pose))
+        single = run(source, target, *FAST, "--seed", 7, "--guess", guess, "--json")
+        self.assertEqual(batch.returncode, single.returncode, batch.stderr)
+        line = results_of(batch.stdout)["box"]
+        document = strict_json(single.stdout)
+        self.assertEqual(line["status"], document["status"]["name"])
+        self.assertEqual(line["message"], document["status"]["message"])
+        self.assertEqual(line["mean"], document["posterior"]["mean"])
+        for covariance in line["covariances"]:
+            self.assertIn(covariance, document["posterior"]["covariances"])
+        self.assertEqual(
+            [covariance["convention"] for covariance in line["covariances"]],
+            ["parameters", "right_se3"],
+        )
+        for key in ("final_transformation", "icp", "source", "target"):
+            self.assertEqual(line[key], document[key])
+        self.assertEqual(line["seed"], 7)
+        self.assertGreater(line["time"]["total_s"], line["time"]["icp_s"])
+        files = output / "box"
+        self.assertEqual(
+            sorted(path.name for path in files.iterdir()), ["posterior.json", "samples.csv"]
+        )
+        written = strict_json((files / "posterior.json").read_text())
+        self.assertEqual(written["posterior"], document["posterior"])
+        self.assertEqual(written["options"], document["options"])
+
+    def test_failures_are_of_their_pair_only(self):
+        self.small_pair()
+        self.file("broken.pcd", b"VERSION .7\nFIELDS x y z\nrubbish")
+        self.file("two.pcd", cloud_files.pcd_bytes([(0, 0, 0), (1, 0, 0)]))
+        self.file("matrix.txt", "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 2")
+        far = [(x + 50, y, z) for x, y, z in cloud_files.box_surface(seed=1)]
+        self.file("far.pcd", cloud_files.pcd_bytes(far))
+        good = {"source": "source.pcd", "target": "target.pcd"}
+        manifest = self.manifest(
+            [
+                {"name": "first", **good},
+                {"name": "missing", **good, "source": "no_such.pcd"},
+                {"name": "broken", **good, "target": "broken.pcd"},
+                {"name": "two points", **good, "source": "two.pcd"},
+                {"name": "bad guess", **good, "guess": "matrix.txt"},
+                {"name": "apart", **good, "target": "far.pcd"},
+                {"name": "last", **good},
+            ]
+        )
+        result = run_batch(manifest, *FAST, "-d", 0.5)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        lines = results_of(result.stdout)
+        self.assertEqual(len(lines), 7)
+        for name, part in (
+            ("missing", "no_such.pcd: no such file"),
+            ("broken", "broken.pcd"),
+            ("two points", "two.pcd"),
+            ("bad guess", "matrix.txt: the last row"),
+        ):
+            self.assertEqual(lines[name]["status"], "error")
+            self.assertIn(part, lines[name]["message"])
+            self.assertIsNone(lines[name]["mean"])
+            self.assertEqual(lines[name].keys(), lines["first"].keys())
+        self.assertEqual(lines["apart"]["status"], "too_few_correspondences")
+        self.assertIsNone(lines["apart"]["mean"]["x_m"])
+        self.assertEqual(lines["first"]["mean"], lines["last"]["mean"])
+        self.assertGreater(lines["first"]["draws"], 0)
+        self.assertEqual(len(result.stderr.splitlines()), 7)
+
+    def test_threads_do_not_matter(self):
+        manifest = self.seeds(5)
+        runs = [
+            without_times(results_of(run_batch(manifest, *FAST, "--threads", n).stdout))
+            for n in (1, 3, 8)
+        ]
+        self.assertEqual(len(runs[0]), 5)
+        self.assertNotEqual(runs[0]["seed 0"]["mean"], runs[0]["seed 1"]["mean"])
+        self.assertEqual(runs[0], runs[1])
+        self.assertEqual(runs[0], runs[2])
+
+    def test_a_data_set_with_its_guesses_and_priors(self):
+        self.small_pair()
+        self.file("T.txt", "1 0 0 0.01\n0 1 0 -0.02\n0 0 1 0.01\n0 0 0 1\n")
+        manifest = self.manifest(
+            [
+                {
+                    "name": "box",
+                    "split": "public",
+                    "files": {
+                        "source": "source.pcd",
+                        "target": "target.pcd",
+                        "initial_guess": "T.txt",
+                        "ground_truth": "not_read.txt",
+                    },
+                    "suggested_prior_sigma": {"translation_m": 0.03, "rotation_rad": 0.2},
+                }
+            ]
+        )
+        output = self.folder / "files"
+        run_batch(manifest, *FAST, "--suggested-prior", "-o", output)
+        options = strict_json((output / "box" / "posterior.json").read_text())["options"]
+        self.assertEqual(options["registration"]["guess_matrix"][1][3], -0.02)
+        self.assertEqual(options["prior"]["frame"], "source-centroid")
+        for k, variance in enumerate(options["prior"]["variance_m2_rad2"]):
+            self.assertAlmostEqual(variance, 0.03**2 if k < 3 else 0.2**2, places=12)
+
+
+class BatchRefused(BatchTest):
+    def test_manifests(self):
+        good = {"name": "a", "source": "s.pcd", "target": "t.pcd"}
+        for content, *parts in (
+            ("[", "broken JSON"),
+            ("{}", "not a JSON list"),
+            ("[1]", "pair 1", "not a JSON object"),
+            ([{**good, "name": "../up"}], "pair 1", "folder"),
+            ([{**good, "name": ""}], "pair 1", "name"),
+            ([good, good], "pair 2", "another pair"),
+            ([{"name": "a", "source": "s.pcd"}], "'target' is missing"),
+            ([{**good, "gues": "x"}], "unknown key 'gues'"),
+            ([{**good, "guess": [1, 2]}], "six numbers"),
+            ([{**good, "settings": {"chains": {"sed": 1}}}], "chains.sed"),
+            ([{**good, "settings": {"chains": {"num_draws": -1}}}], "num_draws", "-1"),
+        ):
+            with self.subTest(content=content):
+                text = content if isinstance(content, str) else json.dumps(content)
+                manifest = self.file("manifest.json", text)
+                self.assert_batch_refused(3, run_batch(manifest), manifest, *parts)
+        self.assert_batch_refused(3, run_batch(self.folder / "none"), "no such file")
+
+    def test_usage(self):
+        manifest = self.seeds(1)
+        for words, *parts in (
+            ([], "manifest is needed"),
+            ([manifest, "more"], "'more'"),
+            ([manifest, "--sigma", "x"], "--sigma"),
+            ([manifest, "--suggested-prior", "--prior-variance", "1"], "exclude"),
+        ):
+            with self.subTest(words=words):
+                self.assert_batch_refused(2, run_batch(*words), *parts)
+        self.assert_batch_refused(
+            3, run_batch(manifest, "--suggested-prior"), "suggested_prior_sigma"
+        )
+
+
+class BatchResume(BatchTest):
+    def setUp(self):
+        super().setUp()
+        self.results = self.folder / "results.jsonl"
+
+    def whole_run(self, manifest, *options):
+        return without_times(results_of(run_batch(manifest, *options).stdout))
+
+    def resumed(self, manifest, *options):
+        result = run_batch(manifest, *options, "--results", self.results)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        return without_times(results_of(self.results.read_text()))
+
+    def test_killed_again_and_again(self):
+        """Nothing is lost and nothing there twice, wherever the kills fall."""
+        manifest = self.seeds(9)
+        command = [BATCH, manifest, *SLOW, "--results", self.results, "--quiet"]
+        num_lines = 0
+        for k in range(6):
+            with subprocess.Popen(command) as process:
+                time.sleep(0.15 + 0.03 * k)
+                process.kill()
+            if not self.results.exists():
+                continue
+            complete = self.results.read_bytes().count(b"\n")
+            self.assertGreaterEqual(complete, num_lines)
+            num_lines = complete
+        self.assertEqual(self.resumed(manifest, *SLOW), self.whole_run(manifest, *SLOW))
+
+    def test_line_that_was_cut_off(self):
+        manifest = self.seeds(4)
+        whole = self.resumed(manifest, *FAST)
+        text = self.results.read_text()
+        second_break = text.index("\n", text.index("\n") + 1)
+        # Within the third line, and just before its line break.
+        third_break = text.index("\n", second_break + 1)
+        for size in (second_break + 40, third_break):
+            self.results.write_text(text[:size])
+            self.assertEqual(self.resumed(manifest, *FAST), whole)
+
+    def test_finished_pairs_are_not_run_again(self):
+        manifest = self.seeds(3)
+        self.resumed(manifest, *FAST)
+        text = self.results.read_bytes()
+        result = run_batch(manifest, *FAST, "--results", self.results)
+        self.assertIn("3 of 3 pairs", result.stderr)
+        self.assertEqual(self.results.read_bytes(), text)
+        self.assertEqual(result.returncode, 1)  # what it was in the first run
+
+    def test_results_of_something_else(self):
+        manifest = self.seeds(2)
+        self.resumed(manifest, *FAST)
+        text = self.results.read_bytes()
+        other = run_batch(manifest, *FAST, "--sigma", 2, "--results", self.results)
+        self.assert_batch_refused(3, other, self.results, "'seed 0'", "other settings")
+        self.assertEqual(self.results.read_bytes(), text)
+        self.results.write_text("x,y\n1,2\n")
+        other = run_batch(manifest, *FAST, "--results", self.results)
+        self.assert_batch_refused(3, other, self.results, "no result")
+        self.assertEqual(self.results.read_text(), "x,y\n1,2\n")
+
+    def test_two_at_once(self):
+        manifest = self.seeds(9)
+        command = [BATCH, manifest, *SLOW, "--results", self.results, "--quiet"]
+        with subprocess.Popen(command) as process:
+            while not self.results.exists():
+                time.sleep(0.01)
+            second = run_batch(manifest, *SLOW, "--results", self.results)
+            process.wait(60)
+        self.assert_batch_refused(3, second, self.results, "in use")
+        self.assertEqual(len(results_of(self.results.read_text())), 9)
+
+    def test_full_disk(self):
+        """No file may be larger than 8000 bytes: the lines that fit stay."""
+        manifest = self.seeds(9)
+
+        def limit_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
+
+        result = run_batch(
+            manifest,
+            *FAST,
+            "--quiet",
+            "--results",
+            self.results,
+            preexec_fn=limit_files,
+            restore_signals=False,
+        )
+        self.assert_batch_refused(3, result, self.results, "File too large")
+        self.assertIn(len(results_of(self.results.read_text())), range(1, 9))
+        self.assertEqual(self.resumed(manifest, *FAST), self.whole_run(manifest, *FAST))
+
+    def test_unwritable(self):
+        manifest = self.seeds(1)
+        for results, named in (
+            ("/proc/no_such/r", "/proc/no_such"),
+            ("/dev/null", "/dev/null"),
+            (self.folder, self.folder),
+        ):
+            result = run_batch(manifest, *FAST, "--results", results)
+            self.assert_batch_refused(3, result, named)
+        with open("/dev/full", "w", encoding="ascii") as full:
+            result = run_batch(manifest, *FAST, "--quiet", stdout=full)
+        self.assertEqual(result.returncode, 3)
+        self.assertIn("standard output: cannot be written", result.stderr)
+
+    def test_interrupt(self):
+        manifest = self.seeds(9)
+        command = [BATCH, manifest, *SLOW, "--results", self.results]
+        with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+            process.stderr.readline()
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130)
+        self.assertIn(len(results_of(self.results.read_text())), range(1, 9))
+        self.assertEqual(self.resumed(manifest, *SLOW), self.whole_run(manifest, *SLOW))
+
+
+def has_mpi():
+    return shutil.which("mpirun") and "with MPI" in run_batch("--version").stdout
+
+
+@unittest.skipUnless(has_mpi(), "built without MPI, or no mpirun")
+class BatchRanks(BatchTest):
+    MPIRUN = ("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2")
+
+    def setUp(self):
+        super().setUp()
+        self.results = self.folder / "results.jsonl"
+
+    def rank_files(self):
+        return [path.name for path in self.folder.iterdir() if ".rank" in path.name]
+
+    def test_two_ranks_share_the_pairs(self):
+        manifest = self.seeds(7)
+        alone = without_times(results_of(run_batch(manifest, *FAST).stdout))
+        options = [manifest, *FAST, "--threads", 1, "--results", self.results]
+        result = run_batch(*options, launcher=self.MPIRUN)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("rank 0: 4/4", result.stderr)
+        self.assertIn("rank 1: 3/3", result.stderr)
+        self.assertEqual(without_times(results_of(self.results.read_text())), alone)
+        self.assertEqual(self.rank_files(), [])
+
+    def test_killed_ranks_lose_nothing(self):
+        manifest = self.seeds(16)
+        options = [manifest, *SLOW, "--threads", "1", "--results", self.results]
+        command = [*self.MPIRUN, BATCH, *map(str, options)]
+        part = pathlib.Path(f"{self.results}.rank1")
+        with subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True) as job:
+            deadline = time.monotonic() + 60
+            while time.monotonic() < deadline and not (part.exists() and part.stat().st_size):
+                time.sleep(0.02)
+            for rank in self.ranks_of(job.pid):
+                os.kill(rank, signal.SIGKILL)
+            job.wait(30)
+        self.assertEqual(self.rank_files(), [part.name])
+        saved = set(results_of(part.read_text()))
+        self.assertTrue(saved)
+        self.assertFalse(saved & set(results_of(self.results.read_text())))
+        result = run_batch(*options)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(self.rank_files(), [])
+        alone = without_times(results_of(run_batch(manifest, *SLOW).stdout))
+        self.assertEqual(without_times(results_of(self.results.read_text())), alone)
+
+    @staticmethod
+    def ranks_of(parent):
+        children = pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
+        return [int(child) for child in children]
+
+    def test_standard_output_is_refused(self):
+        result = run_batch(self.seeds(1), *FAST, launcher=self.MPIRUN)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("several processes need --results", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

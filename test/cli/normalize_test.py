@@ -1,0 +1,124 @@
+"""--normalize-cloud. A power of two loses no digits, so a normalised run of clouds four
+times as large has exactly the draws of the plain run, four times as far apart."""
+
+import copy
+import csv
+import json
+import unittest
+
+import cloud_files
+from cli_tool import FAST, ToolTest, run, strict_json
+from config_test import AUTHORS_CONFIG
+
+FACTOR = 4.0
+FACTORS = [FACTOR] * 3 + [1.0] * 3
+
+
+def rows_of(samples):
+    return [list(map(float, row[2:])) for row in list(csv.reader(samples.splitlines()))[1:]]
+
+
+class Normalize(ToolTest):
+    def pair(self, factor):
+        """A box that reaches out to exactly the factor [m], and the same box moved."""
+        target = [*cloud_files.box_surface(seed=1), (1.0, 0.0, 0.0)]
+        source = [(x + 0.03125, y, z) for x, y, z in cloud_files.box_surface(seed=2)]
+        return [
+            self.file(
+                f"{name}_{factor}.pcd",
+                cloud_files.pcd_bytes([tuple(factor * c for c in point) for point in points]),
+            )
+            for name, points in (("source", source), ("target", target))
+        ]
+
+    def posteriors(self, plain, normalised):
+        """(draws, document) of the small pair and of the large one."""
+        small = self.run_to_files(*self.pair(1.0), *plain)
+        large = self.run_to_files(*self.pair(FACTOR), *normalised)
+        return rows_of(small[0]), small[1], rows_of(large[0]), large[1]
+
+    def assert_scaled(self, small_draws, small, large_draws, large):
+        self.assertEqual(len(large_draws), len(small_draws))
+        for a, b in zip(small_draws, large_draws):
+            self.assertEqual([f * c for f, c in zip(FACTORS, a)], b)
+        for name in ("final_transformation", "icp"):
+            a, b = (document[name]["T_target_source"] for document in (small, large))
+            self.assertEqual([FACTOR * row[3] for row in a[:3]], [row[3] for row in b[:3]])
+            self.assertEqual([row[:3] for row in a], [row[:3] for row in b])
+        a, b = (document["icp"]["mean_squared_distance_m2"] for document in (small, large))
+        self.assertEqual(FACTOR**2 * a, b)
+        small, large = small["posterior"], large["posterior"]
+        for a, b in zip(small["covariances"], large["covariances"]):
+            for i in range(6):
+                for k in range(6):
+                    expected = FACTORS[i] * FACTORS[k] * a["matrix"][i][k]
+                    self.assertEqual(expected, b["matrix"][i][k])
+        lengths = ["mean", "standard_deviation", "quantile_2.5_percent", "median"]
+        lengths += ["quantile_97.5_percent", "mcse_of_mean"]
+        for factor, a, b in zip(FACTORS, small["coordinates"], large["coordinates"]):
+            self.assertEqual([factor * a[name] for name in lengths], [b[name] for name in lengths])
+            self.assertEqual((a["rhat"], a["bulk_ess"]), (b["rhat"], b["bulk_ess"]))
+        self.assertEqual(large["mean"]["x_m"], FACTOR * small["mean"]["x_m"])
+
+    def test_lengths_on_the_command_line_are_in_metres(self):
+        plain = [*FAST, "--guess=0.0625,0,0,0,0,0.1", "--prior-mean=0.125,0,0,0,0,0"]
+        plain += ["--prior-variance=0.5", "--max-distance=0.5", "--initial-spread=0.015625"]
+        normalised = [*FAST, "--normalize-cloud", "--guess=0.25,0,0,0,0,0.1"]
+        normalised += ["--prior-mean=0.5,0,0,0,0,0", "--prior-variance=8,8,8,0.5,0.5,0.5"]
+        normalised += ["--max-distance=2", "--initial-spread=0.0625,0.0625,0.0625" + 3 * ",0.015625"]
+        posteriors = self.posteriors(plain, normalised)
+        self.assert_scaled(*posteriors)
+        self.assertIs(posteriors[3]["options"]["registration"]["normalize_cloud"], True)
+
+    def test_it_matters(self):
+        draws, _ = self.run_to_files(*self.pair(FACTOR), *FAST)
+        normalised, _ = self.run_to_files(*self.pair(FACTOR), *FAST, "--normalize-cloud")
+        self.assertNotEqual(draws, normalised)
+
+    def test_points_that_are_not_finite_do_not_count(self):
+        nan, inf = float("nan"), float("inf")
+        points = [*cloud_files.box_surface(seed=2), (nan, 1.0, 1.0), (inf, -inf, 0.0)]
+        source = self.file("odd.pcd", cloud_files.pcd_bytes(points))
+        clean = self.file("clean.pcd", cloud_files.pcd_bytes(points[:-2]))
+        target = self.pair(1.0)[1]
+        runs = [self.run_to_files(c, target, *FAST, "--normalize-cloud") for c in (source, clean)]
+        self.assertEqual(runs[0][0], runs[1][0])
+
+    def configs(self):
+        plain = copy.deepcopy(AUTHORS_CONFIG)
+        plain["initial-guess"]["x"] = 0.0625
+        normalised = copy.deepcopy(plain)
+        normalised["normalize-cloud"] = True
+        return [
+            self.file(f"{name}.json", json.dumps(content))
+            for name, content in (("plain", plain), ("normalised", normalised))
+        ]
+
+    def test_lengths_of_the_authors_file_are_in_scaled_units(self):
+        plain, normalised = self.configs()
+        posteriors = self.posteriors(["--config", plain], ["--config", normalised])
+        self.assert_scaled(*posteriors)
+        options = posteriors[3]["options"]
+        self.assertEqual(options["registration"]["max_distance_m"], FACTOR)
+        self.assertEqual(options["prior"]["mean_m_rad"], [2, 1, 0.5, 0.1, 0.2, 0.3])
+        self.assertEqual(options["prior"]["variance_m2_rad2"], [12] * 3 + [0.75] * 3)
+
+    def test_run_can_be_repeated_from_its_posterior(self):
+        config = self.configs()[1]
+        samples, _ = self.run_to_files(*self.pair(FACTOR), "--config", config)
+        posterior = (self.folder / "output" / "posterior.json").rename(self.folder / "first.json")
+        again, _ = self.run_to_files(*self.pair(FACTOR), "--config", posterior)
+        self.assertEqual(samples, again)
+
+    def test_refusals(self):
+        pair = self.pair(1.0)
+        result = run(*pair, "--preset=calibrated", "--normalize-cloud")
+        self.assert_refused(2, result, "--normalize-cloud: has no effect with preset calibrated")
+        result = run(*pair, "--preset=exact", "--normalize-cloud")
+        self.assert_refused(2, result, "--normalize-cloud: has no effect with preset exact")
+        result = run(*pair, "--config", self.configs()[1], "--max-distance=1")
+        self.assert_refused(2, result, "--max-distance: is in metres")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,296 @@
+"""pcl_bayesian_icp_pose_graph against trajectories that are known, and kalman_fusion."""
+
+import json
+import math
+import os
+import subprocess
+import unittest
+
+import cloud_files
+from cli_tool import DATA, ToolTest
+from robot_formats import conjugate, multiplied, quaternion_of, read_g2o_edge, turned
+
+POSE_GRAPH = os.environ["PCL_BAYESIAN_ICP_POSE_GRAPH"]
+SIMULATE = os.environ["PCL_BAYESIAN_ICP_SIMULATE"]
+KALMAN_FUSION = os.environ["PCL_BAYESIAN_ICP_KALMAN_FUSION"]
+
+# 99.9 % and 0.1 % quantiles of chi-square, by degrees of freedom (R 4.2, qchisq).
+CHI2_HIGH = {6: 22.458, 18: 42.312}
+CHI2_LOW = {18: 4.905}
+IDENTITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+def call(program, *arguments):
+    command = [program, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+
+# A pose is (position, quaternion x y z w).
+
+
+def composed(a, b):
+    position = [x + y for x, y in zip(a[0], turned(a[1], b[0]))]
+    return position, multiplied(a[1], b[1])
+
+
+def inverted(a):
+    back = conjugate(a[1])
+    return [-x for x in turned(back, a[0])], back
+
+
+def chained(poses):
+    result = IDENTITY
+    for pose in poses:
+        result = composed(result, pose)
+    return result
+
+
+def g2o_error(measured, true):
+    position, q = composed(inverted(measured), true)
+    sign = math.copysign(1.0, q[3])
+    return [*position, *(sign * c for c in q[:3])]
+
+
+def small_pose(error):
+    vector = error[3:]
+    return error[:3], (*vector, math.sqrt(1.0 - sum(c * c for c in vector)))
+
+
+def pose_of_matrix(m):
+    w = math.sqrt(1 + m[0][0] + m[1][1] + m[2][2]) / 2
+    q = [(m[2][1] - m[1][2]), (m[0][2] - m[2][0]), (m[1][0] - m[0][1])]
+    return [m[k][3] for k in range(3)], (*(c / (4 * w) for c in q), w)
+
+
+def solved(matrix, columns):
+    """X with matrix X = columns, by Gauss-Jordan with pivots."""
+    size = len(matrix)
+    rows = [[*matrix[i], *columns[i]] for i in range(size)]
+    for k in range(size):
+        pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        rows[k] = [x / rows[k][k] for x in rows[k]]
+        for i in range(size):
+            if i != k:
+                rows[i] = [x - rows[i][k] * y for x, y in zip(rows[i], rows[k])]
+    return [row[size:] for row in rows]
+
+
+def inverse(matrix):
+    return solved(matrix, [[float(i == k) for k in range(6)] for i in range(6)])
+
+
+def quadratic(error, matrix):
+    return sum(error[i] * matrix[i][k] * error[k] for i in range(6) for k in range(6))
+
+
+def chain_covariance(edges):
+    """Of the last pose of the chain, from those of its edges, to first order."""
+    poses = [pose for pose, _ in edges]
+    end = chained(poses)
+    total = [[0.0] * 6 for _ in range(6)]
+    for k, (_, information) in enumerate(edges):
+        jacobian = []
+        for axis in range(6):
+            ends = []
+            for step in (1e-6, -1e-6):
+                error = [step * (i == axis) for i in range(6)]
+                moved = [*poses[: k + 1], small_pose(error), *poses[k + 1 :]]
+                ends.append(g2o_error(end, chained(moved)))
+            jacobian.append([(a - b) / 2e-6 for a, b in zip(*ends)])
+        covariance = inverse(information)
+        for i in range(6):
+            for j in range(6):
+                total[i][j] += sum(
+                    jacobian[a][i] * covariance[a][b] * jacobian[b][j]
+                    for a in range(6)
+                    for b in range(6)
+                )
+    return total
+
+
+def read_graph(path):
+    """({id: pose}, {(i, j): (pose, information)})."""
+    vertices, edges = {}, {}
+    for line in path.read_text().splitlines():
+        words = line.split()
+        if words[0] == "VERTEX_SE3:QUAT":
+            numbers = list(map(float, words[2:]))
+            assert len(numbers) == 7
+            vertices[int(words[1])] = (numbers[:3], tuple(numbers[3:]))
+        elif words[0] == "EDGE_SE3:QUAT":
+            i, j, position, quaternion, information = read_g2o_edge(line)
+            edges[i, j] = ((position, tuple(quaternion)), information)
+        else:
+            assert words == ["FIX", "0"], line
+    return vertices, edges
+
+
+class PoseGraphTest(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.graph = self.folder / "graph.g2o"
+
+    def trajectory(self, eyes):
+        """Scans of the table from a moving camera; (folder, maps from the world)."""
+        scans = self.folder / "scans"
+        scans.mkdir()
+        from_world = []
+        for k, eye in enumerate(eyes):
+            output = self.folder / f"view{k}"
+            view = ["--source-eye", eye, "--source-look-at", "0,0,0", "--seed", k + 1]
+            view += ["--frame", "sensor", "--offset", "0,0,0,0,0,0"]
+            size = ["--width", 160, "--height", 120]
+            result = call(SIMULATE, "--scene", "table", *view, *size, "-o", output)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            (output / "source.pcd").rename(scans / f"scan_{k}.pcd")
+            scene = json.loads((output / "scene.json").read_text())
+            from_world.append(pose_of_matrix(scene["T_source_world"]))
+        return scans, from_world
+
+
+class PoseGraphOfSimulatedScans(PoseGraphTest):
+    def test_truth_is_within_the_covariance(self):
+        eyes = ["0,-1.2,0.7", "0.06,-1.19,0.72", "0.12,-1.17,0.71", "0.18,-1.14,0.7"]
+        scans, from_world = self.trajectory(eyes)
+        result = call(POSE_GRAPH, scans, "-o", self.graph, "--loop", "0,3", "--loop", "3,1")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertEqual(len(result.stderr.splitlines()), 5)
+        vertices, edges = read_graph(self.graph)
+        self.assertEqual(sorted(vertices), [0, 1, 2, 3])
+        self.assertEqual(sorted(edges), [(0, 1), (0, 3), (1, 2), (2, 3), (3, 1)])
+
+        truth = {(i, j): composed(from_world[i], inverted(from_world[j])) for i, j in edges}
+        nees = {
+            key: quadratic(g2o_error(pose, truth[key]), information)
+            for key, (pose, information) in edges.items()
+        }
+        for key, value in nees.items():
+            self.assertLess(value, CHI2_HIGH[6], key)
+        chain_nees = sum(nees[k, k + 1] for k in range(3))
+        self.assertLess(chain_nees, CHI2_HIGH[18])
+        self.assertGreater(chain_nees, CHI2_LOW[18])
+
+        chain = [edges[k, k + 1] for k in range(3)]
+        for k in range(4):
+            expected = chained(pose for pose, _ in chain[:k])
+            self.assertLess(max(map(abs, g2o_error(vertices[k], expected))), 1e-12)
+        error = g2o_error(vertices[3], truth[0, 3])
+        end_nees = quadratic(error, inverse(chain_covariance(chain)))
+        self.assertLess(end_nees, CHI2_HIGH[6])
+        # The scans moved: a graph of identities would not have passed.
+        self.assertGreater(quadratic(g2o_error(IDENTITY, truth[0, 1]), chain[0][1]), 1e4)
+
+    def test_files_in_their_order(self):
+        scans, _ = self.trajectory(["0,-1.2,0.7", "0.06,-1.19,0.72"])
+        files = [scans / "scan_1.pcd", scans / "scan_0.pcd"]
+        self.assertIn(call(POSE_GRAPH, scans, "-o", self.graph).returncode, (0, 1))
+        forward, _ = read_graph(self.graph)[1][0, 1]
+        self.assertIn(call(POSE_GRAPH, *files, "-o", self.graph).returncode, (0, 1))
+        backward, information = read_graph(self.graph)[1][0, 1]
+        error = g2o_error(backward, inverted(forward))
+        # Twice the variance, for two estimates of one motion.
+        self.assertLess(quadratic(error, information) / 2, CHI2_HIGH[6])
+
+
+class PoseGraphEdges(PoseGraphTest):
+    def test_no_silent_edge(self):
+        source, target = self.small_pair()
+        far = [(x + 50, y, z) for x, y, z in cloud_files.box_surface(seed=3)]
+        far = self.file("far.pcd", cloud_files.pcd_bytes(far))
+        gone = self.folder / "gone.pcd"
+        scans = [target, source, far, gone]
+        guess = "0.1,0,0,0,0,0.2"
+        options = ["--guess", guess, "--prior-variance", "0.04", "--quiet"]
+        result = call(POSE_GRAPH, *scans, "-o", self.graph, *options, "--weak-edges")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stderr, r"edge 1-2: the prior only, [a-z_]+: ")
+        self.assertRegex(result.stderr, r"edge 2-3: MISSING, error: .*gone.pcd: no such file")
+        vertices, edges = read_graph(self.graph)
+        self.assertEqual(sorted(vertices), [0, 1, 2, 3])
+        self.assertIn((1, 2), edges)
+        self.assertNotIn((2, 3), edges)
+        pose, information = edges[1, 2]
+        half = math.sin(0.1)
+        expected = ([0.1, 0.0, 0.0], (0.0, 0.0, half, math.cos(0.1)))
+        self.assertLess(max(map(abs, g2o_error(pose, expected))), 1e-12)
+        # 1 / variance, and 4 / variance of half angles; float round-off of differences.
+        for i in range(6):
+            for k in range(6):
+                diagonal = (25.0 if i < 3 else 100.0) * (i == k)
+                self.assertAlmostEqual(information[i][k], diagonal, delta=1e-4)
+
+        result = call(POSE_GRAPH, *scans, "-o", self.graph, *options)
+        self.assertRegex(result.stderr, r"edge 1-2: MISSING, [a-z_]+: ")
+        vertices, edges = read_graph(self.graph)
+        self.assertEqual(sorted(vertices), [0, 1, 2, 3])
+        self.assertNotIn((1, 2), edges)
+
+    def test_loops_do_not_count_the_prior(self):
+        """In its plane a bare table top is held by the prior alone."""
+        scans = [DATA / "table_top" / "target.pcd", DATA / "table_top" / "source.pcd"]
+        variance = 0.01
+        options = ["--loop", "0,1", "--prior-variance", variance]
+        result = call(POSE_GRAPH, *scans, "-o", self.graph, *options)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        lines = [line for line in self.graph.read_text().splitlines() if "EDGE" in line]
+        chain, loop = (inverse(read_g2o_edge(line)[4]) for line in lines)
+        for axis in (0, 1):
+            # To 20 %: axes are tilted, and a variance of 2000 draws is known to 3 %.
+            self.assertAlmostEqual(chain[axis][axis], variance, delta=0.2 * variance)
+            self.assertGreater(loop[axis][axis], 1000 * variance)
+        self.assertLess(loop[2][2], 1e6 * chain[2][2])
+
+    def test_refused(self):
+        source, target = self.small_pair()
+        for code, words, part in (
+            (2, [], "at least two scans"),
+            (2, [source, "-o", "g"], "at least two scans"),
+            (2, [source, target], "--output"),
+            (2, [source, target, "-o", "g", "--loop", "0,2"], "--loop: '0,2'"),
+            (2, [source, target, "-o", "g", "--loop", "1,1"], "--loop: '1,1'"),
+            (2, [source, target, "-o", "g", "--sigma", "1"], "--sigma"),
+            (3, [self.folder / "scans", "-o", "g"], "fewer than two"),
+            (3, [source, target, "-o", "/proc/none/g"], "/proc/none"),
+        ):
+            with self.subTest(words=words):
+                (self.folder / "scans").mkdir(exist_ok=True)
+                result = call(POSE_GRAPH, *words)
+                self.assertEqual(result.returncode, code, result.stderr)
+                self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+                self.assertIn(part, result.stderr)
+
+
+class KalmanFusion(ToolTest):
+    def test_each_direction_from_who_knows_it(self):
+        """A can turns about its axis unseen: the odometry says how far."""
+        folder = DATA / "can"
+        lines = (folder / "T_target_source.txt").read_text().splitlines()
+        true = pose_of_matrix([list(map(float, line.split())) for line in lines])
+        # Errors of the odometry of about its standard deviation, 0.02.
+        error = [0.015, -0.02, 0.01, 0.01, -0.008, 0.009]
+        odometry = composed(true, inverted(small_pose(error)))
+        axes = [turned(odometry[1], [float(i == k) for i in range(3)]) for k in range(3)]
+        rows = [[axes[k][i] for k in range(3)] + [odometry[0][i]] for i in range(3)]
+        rows.append([0.0, 0.0, 0.0, 1.0])
+        text = "\n".join(" ".join(map(repr, row)) for row in rows)
+        matrix = self.file("odometry.txt", text)
+        result = call(KALMAN_FUSION, folder / "source.pcd", folder / "target.pcd", matrix)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("directions that they do not see: 1", result.stdout)
+        fused = result.stdout[result.stdout.index("fused") :]
+        numbers = [list(map(float, line.split(":")[1].split())) for line in fused.splitlines()[1:3]]
+        deviations = numbers[1]
+        # Half of the information about the axis would be 0.014: the odometry twice.
+        self.assertAlmostEqual(deviations[5], 0.02, delta=0.001)
+        for k in range(5):
+            self.assertLess(deviations[k], 0.005)
+        pose = (numbers[0][:3], quaternion_of(*numbers[0][3:]))
+        error = g2o_error(pose, true)
+        for k in range(6):
+            error_of_axis = error[k] * (1 if k < 3 else 2)
+            self.assertLess(abs(error_of_axis), 4 * deviations[k])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,234 @@
+"""pcl_bayesian_icp_transform: what it moves, what it keeps, what it refuses."""
+
+import math
+import os
+import random
+import resource
+import signal
+import struct
+import subprocess
+import unittest
+
+import cloud_files
+from cli_tool import FAST, ToolTest, run, strict_json
+
+TRANSFORM = os.environ["PCL_BAYESIAN_ICP_TRANSFORM"]
+POSE = (0.1, -0.2, 0.3, 0.4, -0.5, 0.6)
+WORDS = ",".join(map(str, POSE))
+FIELDS = [("intensity", "f"), ("x", "f"), ("y", "f"), ("z", "f"), ("ring", "H")]
+FIELDS += [("normal_x", "f"), ("normal_y", "f"), ("normal_z", "f"), ("time", "d")]
+# x, y, z below 1 m are rounded to 32 bits before and after.
+FLOAT_ROUNDING = 1e-6
+
+
+def transform(*arguments, **options):
+    command = [TRANSFORM, *map(str, arguments)]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.run(command, timeout=60, check=False, **pipes, **options)
+
+
+def number(value):
+    return struct.unpack("<f" if len(value) == 4 else "<d", value)[0]
+
+
+def numbers(row, *names):
+    return [number(row[name]) for name in names]
+
+
+class TransformTest(ToolTest):
+    def cloud(self, name="in.pcd", fields=tuple(FIELDS), **writing):
+        """Points with a value of each kind in every field, the last without coordinates."""
+        generator = random.Random(3)
+        points = []
+        for i in range(50):
+            values = [cloud_files.as_float32(generator.uniform(-0.5, 0.5)) for _ in fields]
+            values[4] = i * 1000
+            points.append(tuple(values))
+        nan = math.nan
+        points.append((7.0, nan, nan, nan, 9, nan, nan, nan, 1e300))
+        return self.file(name, cloud_files.pcd_bytes(points, list(fields), **writing))
+
+    def assert_done(self, result):
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+
+    def assert_moved(self, before, after, matrix, normals=True):
+        self.assertEqual(len(after), len(before))
+        for a, b in zip(before, after):
+            point = cloud_files.moved(matrix, numbers(a, "x", "y", "z"))
+            if not math.isnan(point[0]):
+                self.assertLess(math.dist(numbers(b, "x", "y", "z"), point), FLOAT_ROUNDING)
+            else:
+                self.assertTrue(all(map(math.isnan, numbers(b, "x", "y", "z"))))
+            if not normals:
+                continue
+            names = ["normal_x", "normal_y", "normal_z"]
+            normal = cloud_files.rotated(matrix, numbers(a, *names))
+            if not math.isnan(normal[0]):
+                self.assertLess(math.dist(numbers(b, *names), normal), FLOAT_ROUNDING)
+
+
+class TransformMotion(TransformTest):
+    def test_pose_in_words(self):
+        source, output = self.cloud(), self.folder / "out.pcd"
+        self.assert_done(transform(source, output, "--pose", WORDS))
+        _, before = cloud_files.read_pcd(source)
+        header, after = cloud_files.read_pcd(output)
+        self.assertEqual(header["FIELDS"], [name for name, _ in FIELDS])
+        self.assert_moved(before, after, cloud_files.matrix_of(*POSE))
+        for a, b in zip(before, after):
+            for name in ("intensity", "ring", "time"):
+                self.assertEqual(a[name], b[name])
+
+    def test_negative_first_number(self):
+        source, output = self.cloud(), self.folder / "out.pcd"
+        self.assert_done(transform(source, output, "--pose", "-0.5,0,0,0,0,0"))
+        _, before = cloud_files.read_pcd(source)
+        _, after = cloud_files.read_pcd(output)
+        self.assert_moved(before, after, cloud_files.matrix_of(-0.5, 0, 0, 0, 0, 0))
+
+    def test_matrix_file_and_inverse(self):
+        source, moved, back = self.cloud(), self.folder / "moved.pcd", self.folder / "back.pcd"
+        rows = cloud_files.matrix_of(*POSE)
+        matrix = self.file("T.txt", "\n".join(" ".join(map(repr, row)) for row in rows))
+        self.assert_done(transform(source, moved, "-p", matrix))
+        self.assert_done(transform(moved, back, "-p", matrix, "--inverse"))
+        _, before = cloud_files.read_pcd(source)
+        _, there = cloud_files.read_pcd(moved)
+        _, again = cloud_files.read_pcd(back)
+        self.assert_moved(before, there, rows)
+        self.assert_moved(before, again, cloud_files.matrix_of(0, 0, 0, 0, 0, 0))
+
+    def test_viewpoint_moves_with_the_cloud(self):
+        half = math.sqrt(0.5)  # a quarter turn about z
+        source = self.cloud(viewpoint=f"1 2 3 {half} 0 0 {half}")
+        output = self.folder / "out.pcd"
+        self.assert_done(transform(source, output, f"--pose={WORDS}"))
+        header, _ = cloud_files.read_pcd(output)
+        viewpoint = list(map(float, header["VIEWPOINT"]))
+        matrix = cloud_files.matrix_of(*POSE)
+        # Six digits are what PCL writes.
+        for found, expected in zip(viewpoint, cloud_files.moved(matrix, (1, 2, 3))):
+            self.assertAlmostEqual(found, expected, delta=1e-5)
+        w, x, y, z = viewpoint[3:]
+        looks_along = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)]
+        for found, expected in zip(looks_along, cloud_files.rotated(matrix, (0, 1, 0))):
+            self.assertAlmostEqual(found, expected, delta=1e-5)
+
+    def test_posterior(self):
+        source, target = self.small_pair()
+        output = self.folder / "output"
+        result = run(source, target, *FAST, "-o", output, "--quiet")
+        self.assert_ran(result)
+        document = strict_json((output / "posterior.json").read_text())
+        _, before = cloud_files.read_pcd(source)
+        _, aligned = cloud_files.read_pcd(output / "aligned.pcd")
+        moved = self.folder / "moved.pcd"
+        self.assert_done(transform(source, moved, "--pose", output / "posterior.json"))
+        self.assertEqual(cloud_files.read_pcd(moved)[1], aligned)
+        self.assert_done(
+            transform(source, moved, "--pose", output / "posterior.json", "--use", "mean")
+        )
+        matrix = document["posterior"]["mean"]["T_target_source"]
+        self.assert_moved(before, cloud_files.read_pcd(moved)[1], matrix, normals=False)
+
+    def test_ply_keeps_all_fields_and_the_viewpoint(self):
+        half = math.sqrt(0.5)
+        source = self.cloud(viewpoint=f"1 2 3 {half} 0 0 {half}")
+        ply, pcd = self.folder / "all.ply", self.folder / "all.pcd"
+        self.assert_done(transform(source, ply, "--pose", WORDS))
+        self.assert_done(transform(ply, pcd, "--pose", WORDS, "--inverse"))
+        _, before = cloud_files.read_pcd(source)
+        header, after = cloud_files.read_pcd(pcd)
+        self.assertEqual(header["FIELDS"], [name for name, _ in FIELDS])
+        self.assert_moved(before, after, cloud_files.matrix_of(0, 0, 0, 0, 0, 0))
+        for a, b in zip(before, after):
+            for name in ("intensity", "ring", "time"):
+                self.assertEqual(a[name], b[name])
+        # The camera is the last element: 17 floats from its position on, two ints, two floats.
+        position = struct.unpack("<3f", ply.read_bytes()[-84:-72])
+        expected = cloud_files.moved(cloud_files.matrix_of(*POSE), (1, 2, 3))
+        self.assertLess(math.dist(position, expected), FLOAT_ROUNDING * 10)
+
+    def test_ply(self):
+        points = cloud_files.box_surface()
+        source = self.file("in.ply", cloud_files.ply_bytes(points))
+        ply, pcd = self.folder / "out.PLY", self.folder / "out.pcd"
+        self.assert_done(transform(source, ply, "--pose", WORDS))
+        self.assertTrue(ply.read_bytes().startswith(b"ply\nformat binary_little_endian 1.0\n"))
+        self.assert_done(transform(ply, pcd, "--pose", "0,0,0,0,0,0"))
+        _, after = cloud_files.read_pcd(pcd)
+        before = [dict(zip("xyz", (struct.pack("<f", c) for c in point))) for point in points]
+        self.assert_moved(before, after, cloud_files.matrix_of(*POSE), normals=False)
+
+
+class TransformRefusals(TransformTest):
+    def assert_refused(self, exit_code, result, *parts):
+        self.assertEqual((result.returncode, result.stdout), (exit_code, ""), result.stderr)
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("pcl_bayesian_icp_transform: "), lines[0])
+        for part in parts:
+            self.assertIn(str(part), lines[0])
+
+    def test_input_is_not_overwritten_unless_asked_for(self):
+        source = self.cloud()
+        content = source.read_bytes()
+        link = self.folder / "link.pcd"
+        link.symlink_to(source)
+        for output in (source, self.folder / "." / "in.pcd", link):
+            result = transform(source, output, "--pose", WORDS)
+            self.assert_refused(2, result, "is the input", "--overwrite")
+        self.assertEqual(source.read_bytes(), content)
+        self.assert_done(transform(source, source, "--pose", WORDS, "--overwrite"))
+        self.assertNotEqual(source.read_bytes(), content)
+
+    def test_usage(self):
+        source, output = self.cloud(), self.folder / "out.pcd"
+        self.assert_refused(2, transform(source, "--pose", WORDS), "two files are needed")
+        self.assert_refused(2, transform(source, output), "--pose is missing")
+        self.assert_refused(2, transform(source, output, "--pose", "1,2,3"), "--pose: '1,2,3'")
+        self.assert_refused(2, transform(source, output, "--pose", WORDS, "--use=x"), "--use: 'x'")
+        self.assert_refused(2, transform(source, output, "--poses", WORDS), "--poses")
+        self.assertFalse(output.exists())
+        for word in ("--help", "--version"):
+            result = transform(word)
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn("pcl_bayesian_icp_transform", result.stdout)
+
+    def test_files(self):
+        source, output = self.cloud(), self.folder / "out.pcd"
+        result = transform(source, self.folder / "out.xyz", "--pose", WORDS)
+        self.assert_refused(3, result, "out.xyz: is neither .pcd nor .ply")
+        result = transform(self.folder / "no.pcd", output, "--pose", WORDS)
+        self.assert_refused(3, result, "no.pcd: no such file")
+        result = transform(source, output, "--pose", self.folder / "no.json")
+        self.assert_refused(3, result, "no.json: no such file")
+        result = transform(source, output, "--pose", self.file("empty.json", "{}"))
+        self.assert_refused(3, result, "empty.json: is no posterior.json")
+        scaled = self.file("scaled.txt", "2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1")
+        self.assert_refused(3, transform(source, output, "-p", scaled), "is not a rotation")
+        self.assertFalse(output.exists())
+
+    def test_full_disk(self):
+        """No file may be larger than 500 bytes."""
+        source = self.cloud()
+
+        def limit_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))
+
+        for name in ("full.pcd", "full.ply"):
+            result = transform(
+                source,
+                self.folder / name,
+                "--pose",
+                WORDS,
+                preexec_fn=limit_files,
+                restore_signals=False,
+            )
+            self.assert_refused(3, result, name, "cannot be written")
+        self.assertEqual([path.name for path in self.folder.iterdir()], ["in.pcd"])
+
+
+if __name__ == "__main__":
+    unittest.main()
