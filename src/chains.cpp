@@ -58,7 +58,7 @@ runChain(const Vector6d& start,
     const long sampled = step + 1 - options.num_burn_in;
     if (sampled > 0 && sampled % options.thinning == 0)
       chain.draws.row(num_kept++) = canonicalPose(pose).transpose();
-    run.reportStep(chain_index, step + 1);
+    run.reportStep(chain_index, step + 1, [&pose] { return pose; });
   }
   chain.diverged = chain.diverged || 2 * num_jumps > num_steps;
   chain.draws.conservativeResize(num_kept, 6);

@@ -113,7 +113,9 @@ PreconditionedRun::sample(std::size_t chain_index, int num_burn_in)
     if (sampled > 0 && sampled % thinning_ == 0)
       chain.draws.row(num_kept++) =
           canonicalPose(target_.to_pose(position)).transpose();
-    run_.reportStep(static_cast<int>(chain_index), steps_before + step);
+    run_.reportStep(static_cast<int>(chain_index), steps_before + step, [&] {
+      return target_.to_pose(position);
+    });
   }
   chain.draws.conservativeResize(num_kept, 6);
 }

@@ -66,14 +66,18 @@ public:
       std::rethrow_exception(exception_);
   }
 
-  /** \brief Counts a step of \p chain and tells the callback. */
+  /** \brief Counts a step of \p chain and tells the callback.
+   * \param[in] poseNow returns the pose at which the chain is; asked only if there is a
+   *            callback */
+  template <typename PoseFunction>
   void
-  reportStep(int chain, long chain_steps)
+  reportStep(int chain, long chain_steps, const PoseFunction& poseNow)
   {
     if (!progress_)
       return;
+    const Vector6d pose = canonicalPose(poseNow());
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_}))
+    if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_, pose}))
       cancelled_ = stopped_ = true;
   }
 

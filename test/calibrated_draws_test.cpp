@@ -419,11 +419,24 @@ TEST(CalibratedDraws, ReportProgressAndCanBeCancelled)
                             progress);
   };
   long num_calls = 0;
+  std::vector<Vector6d> last_poses(4);
   const ChainSet complete = run([&](const Progress& progress) {
     EXPECT_EQ(progress.steps, ++num_calls);
     EXPECT_EQ(progress.total_steps, 4 * (17 + 3 * 10));
+    EXPECT_TRUE(progress.pose.allFinite());
+    last_poses[progress.chain] = progress.pose;
     return true;
   });
+  // Told before the spread about the mean is adjusted by a factor of at most 1.4; no
+  // draw is further from the mean than the root of the sum of all squares.
+  const Vector6d mean = meanPose(pooledDraws(complete.chains));
+  const Vector6d spread =
+      (pooledDraws(complete.chains).rowwise() - mean.transpose()).colwise().norm();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector6d kept = complete.chains[i].draws.row(9).transpose();
+    EXPECT_TRUE(((last_poses[i] - kept).array().abs() < 0.5 * spread.array()).all());
+    EXPECT_FALSE(last_poses[i].isZero(0.0));
+  }
   EXPECT_EQ(num_calls, 4 * (17 + 3 * 10));
   EXPECT_FALSE(complete.cancelled);
   options.num_threads = 1;

@@ -195,15 +195,23 @@ TEST(PreconditionedSampler, ObeysBurnInAndThinningAndReportsThem)
   options.num_burn_in = 17;
   options.thinning = 3;
   long warm_up_calls = 0, steps = 0, total = 0;
-  runPreconditionedChains(
+  std::vector<Vector6d> kept;
+  const ChainSet set = runPreconditionedChains(
       targetOf(gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity())),
       PreconditionedOptions(),
       options,
       [&](const Progress& p) {
         p.steps == 0 ? ++warm_up_calls : ++steps;
         total = p.total_steps;
+        EXPECT_EQ(p.pose.allFinite(), p.steps > 0);
+        const long sampled = p.chain_steps - 17;
+        if (p.chain == 0 && sampled > 0 && sampled % 3 == 0)
+          kept.push_back(p.pose);
         return true;
       });
+  ASSERT_EQ(kept.size(), 10U);
+  for (Eigen::Index i = 0; i < 10; ++i)
+    EXPECT_EQ(kept[i], set.chains[0].draws.row(i).transpose());
   EXPECT_GT(warm_up_calls, 0);
   EXPECT_EQ(steps, 4 * (17 + 3 * 10));
   EXPECT_EQ(total, steps);

@@ -299,6 +299,29 @@ TEST(Progress, IsToldOfEveryStepOfEveryChain)
   EXPECT_EQ(last_total, calls);
 }
 
+TEST(Progress, TellsThePoseThatIsKept)
+{
+  auto options = chainOptions(2, 20);
+  options.num_burn_in = 5;
+  options.thinning = 2;
+  std::vector<std::vector<Vector6d>> kept(2);
+  const ChainSet set = runChains(Vector6d::Zero(),
+                                 unitGaussian(),
+                                 plainSgld(0.1),
+                                 options,
+                                 [&](const Progress& progress) {
+                                   const long sampled = progress.chain_steps - 5;
+                                   if (sampled > 0 && sampled % 2 == 0)
+                                     kept[progress.chain].push_back(progress.pose);
+                                   return true;
+                                 });
+  for (std::size_t chain = 0; chain < 2; ++chain) {
+    ASSERT_EQ(kept[chain].size(), 10U);
+    for (Eigen::Index i = 0; i < 10; ++i)
+      EXPECT_EQ(kept[chain][i], set.chains[chain].draws.row(i).transpose());
+  }
+}
+
 TEST(Progress, CanCancelAndWhatWasDrawnStays)
 {
   for (const int num_threads : {1, 2}) {

@@ -55,6 +55,25 @@ chainsOf(const Icp& icp)
   return chains;
 }
 
+/** Passes on where ICP is. PCL calls back also as it is told to, before ICP has begun.
+ */
+void
+observeIcp(const IcpCallback& icp_progress, const Eigen::Matrix4d& guess, Icp& icp)
+{
+  if (!icp_progress)
+    return;
+  std::function<Icp::UpdateVisualizerCallbackSignature> tell =
+      [&icp, icp_progress, guess, has_begun = false](const Cloud&,
+                                                     const pcl::Indices&,
+                                                     const Cloud&,
+                                                     const pcl::Indices&) mutable {
+        icp_progress(has_begun ? icp.getFinalTransformation().cast<double>().eval()
+                               : guess);
+        has_begun = true;
+      };
+  icp.registerVisualizationCallback(tell);
+}
+
 /** Aligns, and measures ICP and sampling, which begins with the first step of a chain.
  */
 void
@@ -85,7 +104,8 @@ RegistrationResult
 registerClouds(const Eigen::Matrix3Xf& source,
                const Eigen::Matrix3Xf& target,
                const Settings& settings,
-               const ProgressCallback& progress)
+               const ProgressCallback& progress,
+               const IcpCallback& icp_progress)
 {
   if (isNormalized(settings))
     return registerNormalized(source, target, settings, progress);
@@ -93,6 +113,7 @@ registerClouds(const Eigen::Matrix3Xf& source,
   configure(settings, icp);
   icp.setInputSource(cloudOf(source));
   icp.setInputTarget(cloudOf(target));
+  observeIcp(icp_progress, settings.guess, icp);
   RegistrationResult result;
   align(settings.guess, progress, icp, result);
   result.icp_has_converged = icp.hasConverged();

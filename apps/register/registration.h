@@ -8,6 +8,7 @@
 #include <bayesian_icp/chains.h>
 #include <bayesian_icp/summary.h>
 
+#include <functional>
 #include <vector>
 
 namespace bayesian_icp::app {
@@ -28,13 +29,20 @@ struct RegistrationResult {
   double sampling_seconds = 0.0;
 };
 
+/** \brief Told of the whole transformation T_target_source that ICP has come to, at its
+ * start and after each of its iterations. */
+using IcpCallback = std::function<void(const Eigen::Matrix4d& T_target_source)>;
+
 /** \brief Run ICP and sample the posterior.
  * \param[in] source,target x, y, z [m], a column a point; not finite ones are skipped
- * \param[in] progress called after each step of the chains */
+ * \param[in] progress called after each step of the chains
+ * \param[in] icp_progress called at ICP's start and after each of its iterations; may
+ * be empty */
 RegistrationResult
 registerClouds(const Eigen::Matrix3Xf& source,
                const Eigen::Matrix3Xf& target,
                const Settings& settings,
-               const ProgressCallback& progress);
+               const ProgressCallback& progress,
+               const IcpCallback& icp_progress = IcpCallback());
 
 } // namespace bayesian_icp::app

@@ -24,10 +24,12 @@ readRun(const std::string& source_file,
 }
 
 void
-registerClouds(const ProgressCallback& progress, Run& run)
+registerClouds(const ProgressCallback& progress,
+               Run& run,
+               const IcpCallback& icp_progress)
 {
-  run.result =
-      registerClouds(run.source.points, run.target.points, run.settings, progress);
+  run.result = registerClouds(
+      run.source.points, run.target.points, run.settings, progress, icp_progress);
 }
 
 } // namespace bayesian_icp::app

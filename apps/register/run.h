@@ -26,8 +26,11 @@ readRun(const std::string& source_file,
         const Settings& settings);
 
 /** \brief Register the clouds of \p run.
- * \param[in] progress called after each step of the chains; returns false to cancel */
+ * \param[in] progress called after each step of the chains; returns false to cancel
+ * \param[in] icp_progress as in registration.h */
 void
-registerClouds(const ProgressCallback& progress, Run& run);
+registerClouds(const ProgressCallback& progress,
+               Run& run,
+               const IcpCallback& icp_progress = IcpCallback());
 
 } // namespace bayesian_icp::app

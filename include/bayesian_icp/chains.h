@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace bayesian_icp {
@@ -50,6 +51,10 @@ struct Progress {
    * mixed. */
   long steps;
   long total_steps;
+  /** Canonical pose at which the chain is now [m, rad]; NaN while nothing is sampled.
+   * Preset `calibrated` adjusts the spread of its draws when all are there, by a factor
+   * of at most 1.4 in any direction: its chains are shown here before that. */
+  Vector6d pose = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
 /** \brief Called after each step, by one thread at a time, not always the same one.

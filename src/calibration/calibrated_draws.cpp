@@ -138,7 +138,9 @@ private:
       const long sampled = step - steps.num_burn_in;
       if (sampled > 0 && sampled % steps.thinning == 0)
         kept.col(num_kept++) = langevin.position();
-      run_.reportStep(index, step);
+      run_.reportStep(index, step, [&] {
+        return poseOf(mode.model.coordinates.pose(langevin.position()).matrix());
+      });
     }
     kept.conservativeResize(6, num_kept);
   }

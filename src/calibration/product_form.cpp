@@ -142,7 +142,8 @@ sampleProductForm(const Prior& prior,
       const long sampled = step - burn_in;
       if (sampled > 0 && sampled % options.thinning == 0)
         positions.col(num_kept++) = chain.position();
-      run.reportStep(i, step);
+      run.reportStep(
+          i, step, [&] { return poseOf(coordinates.pose(chain.position()).matrix()); });
     }
     kept.draws = posesOf(coordinates, positions.leftCols(num_kept));
     kept.diverged = !kept.draws.allFinite();

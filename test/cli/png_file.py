@@ -1,4 +1,4 @@
-"""PNG files as browsers write them, read without a library."""
+"""PNG files of 8 bits a channel, read without a library."""
 
 import struct
 import zlib
@@ -28,6 +28,8 @@ def unfiltered(kind, line, above, bytes_per_pixel):
 
 def read_png(content):
     """(width, height, rows): each row the bytes of its pixels, three a pixel."""
+    if not content.startswith(b"\x89PNG\r\n\x1a\n") or content[-8:-4] != b"IEND":
+        raise ValueError("no complete PNG")
     position, data = 8, b""
     while position < len(content):
         size, kind = struct.unpack(">I4s", content[position : position + 8])

@@ -2,8 +2,11 @@
 # Arguments: prefix.
 set -euo pipefail
 prefix=$1
-for tool in pcl_bayesian_icp pcl_bayesian_icp_batch pcl_bayesian_icp_pose_graph \
-  pcl_bayesian_icp_simulate pcl_bayesian_icp_transform; do
+tools=(pcl_bayesian_icp pcl_bayesian_icp_batch pcl_bayesian_icp_pose_graph
+  pcl_bayesian_icp_simulate pcl_bayesian_icp_transform)
+# Built only where VTK is.
+[[ ! -e $prefix/bin/pcl_bayesian_icp_viewer ]] || tools+=(pcl_bayesian_icp_viewer)
+for tool in "${tools[@]}"; do
   env -i "$prefix/bin/$tool" --help >/dev/null
   libraries=$(env -i "$(command -v ldd)" "$prefix/bin/$tool" | grep libpcl_bayesian_icp)
   echo "$tool: $libraries"

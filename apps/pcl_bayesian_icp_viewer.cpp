@@ -1,0 +1,185 @@
+/** \file
+ * \brief pcl_bayesian_icp_viewer: shows a registration and how sure it is.
+ */
+#include "io/errors.h"
+#include "io/output_folder.h"
+#include "register/interrupt.h"
+#include "register/progress_bar.h"
+#include "viewer/command_line.h"
+#include "viewer/display.h"
+#include "viewer/drawing.h"
+#include "viewer/keys.h"
+#include "viewer/live_view.h"
+#include "viewer/scene_files.h"
+
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+namespace bayesian_icp::viewer {
+namespace {
+
+enum ExitCode {
+  Good = 0,
+  NotToBeTrusted = 1,
+  BadUsage = 2,
+  BadFile = 3,
+  Interrupted = 130
+};
+
+void
+tell(const std::string& message)
+{
+  std::cerr << "pcl_bayesian_icp_viewer: " << message << '\n';
+}
+
+void
+print(const std::string& text)
+{
+  std::cout << text << std::flush;
+  if (!std::cout)
+    throw io::FileError("standard output", "cannot be written");
+}
+
+/** Where a screenshot goes; it is known before the work whether it can be written. */
+struct Screenshot {
+  explicit Screenshot(const std::filesystem::path& file)
+  : folder(file.has_parent_path() ? file.parent_path().string() : ".")
+  , name(file.filename().string())
+  {}
+
+  io::OutputFolder folder;
+  std::string name;
+};
+
+void
+registerWithoutWindow(bool is_quiet, app::Run& run)
+{
+  app::ProgressBar bar(!is_quiet);
+  app::registerClouds(
+      [&bar](const Progress& progress) {
+        bar.update(progress);
+        return !app::wasInterrupted();
+      },
+      run);
+}
+
+void
+letUserLook(Window& window)
+{
+  handleKeys(window);
+  while (!window.isClosed() && !app::wasInterrupted())
+    window.spinOnce(50);
+}
+
+int
+exitCodeFor(const Scene& scene)
+{
+  if (app::wasInterrupted())
+    return Interrupted;
+  return scene.status == toString(Status::Ok) ? Good : NotToBeTrusted;
+}
+
+/** Opens the window, or the picture that stands in for it. */
+void
+openWindow(const Request& request,
+           const std::vector<std::string>& cloud_files,
+           std::optional<Window>& window)
+{
+  window.emplace(request.view, cloud_files);
+  if (!request.view.isOffScreen() && !request.is_quiet)
+    print("pcl_bayesian_icp_viewer: press h in the window for its keys\n");
+}
+
+/** Registers where there is no saved posterior. */
+Scene
+prepareScene(const Request& request, std::optional<Window>& window)
+{
+  if (!request.posterior_file.empty()) {
+    Scene scene =
+        readScene(request.posterior_file, request.source_file, request.target_file);
+    requireDisplay();
+    return scene;
+  }
+  app::Run run =
+      app::readRun(request.source_file, request.target_file, request.settings);
+  requireDisplay();
+  if (request.view.is_live) {
+    openWindow(request, {request.source_file, request.target_file}, window);
+    registerLive(sceneOf(run), request.view, *window, run);
+  }
+  else
+    registerWithoutWindow(request.is_quiet, run);
+  return sceneOf(run);
+}
+
+int
+show(const Request& request)
+{
+  io::silencePcl();
+  if (!request.note.empty() && !request.is_quiet)
+    tell("note: " + request.note);
+  std::optional<Screenshot> screenshot;
+  if (request.view.isOffScreen())
+    screenshot.emplace(request.view.screenshot_file);
+  app::catchInterrupt();
+  std::optional<Window> window;
+  const Scene scene = prepareScene(request, window);
+  if (app::wasInterrupted() || (window && window->isClosed()))
+    return exitCodeFor(scene);
+  if (!window)
+    openWindow(request, {scene.source_file, scene.target_file}, window);
+  // A live screenshot is of the chains, which are in the window already.
+  if (!(screenshot && request.view.is_live)) {
+    const auto uncertainty = uncertaintyOf(scene, request.view);
+    drawScene(scene, uncertainty ? &*uncertainty : nullptr, request.view, *window);
+  }
+  if (screenshot)
+    window->save(screenshot->name, screenshot->folder);
+  else
+    letUserLook(*window);
+  if (scene.status != toString(Status::Ok))
+    tell(scene.status + ": " + scene.status_message);
+  return exitCodeFor(scene);
+}
+
+int
+runTool(int argc, char** argv)
+{
+  const Request request = parseCommandLine(argc, argv);
+  switch (request.kind) {
+  case Request::Kind::ShowHelp:
+    print(helpText());
+    return Good;
+  case Request::Kind::ShowVersion:
+    print("pcl_bayesian_icp_viewer " BAYESIAN_ICP_VERSION "\n");
+    return Good;
+  case Request::Kind::Show:
+    break;
+  }
+  return show(request);
+}
+
+} // namespace
+} // namespace bayesian_icp::viewer
+
+int
+main(int argc, char** argv)
+{
+  using namespace bayesian_icp;
+  try {
+    return viewer::runTool(argc, argv);
+  }
+  catch (const io::UsageError& error) {
+    viewer::tell(std::string(error.what()) + " (see --help)");
+    return viewer::BadUsage;
+  }
+  catch (const io::FileError& error) {
+    viewer::tell(error.what());
+    return viewer::BadFile;
+  }
+  catch (const std::exception& error) {
+    viewer::tell(std::string("failed: ") + error.what());
+    return viewer::NotToBeTrusted;
+  }
+}

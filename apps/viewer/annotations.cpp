@@ -1,0 +1,121 @@
+#include "viewer/annotations.h"
+
+#include <pcl/visualization/pcl_visualizer.h>
+
+#include <vtkLookupTable.h>
+#include <vtkRenderer.h>
+#include <vtkRendererCollection.h>
+#include <vtkScalarBarActor.h>
+#include <vtkSmartPointer.h>
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+
+namespace bayesian_icp::viewer {
+
+namespace {
+
+constexpr int num_colors = 256;
+
+vtkSmartPointer<vtkLookupTable>
+tableUpTo(double maximum)
+{
+  auto table = vtkSmartPointer<vtkLookupTable>::New();
+  table->SetNumberOfTableValues(num_colors);
+  table->SetTableRange(0.0, maximum);
+  for (int i = 0; i < num_colors; ++i) {
+    const Color color = mapColor(double(i) / (num_colors - 1));
+    table->SetTableValue(i, color[0], color[1], color[2]);
+  }
+  return table;
+}
+
+int
+fontSizeFor(const Eigen::Vector2i& size)
+{
+  return std::clamp(size.y() / 48, 11, 40);
+}
+
+} // namespace
+
+PictureArea
+areaBeside(std::size_t num_lines, bool has_color_bar, const Window& window)
+{
+  const Eigen::Vector2i size = window.panelSize();
+  const double line = 2.0 * 1.5 * fontSizeFor(size) / size.y();
+  PictureArea area;
+  area.top = 1.0 - line * (static_cast<double>(num_lines) + 1.0);
+  area.bottom = -1.0 + 2.0 * line;
+  area.right = has_color_bar ? 0.72 : 0.95;
+  area.left = -0.95;
+  return area;
+}
+
+void
+addLegend(const std::vector<LegendLine>& lines, int viewport, Window& window)
+{
+  const Eigen::Vector2i size = window.panelSize();
+  const int font_size = fontSizeFor(size);
+  int y = size.y() - 2 * font_size;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Color& color = lines[i].color;
+    window.visualizer().addText(lines[i].text,
+                                font_size,
+                                y,
+                                font_size,
+                                color[0],
+                                color[1],
+                                color[2],
+                                "legend/" + std::to_string(viewport) + "/" +
+                                    std::to_string(i),
+                                viewport);
+    y -= 3 * font_size / 2;
+  }
+}
+
+void
+addStatus(const LegendLine& status, int viewport, Window& window)
+{
+  const Eigen::Vector2i size = window.panelSize();
+  const int font_size = fontSizeFor(size);
+  const Color& color = status.color;
+  const auto width = static_cast<std::size_t>(size.x() / (0.55 * font_size));
+  window.visualizer().addText(wrapped(status.text, width),
+                              font_size,
+                              font_size,
+                              font_size,
+                              color[0],
+                              color[1],
+                              color[2],
+                              "status",
+                              viewport);
+}
+
+void
+addColorBar(double maximum, const Color& text_color, int viewport, Window& window)
+{
+  const LengthUnit unit = unitFor(maximum);
+  auto bar = vtkSmartPointer<vtkScalarBarActor>::New();
+  bar->SetLookupTable(tableUpTo(maximum / unit.in_metres));
+  bar->SetTitle((std::string("sd [") + unit.name + "]").c_str());
+  bar->SetNumberOfLabels(6);
+  bar->SetLabelFormat("%-#.3g");
+  bar->SetPosition(0.86, 0.25);
+  bar->SetWidth(0.1);
+  bar->SetHeight(0.5);
+  bar->UnconstrainedFontSizeOn();
+  const int font_size = std::clamp(window.panelSize().y() / 44, 11, 44);
+  for (vtkTextProperty* text :
+       {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
+    text->SetColor(text_color[0], text_color[1], text_color[2]);
+    text->SetFontSize(font_size);
+    text->ItalicOff();
+    text->ShadowOff();
+  }
+  auto& visualizer = window.visualizer();
+  auto* renderers = visualizer.getRendererCollection().Get();
+  vtkRenderer::SafeDownCast(renderers->GetItemAsObject(viewport))->AddActor2D(bar);
+  (*visualizer.getShapeActorMap())["legend/bar/" + std::to_string(viewport)] = bar;
+}
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,28 @@
+#include "viewer/display.h"
+
+#include "io/errors.h"
+
+#include <X11/Xlib.h>
+
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace bayesian_icp::viewer {
+
+void
+requireDisplay()
+{
+  if (Display* display = XOpenDisplay(nullptr)) {
+    XCloseDisplay(display);
+    return;
+  }
+  const char* name = std::getenv("DISPLAY");
+  const bool is_named = name != nullptr && *name != '\0';
+  throw std::runtime_error(
+      (is_named ? "the X display " + io::quoted(name) + " does not answer"
+                : std::string("there is no X display (DISPLAY is not set)")) +
+      "; without a screen run it by xvfb-run -a, with --screenshot");
+}
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,43 @@
+/** \file
+ * \brief Puts a scene into a window.
+ */
+#pragma once
+
+#include "viewer/legend.h"
+#include "viewer/scene.h"
+#include "viewer/window.h"
+
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::viewer {
+
+/** \brief How points look. */
+struct PointStyle {
+  Color color = {1.0, 1.0, 1.0};
+  int size = 3;
+  double opacity = 1.0;
+};
+
+/** \brief Style of source, target or aligned source as the user wants it. */
+PointStyle
+styleOf(Layer layer, const ViewOptions& options);
+
+/** \brief Add points of one colour under the name \p id. */
+void
+addPoints(const Eigen::Matrix3Xd& points,
+          const PointStyle& style,
+          const std::string& id,
+          int viewport,
+          Window& window);
+
+/** \brief Draw all panels of the options; layers that need draws are left out if there
+ * are none. Names of what belongs to a layer begin with the layer's.
+ * \param[in] uncertainty null if there are no draws */
+void
+drawScene(const Scene& scene,
+          const Uncertainty* uncertainty,
+          const ViewOptions& options,
+          Window& window);
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,92 @@
+#include "viewer/geometry/color_map.h"
+
+#include "io/numbers.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bayesian_icp::viewer {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/** viridis at multiples of 1/8. */
+constexpr std::array<Color, 9> viridis = {{{68, 1, 84},
+                                           {71, 44, 122},
+                                           {59, 81, 139},
+                                           {44, 113, 142},
+                                           {33, 144, 141},
+                                           {39, 173, 129},
+                                           {92, 200, 99},
+                                           {170, 220, 50},
+                                           {253, 231, 37}}};
+
+std::string
+textOf(const Eigen::Vector3d& values)
+{
+  return io::textOf(values[0], 3) + ", " + io::textOf(values[1], 3) + ", " +
+         io::textOf(values[2], 3);
+}
+
+} // namespace
+
+Color
+mapColor(double fraction)
+{
+  constexpr double num_pieces = viridis.size() - 1;
+  const double position = num_pieces * std::clamp(fraction, 0.0, 1.0);
+  const auto piece = static_cast<std::size_t>(std::min(position, num_pieces - 1.0));
+  const double share = position - static_cast<double>(piece);
+  Color color{};
+  for (std::size_t k = 0; k < 3; ++k)
+    color[k] =
+        ((1.0 - share) * viridis[piece][k] + share * viridis[piece + 1][k]) / 255.0;
+  return color;
+}
+
+double
+niceMaximum(double value)
+{
+  if (!(value > 0.0))
+    return 1e-6;
+  // A value that is nice itself may be a rounding above it.
+  constexpr double tolerance = 1.0 - 1e-12;
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double factor : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (value * tolerance <= factor * power)
+      return factor * power;
+  return 10.0 * power;
+}
+
+double
+niceMagnification(double largest_deviation, double size)
+{
+  constexpr double largest_share = 0.05;
+  double best = 1.0;
+  for (const double factor : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0})
+    if (factor * largest_deviation <= largest_share * size)
+      best = factor;
+  return best;
+}
+
+LengthUnit
+unitFor(double length)
+{
+  return length < 0.1 ? LengthUnit{"mm", 1e-3} : LengthUnit{"m", 1.0};
+}
+
+std::string
+textOfLengths(const Eigen::Vector3d& lengths)
+{
+  const LengthUnit unit = unitFor(lengths.maxCoeff());
+  return textOf(lengths / unit.in_metres) + " " + unit.name;
+}
+
+std::string
+textOfAngles(const Eigen::Vector3d& angles)
+{
+  return textOf(angles * 180.0 / pi) + " deg";
+}
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,138 @@
+#include "viewer/geometry/pose_spread.h"
+
+#include <bayesian_icp/summary.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+
+namespace bayesian_icp::viewer {
+
+namespace {
+
+using Matrix34d = Eigen::Matrix<double, 3, 4>;
+
+/** Square roots of the eigenvalues, largest first. */
+Eigen::Vector3d
+principalDeviations(const Eigen::Matrix3d& covariance)
+{
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
+}
+
+Matrix34d
+matrixOfRow(const PoseMatrix& poses, Eigen::Index row)
+{
+  return matrixOf(poses.row(row).transpose()).topRows<3>();
+}
+
+/** T_target_source of a pose whose position is that of the reference. */
+Eigen::Matrix4d
+matrixFrom(const Vector6d& pose_at_reference, const Eigen::Vector3d& reference)
+{
+  Eigen::Matrix4d matrix = matrixOf(pose_at_reference);
+  matrix.topRightCorner<3, 1>() -= matrix.topLeftCorner<3, 3>() * reference;
+  return matrix;
+}
+
+} // namespace
+
+Eigen::Vector3d
+centroidOf(const Eigen::Matrix3Xf& points)
+{
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  long num_finite = 0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite()) {
+      sum += points.col(i).cast<double>();
+      ++num_finite;
+    }
+  return num_finite > 0 ? Eigen::Vector3d(sum / static_cast<double>(num_finite)) : sum;
+}
+
+PoseMatrix
+posesAt(const Eigen::Vector3d& reference, const PoseMatrix& draws)
+{
+  PoseMatrix poses = draws;
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    poses.row(i).head<3>() += rotationOf(draws.row(i).transpose()) * reference;
+  return poses;
+}
+
+Eigen::Vector3d
+PoseSpread::positionDeviations() const
+{
+  return principalDeviations(covariance.topLeftCorner<3, 3>());
+}
+
+Eigen::Vector3d
+PoseSpread::rotationDeviations() const
+{
+  return principalDeviations(covariance.bottomRightCorner<3, 3>());
+}
+
+Eigen::Matrix4d
+PoseSpread::meanMatrix() const
+{
+  return matrixFrom(mean, reference);
+}
+
+PoseSpread
+spreadAt(const Eigen::Vector3d& reference, const PoseMatrix& draws)
+{
+  const PoseMatrix poses = posesAt(reference, draws);
+  PoseSpread spread;
+  spread.reference = reference;
+  spread.mean = meanPose(poses);
+  spread.covariance = covarianceAbout(spread.mean, poses, CovarianceConvention::R3xSO3);
+  return spread;
+}
+
+Eigen::Matrix4d
+magnified(const Vector6d& draw, const PoseSpread& spread, double factor)
+{
+  constexpr CovarianceConvention convention = CovarianceConvention::R3xSO3;
+  PoseMatrix row(1, 6);
+  row.row(0) = draw.transpose();
+  const Vector6d pose = posesAt(spread.reference, row).row(0).transpose();
+  const Vector6d error = poseError(pose, spread.mean, convention);
+  return matrixFrom(poseFromError(factor * error, spread.mean, convention),
+                    spread.reference);
+}
+
+Eigen::VectorXd
+pointDeviations(const Eigen::Matrix3Xf& points, const PoseMatrix& draws)
+{
+  // A draw moves q = (s - centroid, 1) to A q. The summed variances are the mean of
+  // |(A - mean A) q|^2, a quadratic form of q whose matrix is the same for all points.
+  const Eigen::Vector3d centroid = centroidOf(points);
+  const PoseMatrix poses = posesAt(centroid, draws);
+  Matrix34d mean = Matrix34d::Zero();
+  for (Eigen::Index i = 0; i < poses.rows(); ++i)
+    mean += matrixOfRow(poses, i) / static_cast<double>(poses.rows());
+  Eigen::Matrix4d form = Eigen::Matrix4d::Zero();
+  for (Eigen::Index i = 0; i < poses.rows(); ++i) {
+    const Matrix34d difference = matrixOfRow(poses, i) - mean;
+    form += difference.transpose() * difference / static_cast<double>(poses.rows() - 1);
+  }
+  Eigen::VectorXd deviations(points.cols());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector4d q = (points.col(i).cast<double>() - centroid).homogeneous();
+    const double variance = q.dot(form * q);
+    // Not max(): a NaN stays one.
+    deviations[i] = variance < 0.0 ? 0.0 : std::sqrt(variance);
+  }
+  return deviations;
+}
+
+std::vector<Eigen::Index>
+evenlySpaced(Eigen::Index count, Eigen::Index wanted)
+{
+  const Eigen::Index size = std::max<Eigen::Index>(0, std::min(count, wanted));
+  std::vector<Eigen::Index> indices;
+  for (Eigen::Index i = 0; i < size; ++i)
+    indices.push_back((2 * i + 1) * count / (2 * size));
+  return indices;
+}
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,103 @@
+#include "viewer/geometry/shapes.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace bayesian_icp::viewer {
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr int num_meridians = 48;
+constexpr int num_parallels = 24;
+constexpr int num_rim_points = 96;
+
+template <int size>
+Eigen::Matrix<double, size, size>
+scaledEigenvectors(const Eigen::Matrix<double, size, size>& covariance, double level)
+{
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>> solver(
+      covariance);
+  return (solver.eigenvectors() *
+          (level * solver.eigenvalues()).cwiseMax(0.0).cwiseSqrt().asDiagonal())
+      .rowwise()
+      .reverse();
+}
+
+} // namespace
+
+Eigen::Matrix3d
+regionAxes(const Eigen::Matrix3d& covariance, double level)
+{
+  return scaledEigenvectors<3>(covariance, level);
+}
+
+Mesh
+ellipsoidMesh(const Eigen::Vector3d& centre, const Eigen::Matrix3d& axes)
+{
+  Mesh mesh;
+  mesh.vertices.resize(3, num_meridians * (num_parallels + 1));
+  mesh.triangles.resize(3, 2 * num_meridians * num_parallels);
+  Eigen::Index num_triangles = 0;
+  for (int i = 0; i <= num_parallels; ++i)
+    for (int j = 0; j < num_meridians; ++j) {
+      const double polar = pi * i / num_parallels;
+      const double azimuth = 2.0 * pi * j / num_meridians;
+      const Eigen::Vector3d unit(std::sin(polar) * std::cos(azimuth),
+                                 std::sin(polar) * std::sin(azimuth),
+                                 std::cos(polar));
+      mesh.vertices.col(i * num_meridians + j) = centre + axes * unit;
+      if (i == num_parallels)
+        continue;
+      const int next = (j + 1) % num_meridians;
+      const int row = i * num_meridians, below = row + num_meridians;
+      mesh.triangles.col(num_triangles++) << row + j, below + j, below + next;
+      mesh.triangles.col(num_triangles++) << row + j, below + next, row + next;
+    }
+  return mesh;
+}
+
+Eigen::Matrix<double, 3, 2>
+tipAxes(const Eigen::Matrix3d& rotation_covariance,
+        const Eigen::Vector3d& direction,
+        double level)
+{
+  Eigen::Matrix<double, 3, 2> plane;
+  plane.col(0) = direction.unitOrthogonal();
+  plane.col(1) = direction.cross(plane.col(0));
+  // w x direction = plane (plane^T (w x direction)) = plane tips w.
+  Eigen::Matrix<double, 2, 3> tips;
+  for (int k = 0; k < 2; ++k)
+    tips.row(k) = direction.cross(plane.col(k)).transpose();
+  const Eigen::Matrix2d covariance = tips * rotation_covariance * tips.transpose();
+  return plane * scaledEigenvectors<2>(covariance, level);
+}
+
+Mesh
+coneMesh(const Eigen::Vector3d& apex,
+         const Eigen::Vector3d& direction,
+         const Eigen::Matrix<double, 3, 2>& tip_axes,
+         double length)
+{
+  Mesh mesh;
+  mesh.vertices.resize(3, num_rim_points + 1);
+  mesh.triangles.resize(3, num_rim_points);
+  mesh.vertices.col(0) = apex;
+  for (int i = 0; i < num_rim_points; ++i) {
+    const double phase = 2.0 * pi * i / num_rim_points;
+    const Eigen::Vector3d tip =
+        tip_axes * Eigen::Vector2d(std::cos(phase), std::sin(phase));
+    const double angle = std::min(tip.norm(), pi);
+    mesh.vertices.col(i + 1) =
+        apex + length * (std::cos(angle) * direction +
+                         std::sin(angle) * tip.stableNormalized());
+    mesh.triangles.col(i) << 0, i + 1, (i + 1) % num_rim_points + 1;
+  }
+  return mesh;
+}
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,15 @@
+/** \file
+ * \brief The viewer's keys beside pcl_viewer's.
+ */
+#pragma once
+
+#include "viewer/window.h"
+
+namespace bayesian_icp::viewer {
+
+/** \brief From now on keys switch layers and the legend; h prints them, and lets PCL
+ * print its own. */
+void
+handleKeys(Window& window);
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,126 @@
+#include "viewer/legend.h"
+
+#include "io/numbers.h"
+
+#include <cmath>
+
+namespace bayesian_icp::viewer {
+
+namespace {
+
+/** Apart for all kinds of colour vision (Okabe and Ito 2008), in the order of Layer;
+ * the deviations have a map, the rotation's cones the colours of the axes. */
+constexpr std::array<Color, 6> default_colors = {{{0.34, 0.71, 0.91},
+                                                  {0.62, 0.62, 0.62},
+                                                  {0.90, 0.62, 0.00},
+                                                  {0.90, 0.62, 0.00},
+                                                  {0.94, 0.89, 0.26},
+                                                  {0.86, 0.35, 0.67}}};
+
+std::string
+pointsText(const Eigen::Matrix3Xf& points)
+{
+  return " (" + std::to_string(points.cols()) + " points)";
+}
+
+std::string
+textOf(Layer layer, const Scene& scene, const Uncertainty* uncertainty)
+{
+  switch (layer) {
+  case Layer::Source:
+    return "source, at the guess" + pointsText(scene.source);
+  case Layer::Target:
+    return "target" + pointsText(scene.target);
+  case Layer::Aligned:
+    return "source, aligned";
+  case Layer::Deviation:
+    return "source at the posterior mean: standard deviation of each point";
+  case Layer::Draws:
+    return "source at " + std::to_string(uncertainty->shown_draws.size()) + " of " +
+           std::to_string(uncertainty->num_draws) + " draws";
+  default:
+    break;
+  }
+  const double scale = std::sqrt(chi_squared_95_percent_3_dof);
+  const PoseSpread& spread = uncertainty->spread;
+  return layer == Layer::Position
+             ? "position, 95 % (3 dof): ellipsoid of semi-axes " +
+                   textOfLengths(scale * spread.positionDeviations())
+             : "rotation, 95 % (3 dof): cones of x (red), y (green), z (blue); "
+               "semi-axes " +
+                   textOfAngles(scale * spread.rotationDeviations());
+}
+
+bool
+isMagnified(const Panel& panel, const Uncertainty* uncertainty)
+{
+  return uncertainty != nullptr && uncertainty->magnification != 1.0 &&
+         panel.layers.count(Layer::Draws) + panel.layers.count(Layer::Position) +
+                 panel.layers.count(Layer::Rotation) >
+             0;
+}
+
+} // namespace
+
+Color
+colorOf(Layer layer, const ViewOptions& options)
+{
+  const auto index = static_cast<std::size_t>(layer);
+  return index < 3 && index < options.foregrounds.size() ? options.foregrounds[index]
+                                                         : default_colors[index];
+}
+
+Color
+textColorOn(const Color& background)
+{
+  const double lightness =
+      0.3 * background[0] + 0.6 * background[1] + 0.1 * background[2];
+  return lightness < 0.5 ? Color{1.0, 1.0, 1.0} : Color{0.0, 0.0, 0.0};
+}
+
+std::vector<LegendLine>
+legendOf(const Panel& panel,
+         const Scene& scene,
+         const Uncertainty* uncertainty,
+         const ViewOptions& options,
+         bool shows_keys)
+{
+  const Color plain = textColorOn(options.background);
+  std::vector<LegendLine> lines;
+  if (!panel.title.empty())
+    lines.push_back({panel.title, plain});
+  for (const Layer layer : panel.layers) {
+    const bool has_own_color = layer != Layer::Deviation && layer != Layer::Rotation;
+    const std::string key =
+        shows_keys ? std::string("[") + nameOf(layer).key + "] " : "";
+    lines.push_back({key + textOf(layer, scene, uncertainty),
+                     has_own_color ? colorOf(layer, options) : plain});
+  }
+  if (isMagnified(panel, uncertainty))
+    lines.push_back({"deviations from the mean are drawn " +
+                         io::textOf(uncertainty->magnification, 4) + " times as large",
+                     plain});
+  return lines;
+}
+
+std::string
+wrapped(const std::string& text, std::size_t width)
+{
+  std::string result;
+  std::size_t column = 0;
+  for (const std::string_view word : io::words(text, " ")) {
+    if (column > 0 && column + 1 + word.size() > width) {
+      result += '\n';
+      column = 0;
+    }
+    if (column > 0) {
+      result += ' ';
+      ++column;
+    }
+    result += word;
+    column += word.size();
+  }
+  return result;
+}
+
+} // namespace bayesian_icp::viewer

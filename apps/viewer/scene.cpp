@@ -1,0 +1,141 @@
+#include "viewer/scene.h"
+
+#include <bayesian_icp/random.h>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace bayesian_icp::viewer {
+
+namespace {
+
+double
+largestFinite(const Eigen::VectorXd& values)
+{
+  double largest = 0.0;
+  for (const double value : values)
+    if (value > largest)
+      largest = value;
+  return largest;
+}
+
+} // namespace
+
+std::optional<Uncertainty>
+uncertaintyOf(const Scene& scene, const ViewOptions& options)
+{
+  if (scene.draws.rows() < 2)
+    return std::nullopt;
+  Uncertainty result;
+  const Eigen::Vector3d reference = options.reference == Reference::Centroid
+                                        ? centroidOf(scene.source)
+                                        : Eigen::Vector3d::Zero();
+  result.spread = spreadAt(reference, scene.draws);
+  result.point_deviations = pointDeviations(scene.source, scene.draws);
+  result.largest_point_deviation = largestFinite(result.point_deviations);
+  result.magnification =
+      options.magnification > 0.0
+          ? options.magnification
+          : niceMagnification(std::max(result.largest_point_deviation,
+                                       result.spread.positionDeviations()[0]),
+                              sizeOf(scene.source));
+  result.num_draws = scene.draws.rows();
+  for (const Eigen::Index draw : evenlySpaced(scene.draws.rows(), options.num_draws))
+    result.shown_draws.push_back(magnified(
+        scene.draws.row(draw).transpose(), result.spread, result.magnification));
+  return result;
+}
+
+Eigen::Matrix3Xd
+movedPoints(const Eigen::Matrix4d& T_target_source, const Eigen::Matrix3Xf& points)
+{
+  Eigen::Matrix3Xd moved(3, points.cols());
+  Eigen::Index num_finite = 0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite())
+      moved.col(num_finite++) =
+          (T_target_source * points.col(i).cast<double>().homogeneous()).head<3>();
+  moved.conservativeResize(3, num_finite);
+  return moved;
+}
+
+Eigen::Matrix3Xd
+shownPoints(const Scene& scene, const Uncertainty* uncertainty, const Layers& layers)
+{
+  Eigen::Matrix3Xd points = movedPoints(scene.final_matrix, scene.source);
+  const auto add = [&points](const Eigen::Matrix3Xd& more) {
+    points.conservativeResize(3, points.cols() + more.cols());
+    points.rightCols(more.cols()) = more;
+  };
+  if (layers.count(Layer::Target) > 0)
+    add(movedPoints(Eigen::Matrix4d::Identity(), scene.target));
+  if (layers.count(Layer::Source) > 0)
+    add(movedPoints(scene.guess, scene.source));
+  if (uncertainty != nullptr && layers.count(Layer::Position) > 0)
+    add(positionEllipsoid(*uncertainty).vertices);
+  if (uncertainty != nullptr && layers.count(Layer::Rotation) > 0)
+    for (const Mesh& cone : rotationCones(scene, *uncertainty))
+      add(cone.vertices);
+  return points;
+}
+
+std::array<Mesh, 3>
+rotationCones(const Scene& scene, const Uncertainty& uncertainty)
+{
+  const PoseSpread& spread = uncertainty.spread;
+  const Eigen::Matrix3d R = rotationOf(spread.mean);
+  const Eigen::Matrix3d covariance = spread.covariance.bottomRightCorner<3, 3>();
+  const double length = 0.5 * sizeOf(scene.source);
+  std::array<Mesh, 3> cones;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d direction = R.col(static_cast<Eigen::Index>(k));
+    cones[k] =
+        coneMesh(spread.position(),
+                 direction,
+                 uncertainty.magnification *
+                     tipAxes(covariance, direction, chi_squared_95_percent_3_dof),
+                 length);
+  }
+  return cones;
+}
+
+Mesh
+positionEllipsoid(const Uncertainty& uncertainty)
+{
+  const PoseSpread& spread = uncertainty.spread;
+  return ellipsoidMesh(spread.position(),
+                       uncertainty.magnification *
+                           regionAxes(spread.covariance.topLeftCorner<3, 3>(),
+                                      chi_squared_95_percent_3_dof));
+}
+
+Eigen::Matrix3Xd
+pointsAtDraws(const Scene& scene,
+              const Uncertainty& uncertainty,
+              Eigen::Index max_points)
+{
+  const auto num_draws = static_cast<Eigen::Index>(uncertainty.shown_draws.size());
+  const Eigen::Index wanted = std::max<Eigen::Index>(1, max_points / num_draws);
+  Random random(1, 0);
+  Eigen::Matrix3Xd all(3, 0);
+  for (const Eigen::Matrix4d& draw : uncertainty.shown_draws) {
+    const Eigen::Matrix3Xf chosen =
+        scene.source(Eigen::all, randomChoice(scene.source.cols(), wanted, random));
+    const Eigen::Matrix3Xd points = movedPoints(draw, chosen);
+    all.conservativeResize(3, all.cols() + points.cols());
+    all.rightCols(points.cols()) = points;
+  }
+  return all;
+}
+
+double
+sizeOf(const Eigen::Matrix3Xf& points)
+{
+  const Eigen::Matrix3Xd finite = movedPoints(Eigen::Matrix4d::Identity(), points);
+  if (finite.cols() == 0)
+    return 0.0;
+  return (finite.rowwise().maxCoeff() - finite.rowwise().minCoeff()).norm();
+}
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,75 @@
+#include "viewer/scene_files.h"
+
+#include "io/errors.h"
+#include "io/posterior_file.h"
+#include "register/config_file.h"
+
+#include <filesystem>
+
+namespace bayesian_icp::viewer {
+
+namespace {
+
+void
+takeClouds(const io::CloudFile& source, const io::CloudFile& target, Scene& scene)
+{
+  scene.source = source.points;
+  scene.target = target.points;
+  scene.sensor_origin = target.sensor_origin.head<3>().cast<double>();
+  scene.source_file = source.file;
+  scene.target_file = target.file;
+}
+
+/** The cloud that a posterior names may have moved, or the user. */
+io::CloudFile
+readNamedCloud(const std::string& name, const std::string& posterior_file)
+{
+  if (!std::filesystem::exists(name))
+    throw io::FileError(name,
+                        "no such file, though " + posterior_file +
+                            " names it; say on the command line where both clouds are");
+  return io::readCloud(name);
+}
+
+} // namespace
+
+Scene
+sceneOf(const app::Run& run)
+{
+  Scene scene;
+  takeClouds(run.source, run.target, scene);
+  scene.guess = run.settings.guess;
+  scene.final_matrix = run.result.final_matrix;
+  scene.draws = pooledDraws(run.result.chains);
+  scene.status = toString(run.result.summary.status);
+  scene.status_message = run.result.summary.message;
+  return scene;
+}
+
+Scene
+readScene(const std::string& posterior_file,
+          const std::string& source_file,
+          const std::string& target_file)
+{
+  const io::PosteriorFile posterior = io::readPosterior(posterior_file);
+  const std::filesystem::path folder =
+      std::filesystem::path(posterior_file).parent_path();
+  Scene scene;
+  const bool is_named = source_file.empty();
+  const io::CloudFile source =
+      is_named ? readNamedCloud(posterior.source_file, posterior_file)
+               : io::readCloud(source_file);
+  const io::CloudFile target =
+      is_named ? readNamedCloud(posterior.target_file, posterior_file)
+               : io::readCloud(target_file);
+  takeClouds(source, target, scene);
+  std::string note;
+  scene.guess = app::readConfigFile(posterior_file, note).guess;
+  scene.final_matrix = posterior.final_matrix;
+  scene.draws = io::readSamples((folder / "samples.csv").string());
+  scene.status = posterior.status;
+  scene.status_message = posterior.status_message;
+  return scene;
+}
+
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,320 @@
+"""The viewer: pictures of every mode without a window, the window, and what is refused.
+
+Pictures need an X server; where Xvfb is missing their tests are skipped and say so."""
+
+import colorsys
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import pathlib
+import unittest
+
+from cli_tool import DATA, ToolTest, run
+from png_file import read_png
+
+VIEWER = os.environ["PCL_BAYESIAN_ICP_VIEWER"]
+CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
+WIDTH, HEIGHT = 480, 360
+
+
+def scans(name):
+    return [DATA / name / "source.pcd", DATA / name / "target.pcd"]
+
+
+def environment(display):
+    result = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+    if display is not None:
+        result["DISPLAY"] = display
+    return result
+
+
+def view(*arguments, display=None):
+    return subprocess.run(
+        [VIEWER, *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        timeout=120,
+        check=False,
+        env=environment(display),
+    )
+
+
+def hue_of(pixel):
+    """(hue in degrees, saturation) of a pixel."""
+    hue, saturation, _ = colorsys.rgb_to_hsv(*(part / 255 for part in pixel))
+    return 360 * hue, saturation
+
+
+class Picture:
+    def __init__(self, path):
+        self.width, self.height, rows = read_png(path.read_bytes())
+        self.rows = [
+            [tuple(row[x : x + 3]) for x in range(0, len(row), 3)] for row in rows
+        ]
+        self.pixels = [pixel for row in self.rows for pixel in row]
+
+    def count(self, *colors):
+        return sum(self.pixels.count(color) for color in colors)
+
+    def count_hues(self, lowest, highest, saturation=0.3):
+        hues = map(hue_of, self.pixels)
+        return sum(lowest <= hue <= highest and s >= saturation for hue, s in hues)
+
+    def quadrant(self, column, row):
+        half_width, half_height = self.width // 2, self.height // 2
+        lines = self.rows[row * half_height : (row + 1) * half_height]
+        return [p for line in lines for p in line[column * half_width :][:half_width]]
+
+
+class ViewerTest(ToolTest):
+    def refuse(self, exit_code, *arguments, parts=(), display=None):
+        result = view(*arguments, display=display)
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        self.assertEqual(result.stdout, "")
+        lines = result.stderr.splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("pcl_bayesian_icp_viewer: "), result.stderr)
+        for part in parts:
+            self.assertIn(str(part), lines[0])
+
+
+class ScreenTest(ViewerTest):
+    """Has an X server, and the posteriors of two scans."""
+
+    @classmethod
+    def setUpClass(cls):
+        if not shutil.which("Xvfb"):
+            raise unittest.SkipTest("Xvfb is not here (see scripts/bootstrap)")
+        reading, writing = os.pipe()
+        screen = ["-screen", "0", "1280x1024x24", "-nolisten", "tcp"]
+        cls.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writing), *screen],
+            pass_fds=[writing],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        cls.addClassCleanup(cls.server.wait)
+        cls.addClassCleanup(cls.server.terminate)
+        os.close(writing)
+        with os.fdopen(reading) as pipe:
+            cls.display = ":" + pipe.readline().strip()
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.results = pathlib.Path(folder.name)
+        for name in ("can", "mug"):
+            result = run(*scans(name), *CALIBRATED, "-o", cls.results / name, "--quiet")
+            assert result.returncode == 0, result.stderr
+
+    def picture(self, *arguments, size=(WIDTH, HEIGHT)):
+        path = self.folder / "picture.png"
+        words = ["--screenshot", path, "--size", f"{size[0]}x{size[1]}"]
+        result = view(*arguments, *words, display=self.display)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(sorted(self.folder.iterdir()), [path])
+        picture = Picture(path)
+        self.assertEqual((picture.width, picture.height), size)
+        return picture
+
+    def saved(self, name, *arguments, **options):
+        return self.picture(self.results / name / "posterior.json", *arguments, **options)
+
+
+class Pictures(ScreenTest):
+    def test_deviations_of_a_can_are_those_of_a_turn(self):
+        """Its wall turns by 20 degrees at 33 mm from the axis: 12 of the bar's 15 mm, the
+        bright green of viridis. The middle of its lid stays: dark violet."""
+        with_bar = self.saved("can", "--show", "deviation")
+        self.assertGreater(with_bar.count_hues(75, 140), 3000)
+        self.assertGreater(with_bar.count_hues(250, 300), 50)
+        # The mug's deviations are nearly the same everywhere.
+        self.assertGreater(self.saved("mug", "--show", "deviation").count_hues(100, 180), 3000)
+
+    def test_clouds_have_the_users_colours_and_fill_the_picture(self):
+        colors = ["-fc", "255,0,0", "-fc", "0,1,0", "-fc", "0,0,255", "-ps", "4", "-ps", "4"]
+        for layers, expected in (
+            ("source", [(255, 0, 0)]),
+            ("target", [(0, 255, 0)]),
+            ("aligned", [(0, 0, 255)]),
+            ("source,target,aligned", [(255, 0, 0), (0, 255, 0), (0, 0, 255)]),
+        ):
+            picture = self.saved("mug", "--show", layers, *colors)
+            for color in [(255, 0, 0), (0, 255, 0), (0, 0, 255)]:
+                found = picture.count(color)
+                (self.assertGreater if color in expected else self.assertLess)(found, 500)
+        rows = [y for y, row in enumerate(picture.rows) if (0, 255, 0) in row]
+        self.assertGreater(max(rows) - min(rows), 0.5 * HEIGHT)
+
+    def test_point_size_opacity_and_background(self):
+        def brightness(*arguments):
+            return sum(map(sum, self.saved("mug", "--show", "target", *arguments).pixels))
+
+        first = ["-fc", "1,1,1", "-fc", "1,1,1"]
+        small = brightness(*first, "-ps", "1", "-ps", "1")
+        large = brightness(*first, "-ps", "1", "-ps", "5")
+        self.assertGreater(large, 2 * small)
+        faint = brightness(*first, "-ps", "1", "-ps", "5", "-opaque", "1", "-opaque", "0.2")
+        self.assertLess(faint, 0.6 * large)
+        picture = self.saved("mug", "-bc", "0,128,255")
+        self.assertEqual(picture.rows[HEIGHT // 2][0], (0, 128, 255))
+        self.assertEqual(self.saved("mug").rows[HEIGHT // 2][0], (0, 0, 0))
+
+    def test_draws_ellipsoid_and_cones(self):
+        draws = self.saved("mug", "--show", "draws")
+        self.assertGreater(draws.count_hues(45, 65), 2000)
+        one = self.saved("mug", "--show", "draws", "--draws", "1", "--magnify", "1")
+        self.assertNotEqual(one.pixels, draws.pixels)
+        small = self.saved("mug", "--show", "position", "--magnify", "20")
+        large = self.saved("mug", "--show", "position", "--magnify", "60")
+        self.assertGreater(large.count_hues(300, 340), 2 * small.count_hues(300, 340))
+        cones = self.saved("mug", "--show", "rotation")
+        for lowest, highest in ((0, 10), (110, 130), (230, 250)):
+            self.assertGreater(cones.count_hues(lowest, highest, 0.7), 300)
+
+    def test_multiview_has_four_pictures(self):
+        picture = self.saved("mug", "-multiview", "1", size=(640, 480))
+        quadrants = [picture.quadrant(x, y) for y in (0, 1) for x in (0, 1)]
+        for quadrant in quadrants:
+            self.assertGreater(sum(pixel != (0, 0, 0) for pixel in quadrant), 2000)
+        self.assertEqual(len({tuple(quadrant) for quadrant in quadrants}), 4)
+
+    def test_axes_and_camera(self):
+        plain = self.saved("mug", "--show", "target")
+        axes = self.saved("mug", "--show", "target", "-ax", "0.05")
+        self.assertGreater(axes.count_hues(0, 10, 0.7), plain.count_hues(0, 10, 0.7) + 50)
+        # Clipping range / focal point / position / up / angle / size / place
+        away = "0.01,10/0,0,2/0,0,1/0,1,0/0.5236/480,360/0,0"
+        picture = self.saved("mug", "--show", "deviation", "-cam", away)
+        self.assertLess(picture.count_hues(100, 180), plain.width * plain.height // 40)
+
+    def test_pictures_repeat(self):
+        first, second = (self.saved("can", "--show", "all").pixels for _ in range(2))
+        self.assertEqual(first, second)
+
+    def test_registers_what_is_not_saved(self):
+        picture = self.picture(*scans("mug"), *CALIBRATED, "--show", "deviation", "--quiet")
+        self.assertEqual(picture.pixels, self.saved("mug", "--show", "deviation").pixels)
+
+    def test_live_shows_every_chain(self):
+        picture = self.picture(*scans("mug"), *CALIBRATED, "--live", "--chains", "2")
+        self.assertGreater(picture.count_hues(35, 48, 0.7), 500)
+        self.assertGreater(picture.count_hues(155, 170, 0.7), 500)
+
+    def test_what_cannot_be_trusted_is_shown_and_said(self):
+        path = self.folder / "picture.png"
+        few = ["--samples", "40", "--chains", "2"]
+        words = ["--screenshot", path, "--size", "200x150"]
+        result = view(*scans("mug"), *CALIBRATED, *few, *words, display=self.display)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("not_mixed", result.stderr)
+        self.assertEqual(Picture(path).width, 200)
+
+    def test_clouds_that_a_posterior_names_may_have_moved(self):
+        saved = self.results / "mug" / "posterior.json"
+        text = saved.read_text().replace(str(DATA / "mug"), "/nowhere")
+        (self.results / "moved").mkdir()
+        moved = self.results / "moved" / "posterior.json"
+        moved.write_text(text)
+        shutil.copy(self.results / "mug" / "samples.csv", moved.parent)
+        words = ["--screenshot", self.folder / "picture.png"]
+        self.refuse(
+            3, moved, *words, parts=["/nowhere/source.pcd", "no such file"], display=self.display
+        )
+        shown = self.picture(moved, *scans("mug"), "--show", "draws")
+        self.assertEqual(shown.pixels, self.saved("mug", "--show", "draws").pixels)
+
+    def test_bad_camera(self):
+        saved = self.results / "mug" / "posterior.json"
+        words = ["--screenshot", self.folder / "picture.png", "-cam", "1/2"]
+        self.refuse(2, saved, *words, parts=["-cam", "'1/2'"], display=self.display)
+
+
+class WindowOnScreen(ScreenTest):
+    """The window itself, until Ctrl-C."""
+
+    def interrupt(self, *arguments):
+        process = subprocess.Popen(
+            [VIEWER, *map(str, arguments)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment(self.display),
+        )
+        self.addCleanup(process.kill)
+        self.assertIn("press h", process.stdout.readline())
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, errors)
+        return errors
+
+    def test_saved_posterior(self):
+        self.assertEqual(self.interrupt(self.results / "can" / "posterior.json"), "")
+
+    def test_live(self):
+        endless = ["--samples", "1000000", "--live"]
+        self.interrupt(*scans("mug"), *CALIBRATED, *endless)
+
+
+class ViewerUsage(ViewerTest):
+    def test_help_and_version(self):
+        text = view("--help").stdout
+        for word in ("-bc", "-fc", "-ps", "-opaque", "-ax", "-cam", "-multiview", "--show"):
+            self.assertIn("-" + word.lstrip("-") + " ", text)
+        for word in ("deviation", "rotation", "--preset", "--live", "--screenshot", "Exit codes"):
+            self.assertIn(word, text)
+        self.assertRegex(view("--version").stdout, r"^pcl_bayesian_icp_viewer \d+\.\d+\.\d+\n$")
+
+    def test_bad_values(self):
+        for words, *parts in (
+            (["-bc", "1,2"], "-bc", "'1,2'"),
+            (["-bc", "1,2,256"], "-bc"),
+            (["-fc", "red"], "-fc", "'red'"),
+            (["-ps", "0"], "-ps", "'0'"),
+            (["-ps", "65"], "-ps"),
+            (["-ps", "1", "-ps", "1", "-ps", "1", "-ps", "1"], "-ps", "three"),
+            (["-opaque", "1.1"], "-opaque"),
+            (["-ax", "-1"], "-ax"),
+            (["-multiview", "2"], "-multiview"),
+            (["--show", "target,nothing"], "--show", "'nothing'"),
+            (["--show", "target,target"], "--show", "'target'"),
+            (["--show", "target", "-multiview", "1"], "--show", "-multiview"),
+            (["--draws", "0"], "--draws"),
+            (["--magnify", "0"], "--magnify"),
+            (["--reference", "middle"], "--reference"),
+            (["--size", "800"], "--size"),
+            (["--size", "10x10"], "--size"),
+            (["--screenshot="], "--screenshot"),
+            (["--preset", "best"], "--preset"),
+            (["--nonsense"], "nonsense"),
+        ):
+            with self.subTest(words=words):
+                self.refuse(2, "a.pcd", "b.pcd", *words, parts=parts)
+
+    def test_files_are_counted(self):
+        for files in ([], ["a.pcd"], ["a.pcd", "b.pcd", "c.pcd"], ["p.json", "a.pcd"]):
+            self.refuse(2, *files, parts=["two clouds"])
+        self.refuse(2, "p.json", "q.json", parts=["q.json"])
+
+    def test_a_saved_posterior_is_not_registered_again(self):
+        for word in ("--live", "--sigma=1", "--preset=exact", "--config=c.json"):
+            self.refuse(2, "p.json", word, parts=[word.split("=")[0], "no effect"])
+
+    def test_bad_files(self):
+        self.refuse(3, "no.pcd", "no.pcd", parts=["no.pcd: no such file"])
+        self.refuse(3, "no.json", parts=["no.json: no such file"])
+        broken = self.file("broken.json", "{}")
+        self.refuse(3, broken, parts=[broken])
+        blocked = self.file("file", "") / "picture.png"
+        self.refuse(3, *scans("mug"), "--screenshot", blocked, parts=[self.folder / "file"])
+
+    def test_without_a_display(self):
+        self.refuse(1, *scans("mug"), parts=["no X display", "xvfb-run"])
+        words = ["--screenshot", self.folder / "picture.png"]
+        self.refuse(1, *scans("mug"), *words, parts=["xvfb-run"], display=":98765")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

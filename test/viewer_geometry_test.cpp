@@ -1,0 +1,329 @@
+// The viewer's figures against closed forms: spread at a point, standard deviation of
+// each point, ellipsoid, cones, colours, camera.
+#include "viewer/geometry/camera.h"
+#include "viewer/geometry/color_map.h"
+#include "viewer/geometry/pose_spread.h"
+#include "viewer/geometry/shapes.h"
+
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp::viewer {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double rounding = 1e-12;
+
+/** \p n draws that turn about the z axis by all multiples of 1/n of a turn. */
+PoseMatrix
+fullTurn(Eigen::Index n)
+{
+  PoseMatrix draws = PoseMatrix::Zero(n, 6);
+  for (Eigen::Index i = 0; i < n; ++i)
+    draws(i, 5) = wrapAngle(2.0 * pi * (static_cast<double>(i) + 0.5) / n);
+  return draws;
+}
+
+PoseMatrix
+randomDraws(Eigen::Index n, const Vector6d& deviations, const Vector6d& mean)
+{
+  Random random(3, 0);
+  PoseMatrix draws(n, 6);
+  for (Eigen::Index i = 0; i < n; ++i)
+    draws.row(i) =
+        canonicalPose(mean + deviations.cwiseProduct(random.normal6())).transpose();
+  return draws;
+}
+
+Eigen::Matrix3Xf
+somePoints()
+{
+  Eigen::Matrix3Xf points(3, 4);
+  points << 0.3F, 0.0F, -0.1F, 2.0F, //
+      0.4F, 0.0F, 0.2F, -1.0F,       //
+      1.0F, -2.0F, 0.5F, 0.25F;
+  return points;
+}
+
+/** Straight from the definition. */
+double
+deviationOf(const Eigen::Vector3d& point, const PoseMatrix& draws)
+{
+  Eigen::Matrix3Xd moved(3, draws.rows());
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    moved.col(i) = rotationOf(draws.row(i).transpose()) * point +
+                   draws.row(i).head<3>().transpose();
+  const Eigen::Matrix3Xd centred = moved.colwise() - moved.rowwise().mean();
+  return std::sqrt(centred.squaredNorm() / static_cast<double>(draws.rows() - 1));
+}
+
+TEST(PointDeviations, OfAFullTurnAreTheDistancesFromTheAxis)
+{
+  constexpr Eigen::Index n = 720;
+  const Eigen::VectorXd deviations = pointDeviations(somePoints(), fullTurn(n));
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const double radius = somePoints().col(i).head<2>().cast<double>().norm();
+    EXPECT_NEAR(deviations[i], radius * std::sqrt(n / (n - 1.0)), 1e-7);
+  }
+}
+
+TEST(PointDeviations, AreThoseOfTheMovedPoints)
+{
+  Vector6d deviations, mean;
+  deviations << 0.01, 0.02, 0.005, 0.1, 0.3, 1.0;
+  mean << 1.0, -2.0, 0.5, 0.2, -0.4, 3.1;
+  const PoseMatrix draws = randomDraws(500, deviations, mean);
+  const Eigen::VectorXd found = pointDeviations(somePoints(), draws);
+  for (Eigen::Index i = 0; i < 4; ++i)
+    EXPECT_NEAR(
+        found[i], deviationOf(somePoints().col(i).cast<double>(), draws), rounding);
+}
+
+TEST(PointDeviations, KeepTheirDigitsFarFromTheOrigin)
+{
+  // A turn about an axis through the cloud, 1e5 m from the origin of the source frame.
+  const Eigen::Vector3d far(1e5, -1e5, 0.0);
+  PoseMatrix draws = PoseMatrix::Zero(2, 6);
+  for (const int sign : {-1, 1}) {
+    Vector6d pose = Vector6d::Zero();
+    pose[5] = sign * 1e-3;
+    pose.head<3>() = far - rotationOf(pose) * far;
+    draws.row((sign + 1) / 2) = pose.transpose();
+  }
+  Eigen::Matrix3Xf points(3, 2);
+  points.col(0) = (far + Eigen::Vector3d(1.0, 0.0, 0.0)).cast<float>();
+  points.col(1) = (far - Eigen::Vector3d(1.0, 0.0, 0.0)).cast<float>();
+  // Distance of the two images of a point at radius 1 m: 2 sin(1e-3); sd = that /
+  // sqrt 2. The translations of 1e5 m are rounded to 1.5e-11 m.
+  const double expected = 2.0 * std::sin(1e-3) / std::sqrt(2.0);
+  const Eigen::VectorXd found = pointDeviations(points, draws);
+  EXPECT_NEAR(found[0], expected, 1e-10);
+  EXPECT_NEAR(found[1], expected, 1e-10);
+}
+
+TEST(PointDeviations, OfPointsThatAreNotFiniteAreNaN)
+{
+  Eigen::Matrix3Xf points = somePoints();
+  points(1, 2) = std::numeric_limits<float>::quiet_NaN();
+  const Eigen::VectorXd found = pointDeviations(points, fullTurn(10));
+  EXPECT_TRUE(std::isnan(found[2]));
+  EXPECT_TRUE(std::isfinite(found[0]));
+  EXPECT_TRUE(pointDeviations(points, PoseMatrix::Zero(5, 6))[0] == 0.0);
+}
+
+TEST(PoseSpread, SeesAnotherPointOfTheSource)
+{
+  // Yaw alone varies: the origin stays, a point at radius r moves by r yaw.
+  PoseMatrix draws = PoseMatrix::Zero(2, 6);
+  draws(0, 5) = -1e-4;
+  draws(1, 5) = 1e-4;
+  const PoseSpread at_origin = spreadAt(Eigen::Vector3d::Zero(), draws);
+  EXPECT_LT(at_origin.positionDeviations()[0], rounding);
+  const PoseSpread at_point = spreadAt({2.0, 0.0, 0.0}, draws);
+  EXPECT_NEAR(at_point.positionDeviations()[0], 2.0 * 1e-4 * std::sqrt(2.0), 1e-11);
+  EXPECT_NEAR(at_point.rotationDeviations()[0], 1e-4 * std::sqrt(2.0), rounding);
+  EXPECT_LT(at_point.rotationDeviations()[1], rounding);
+}
+
+TEST(PoseSpread, MagnifiesDeviationsOnly)
+{
+  Vector6d deviations = Vector6d::Constant(0.01), mean;
+  mean << 1.0, -2.0, 0.5, 0.2, -0.4, 3.1;
+  const PoseMatrix draws = randomDraws(50, deviations, mean);
+  const PoseSpread spread = spreadAt({0.5, 0.1, -0.2}, draws);
+  const Vector6d draw = draws.row(7).transpose();
+  EXPECT_TRUE(magnified(draw, spread, 1.0).isApprox(matrixOf(draw), rounding));
+  EXPECT_TRUE(magnified(draw, spread, 0.0).isApprox(spread.meanMatrix(), rounding));
+  const Eigen::Vector4d reference = spread.reference.homogeneous();
+  const Eigen::Vector4d mean_position = spread.meanMatrix() * reference;
+  const Eigen::Vector4d once = matrixOf(draw) * reference - mean_position;
+  const Eigen::Vector4d thrice =
+      magnified(draw, spread, 3.0) * reference - mean_position;
+  EXPECT_TRUE(thrice.isApprox(3.0 * once, 1e-10));
+  const auto turnOf = [&](const Eigen::Matrix4d& matrix) -> Eigen::Vector3d {
+    return logSO3(matrix.topLeftCorner<3, 3>() *
+                  spread.meanMatrix().topLeftCorner<3, 3>().transpose());
+  };
+  EXPECT_TRUE(turnOf(magnified(draw, spread, 3.0))
+                  .isApprox(3.0 * turnOf(matrixOf(draw)), 1e-9));
+}
+
+TEST(EvenlySpaced, GivesEachChainItsShare)
+{
+  EXPECT_EQ(evenlySpaced(8, 4), (std::vector<Eigen::Index>{1, 3, 5, 7}));
+  EXPECT_EQ(evenlySpaced(3, 10), (std::vector<Eigen::Index>{0, 1, 2}));
+  EXPECT_TRUE(evenlySpaced(0, 5).empty());
+  std::array<int, 4> of_chain{};
+  for (const Eigen::Index index : evenlySpaced(2000, 20))
+    ++of_chain[static_cast<std::size_t>(index / 500)];
+  EXPECT_EQ(of_chain, (std::array<int, 4>{5, 5, 5, 5}));
+}
+
+TEST(Shapes, LevelIsThatOf95PercentAnd3DegreesOfFreedom)
+{
+  const boost::math::chi_squared_distribution<> distribution(3);
+  EXPECT_NEAR(
+      chi_squared_95_percent_3_dof, boost::math::quantile(distribution, 0.95), 1e-12);
+}
+
+TEST(Shapes, EllipsoidIsTheSetOfOneMahalanobisDistance)
+{
+  Eigen::Matrix3d root;
+  root << 3.0, 0.0, 0.0, //
+      1.0, 0.5, 0.0,     //
+      -2.0, 0.3, 0.01;
+  const Eigen::Matrix3d covariance = root * root.transpose();
+  const Eigen::Vector3d centre(1.0, 2.0, 3.0);
+  const Eigen::Matrix3d axes = regionAxes(covariance, 7.8);
+  EXPECT_GT(axes.col(0).norm(), axes.col(1).norm());
+  EXPECT_GT(axes.col(1).norm(), axes.col(2).norm());
+  EXPECT_NEAR(axes.col(0).dot(axes.col(1)), 0.0, 1e-10);
+  const Mesh mesh = ellipsoidMesh(centre, axes);
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+    const Eigen::Vector3d whitened =
+        root.triangularView<Eigen::Lower>().solve(mesh.vertices.col(i) - centre);
+    EXPECT_NEAR(whitened.squaredNorm(), 7.8, 1e-6);
+  }
+  EXPECT_GE(mesh.triangles.minCoeff(), 0);
+  EXPECT_LT(mesh.triangles.maxCoeff(), mesh.vertices.cols());
+}
+
+TEST(Shapes, TrianglesCloseTheEllipsoid)
+{
+  // Volume of a closed surface by the divergence theorem; inscribed in the sphere, it
+  // is smaller by at most the square of the largest angle between vertices.
+  const Mesh mesh =
+      ellipsoidMesh(Eigen::Vector3d(5.0, 0.0, 0.0), Eigen::Matrix3d::Identity());
+  double volume = 0.0;
+  for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
+    const Eigen::Vector3i corners = mesh.triangles.col(i);
+    const Eigen::Vector3d a = mesh.vertices.col(corners[0]);
+    volume += a.dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
+  }
+  volume = std::abs(volume) / 6.0;
+  EXPECT_LT(volume, 4.0 / 3.0 * pi);
+  EXPECT_GT(volume, 4.0 / 3.0 * pi * (1.0 - std::pow(2.0 * pi / 48.0, 2)));
+}
+
+TEST(Shapes, AxisIsTippedByTurnsAcrossItOnly)
+{
+  // Turns about z of sd 0.2, about x of 0.05, none about y.
+  const Eigen::Matrix3d covariance =
+      Eigen::Vector3d(0.05 * 0.05, 0.0, 0.2 * 0.2).asDiagonal();
+  const auto along_x = tipAxes(covariance, Eigen::Vector3d::UnitX(), 4.0);
+  EXPECT_TRUE(along_x.col(0).cwiseAbs().isApprox(Eigen::Vector3d(0.0, 0.4, 0.0)));
+  EXPECT_LT(along_x.col(1).norm(), rounding);
+  const auto along_y = tipAxes(covariance, Eigen::Vector3d::UnitY(), 4.0);
+  EXPECT_TRUE(along_y.col(0).cwiseAbs().isApprox(Eigen::Vector3d(0.4, 0.0, 0.0)));
+  EXPECT_TRUE(along_y.col(1).cwiseAbs().isApprox(Eigen::Vector3d(0.0, 0.0, 0.1)));
+}
+
+TEST(Shapes, ConeHasItsAngleAndEndsAtHalfATurn)
+{
+  const Eigen::Vector3d apex(1.0, 2.0, 3.0), direction = Eigen::Vector3d::UnitZ();
+  for (const double angle : {0.1, 2.0, 10.0}) {
+    Eigen::Matrix<double, 3, 2> tips = Eigen::Matrix<double, 3, 2>::Zero();
+    tips(0, 0) = tips(1, 1) = angle;
+    const Mesh cone = coneMesh(apex, direction, tips, 0.5);
+    EXPECT_EQ(cone.vertices.col(0), apex);
+    for (Eigen::Index i = 1; i < cone.vertices.cols(); ++i) {
+      const Eigen::Vector3d rim = cone.vertices.col(i) - apex;
+      EXPECT_NEAR(rim.norm(), 0.5, rounding);
+      EXPECT_NEAR(rim.z() / 0.5, std::cos(std::min(angle, pi)), rounding);
+    }
+  }
+}
+
+TEST(Shapes, ConeWithoutSpreadIsALine)
+{
+  const Mesh cone = coneMesh(Eigen::Vector3d::Zero(),
+                             Eigen::Vector3d::UnitX(),
+                             Eigen::Matrix<double, 3, 2>::Zero(),
+                             2.0);
+  for (Eigen::Index i = 1; i < cone.vertices.cols(); ++i)
+    EXPECT_EQ(cone.vertices.col(i), Eigen::Vector3d(2.0, 0.0, 0.0));
+}
+
+TEST(ColorMap, GrowsBrighterFromEndToEnd)
+{
+  double last = -1.0;
+  for (int i = 0; i <= 100; ++i) {
+    const Color color = mapColor(i / 100.0);
+    const double lightness = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+    EXPECT_GT(lightness, last);
+    last = lightness;
+  }
+  EXPECT_EQ(mapColor(-3.0), mapColor(0.0));
+  EXPECT_EQ(mapColor(7.0), mapColor(1.0));
+}
+
+TEST(ColorMap, ScalesAreNice)
+{
+  EXPECT_DOUBLE_EQ(niceMaximum(0.0123), 0.015);
+  EXPECT_DOUBLE_EQ(niceMaximum(0.015), 0.015);
+  EXPECT_DOUBLE_EQ(niceMaximum(0.9), 1.0);
+  EXPECT_DOUBLE_EQ(niceMaximum(1.0), 1.0);
+  EXPECT_GT(niceMaximum(0.0), 0.0);
+  EXPECT_GT(niceMaximum(std::nan("")), 0.0);
+  EXPECT_EQ(niceMagnification(0.001, 1.0), 50.0);
+  EXPECT_EQ(niceMagnification(0.2, 1.0), 1.0);
+  EXPECT_EQ(niceMagnification(0.0, 1.0), 1000.0);
+  EXPECT_EQ(textOfLengths({0.0123, 0.001, 2e-5}), "12.3, 1, 0.02 mm");
+  EXPECT_EQ(textOfLengths({1.234, 0.5, 0.0}), "1.23, 0.5, 0 m");
+  EXPECT_EQ(textOfAngles({pi / 2.0, pi / 180.0, 0.0}), "90, 1, 0 deg");
+}
+
+TEST(Camera, IsAsNearAsTheAreaAllows)
+{
+  Random random(5, 0);
+  Eigen::Matrix3Xd points(3, 200);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    points.col(i) << random.normal(), 3.0 * random.normal(), 0.5 * random.normal();
+  const ViewDirection view{Eigen::Vector3d(-0.6, -1.0, 0.6).normalized(),
+                           Eigen::Vector3d::UnitZ()};
+  const PictureArea area{-0.9, 0.7, -0.8, 0.5};
+  constexpr double angle = 0.5, aspect = 1.5;
+  const CameraPose camera = fitCamera(points, view, angle, aspect, area);
+  const Eigen::Vector3d forward = (camera.focal_point - camera.position).normalized();
+  const Eigen::Vector3d right = forward.cross(camera.up).normalized();
+  EXPECT_TRUE(forward.isApprox(-view.to_eye, 1e-9));
+  double slack = 1.0;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d offset = points.col(i) - camera.position;
+    const double depth = offset.dot(forward) * std::tan(angle / 2.0);
+    const double x = offset.dot(right) / (depth * aspect);
+    const double y = offset.dot(camera.up) / depth;
+    EXPECT_GT(depth, 0.0);
+    slack =
+        std::min({slack, x - area.left, area.right - x, y - area.bottom, area.top - y});
+  }
+  EXPECT_NEAR(slack, 0.0, 1e-9);
+}
+
+TEST(Camera, LooksFromTheSensorIfThatStandsApart)
+{
+  Eigen::Matrix3Xd points(3, 2);
+  points << -0.1, 0.1, -0.1, 0.1, 0.9, 1.1;
+  const ViewDirection optical = defaultView(points, Eigen::Vector3d::Zero());
+  EXPECT_TRUE(optical.to_eye.isApprox(-Eigen::Vector3d::UnitZ()));
+  EXPECT_EQ(optical.up, -Eigen::Vector3d::UnitY());
+  const ViewDirection inside = defaultView(points, {0.0, 0.0, 1.0});
+  EXPECT_EQ(inside.up, Eigen::Vector3d::UnitZ());
+  const ViewDirection level = defaultView(points, {-5.0, 0.0, 1.0});
+  EXPECT_TRUE(level.to_eye.isApprox(-Eigen::Vector3d::UnitX()));
+  EXPECT_EQ(level.up, Eigen::Vector3d::UnitZ());
+  const CameraPose camera =
+      fitCamera(points.leftCols(1), inside, 0.5, 1.0, PictureArea());
+  EXPECT_NEAR((camera.position - camera.focal_point).norm(), 1.0, rounding);
+}
+
+} // namespace
+} // namespace bayesian_icp::viewer

@@ -1,0 +1,189 @@
+// What the viewer decides to show: layers, draws, legend, traces of running chains.
+#include "viewer/legend.h"
+#include "viewer/live_state.h"
+#include "viewer/scene.h"
+
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp::viewer {
+namespace {
+
+/** A stick of 1 m along x that may turn about z: sd of yaw is \p yaw_deviation. */
+Scene
+stick(double yaw_deviation)
+{
+  Scene scene;
+  scene.source.resize(3, 11);
+  for (Eigen::Index i = 0; i < 11; ++i)
+    scene.source.col(i) << 0.1F * static_cast<float>(i), 0.0F, 0.0F;
+  scene.source(2, 10) = std::numeric_limits<float>::infinity();
+  scene.target = scene.source;
+  Random random(1, 1);
+  scene.draws = PoseMatrix::Zero(400, 6);
+  for (Eigen::Index i = 0; i < scene.draws.rows(); ++i)
+    scene.draws(i, 5) = yaw_deviation * random.normal();
+  return scene;
+}
+
+TEST(Scene, ShowsTheDrawsAskedFor)
+{
+  ViewOptions options;
+  options.num_draws = 7;
+  const auto uncertainty = uncertaintyOf(stick(0.001), options);
+  ASSERT_TRUE(uncertainty);
+  EXPECT_EQ(uncertainty->shown_draws.size(), 7U);
+  EXPECT_EQ(uncertainty->num_draws, 400);
+  EXPECT_TRUE(std::isnan(uncertainty->point_deviations[10]));
+  // The stick's 0.9 m end moves by about 0.9 mm: 50 times that is a twentieth of 0.9 m.
+  EXPECT_GE(uncertainty->magnification, 20.0);
+  EXPECT_LE(uncertainty->magnification * uncertainty->largest_point_deviation, 0.045);
+  options.magnification = 3.0;
+  EXPECT_EQ(uncertaintyOf(stick(0.001), options)->magnification, 3.0);
+}
+
+TEST(Scene, ReferenceIsTheCentroidOrTheOrigin)
+{
+  ViewOptions options;
+  const Scene scene = stick(0.001);
+  EXPECT_NEAR(uncertaintyOf(scene, options)->spread.reference.x(), 0.45, 1e-7);
+  options.reference = Reference::Origin;
+  const auto at_origin = uncertaintyOf(scene, options);
+  EXPECT_LT(at_origin->spread.positionDeviations()[0], 1e-12);
+}
+
+TEST(Scene, WithoutDrawsThereIsNoUncertainty)
+{
+  Scene scene = stick(0.1);
+  scene.draws.conservativeResize(1, 6);
+  EXPECT_FALSE(uncertaintyOf(scene, ViewOptions()));
+  const auto panels = ViewOptions().panels(false);
+  EXPECT_EQ(panels[0].layers, (Layers{Layer::Target, Layer::Aligned}));
+}
+
+TEST(Scene, PictureHoldsWhatTheLayersShow)
+{
+  Scene scene = stick(0.1);
+  scene.guess(1, 3) = 5.0;
+  EXPECT_EQ(shownPoints(scene, nullptr, {Layer::Target}).cols(), 20);
+  EXPECT_NEAR(
+      shownPoints(scene, nullptr, {Layer::Source}).row(1).maxCoeff(), 5.0, 1e-12);
+  const auto uncertainty = uncertaintyOf(scene, ViewOptions());
+  const Eigen::Matrix3Xd points = shownPoints(scene, &*uncertainty, {Layer::Rotation});
+  // The cone of z: half the stick, from its centroid.
+  EXPECT_NEAR(points.row(2).maxCoeff(), 0.45, 1e-6);
+}
+
+TEST(Scene, DrawsAreThinnedToWhatIsAllowed)
+{
+  ViewOptions options;
+  options.num_draws = 5;
+  const Scene scene = stick(0.1);
+  const auto uncertainty = uncertaintyOf(scene, options);
+  EXPECT_EQ(pointsAtDraws(scene, *uncertainty, 1000).cols(), 5 * 10);
+  EXPECT_LE(pointsAtDraws(scene, *uncertainty, 15).cols(), 15);
+}
+
+TEST(Panels, MultiviewHasOneAQuestion)
+{
+  ViewOptions options;
+  options.is_multiview = true;
+  EXPECT_EQ(options.panels(true).size(), 4U);
+  for (const Panel& panel : options.panels(false))
+    for (const Layer layer : panel.layers)
+      EXPECT_FALSE(needsDraws(layer));
+}
+
+TEST(Legend, HasUnitsAndTheMagnification)
+{
+  ViewOptions options;
+  options.num_draws = 5;
+  const Scene scene = stick(0.001);
+  const auto uncertainty = uncertaintyOf(scene, options);
+  const Panel panel{"title",
+                    {Layer::Target, Layer::Draws, Layer::Position, Layer::Rotation}};
+  const auto lines = legendOf(panel, scene, &*uncertainty, options, true);
+  ASSERT_EQ(lines.size(), 6U);
+  EXPECT_EQ(lines[0].text, "title");
+  EXPECT_EQ(lines[1].text, "[t] target (11 points)");
+  EXPECT_EQ(lines[2].text, "[d] source at 5 of 400 draws");
+  EXPECT_NE(lines[3].text.find("95 % (3 dof)"), std::string::npos);
+  EXPECT_NE(lines[3].text.find(" mm"), std::string::npos);
+  EXPECT_NE(lines[4].text.find(" deg"), std::string::npos);
+  EXPECT_NE(lines[5].text.find("times as large"), std::string::npos);
+  // Bright text on a dark ground, and the other way round.
+  EXPECT_EQ(lines[0].color, (Color{1.0, 1.0, 1.0}));
+  options.background = {1.0, 1.0, 1.0};
+  EXPECT_EQ(legendOf(panel, scene, &*uncertainty, options, true)[0].color, (Color{}));
+}
+
+TEST(Legend, BreaksLinesAtBlanks)
+{
+  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
+  EXPECT_EQ(wrapped("one two three", 100), "one two three");
+  EXPECT_EQ(wrapped("unbreakable", 3), "unbreakable");
+}
+
+TEST(Keys, AreAllDifferentAndNotPclViewers)
+{
+  const std::string taken = "pwsjcfeq+-guorlhxk0123456789";
+  std::string own;
+  for (const LayerName& name : layer_names) {
+    EXPECT_EQ(taken.find(name.key), std::string::npos) << name.key;
+    EXPECT_EQ(own.find(name.key), std::string::npos) << name.key;
+    EXPECT_EQ(&nameOf(name.layer), &name);
+    own += name.key;
+  }
+}
+
+Progress
+stepOf(int chain, long step, double x)
+{
+  Vector6d pose = Vector6d::Zero();
+  pose[0] = x;
+  return {chain, step, step, 10, pose};
+}
+
+TEST(LiveState, FollowsIcpAndChains)
+{
+  LiveState state({0.0, 1.0, 0.0});
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  state.moveIcp(matrix);
+  EXPECT_EQ(state.snapshot().icp_iterations, 0);
+  matrix(0, 3) = 2.0;
+  state.moveIcp(matrix);
+  EXPECT_EQ(state.snapshot().icp_iterations, 1);
+  EXPECT_EQ(state.snapshot().icp_matrix, matrix);
+
+  EXPECT_TRUE(state.moveChain({0, 0, 0, 0}));
+  EXPECT_TRUE(state.snapshot().chains.empty());
+  EXPECT_TRUE(state.moveChain(stepOf(1, 1, 0.25)));
+  const LiveSnapshot snapshot = state.snapshot();
+  ASSERT_EQ(snapshot.chains.size(), 2U);
+  EXPECT_TRUE(snapshot.chains[0].trace.empty());
+  ASSERT_EQ(snapshot.chains[1].trace.size(), 1U);
+  EXPECT_EQ(snapshot.chains[1].trace[0], Eigen::Vector3d(0.25, 1.0, 0.0));
+  EXPECT_EQ(snapshot.total_steps, 10);
+  state.stop();
+  EXPECT_FALSE(state.moveChain(stepOf(1, 2, 0.25)));
+}
+
+TEST(LiveState, KeepsTracesShortAndEvenlySpaced)
+{
+  LiveState state(Eigen::Vector3d::Zero());
+  for (long step = 1; step <= 5000; ++step)
+    state.moveChain(stepOf(0, step, static_cast<double>(step)));
+  const ChainTrack track = state.snapshot().chains[0];
+  EXPECT_LE(track.trace.size(), max_trace_length);
+  EXPECT_GE(track.trace.size(), max_trace_length / 2);
+  for (std::size_t i = 0; i < track.trace.size(); ++i)
+    EXPECT_EQ(track.trace[i].x(),
+              static_cast<double>((static_cast<long>(i) + 1) * track.steps_between));
+}
+
+} // namespace
+} // namespace bayesian_icp::viewer
