@@ -145,8 +145,8 @@ estimate(const Eigen::Matrix3Xd& source_points,
                             prior,
                             options.likelihood.weight(),
                             options.exact.residual);
-    PosteriorEstimate result = estimateOf(
-        sampleExact(energy, initial_pose, options, has_diverged, progress));
+    PosteriorEstimate result =
+        estimateOf(sampleExact(energy, initial_pose, options, has_diverged, progress));
     addDoubts(doubtsAbout(energy, result.summary.mean), result.summary);
     return result;
   }
