@@ -4,6 +4,7 @@
 
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/posterior.h>
+#include <bayesian_icp/tree_search.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,37 +19,6 @@ namespace {
  * many prior standard deviations, on top of the deviation of its start and the size of
  * the source. For angles, whose prior is periodic, see the sampler. */
 constexpr double max_prior_deviations = 20.0;
-
-/** Nearest neighbours in a KdTree, for Algorithm 1. */
-class TreeSearch : public CorrespondenceSearch {
-public:
-  TreeSearch(const KdTree& tree, double max_distance) : target_(tree, max_distance) {}
-
-  void
-  find(const Vector6d& pose,
-       const std::vector<std::size_t>& source_indices,
-       const Eigen::Matrix3Xd& moved_points,
-       Correspondences& correspondences) const override
-  {
-    std::vector<std::size_t> columns(source_indices.size());
-    std::iota(columns.begin(), columns.end(), std::size_t(0));
-    NeighborHints hints(columns.size(), KdTree::none);
-    std::vector<TargetMatch> matches;
-    target_.match(pose, columns, moved_points.cast<float>(), hints, matches);
-    correspondences.clear();
-    for (const auto& match : matches)
-      correspondences.push_back({match.column, match.point.cast<double>()});
-  }
-
-  bool
-  isThreadSafe() const override
-  {
-    return true;
-  }
-
-private:
-  TreeTarget target_;
-};
 
 std::size_t
 countCorrespondences(const Eigen::Matrix3Xd& source_points,

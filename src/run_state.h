@@ -103,15 +103,23 @@ private:
   std::mutex mutex_;
 };
 
-/** \brief Threads for a run: one inside a parallel region of the caller. */
+/** \brief Threads for so many pieces of work: one inside a parallel region of the
+ * caller.
+ * \param[in] num_threads as asked for, 0: as OpenMP would */
+inline int
+numThreadsFor(int num_threads, int num_pieces)
+{
+  if (omp_in_parallel() != 0)
+    return 1;
+  const int offered = num_threads > 0 ? num_threads : omp_get_max_threads();
+  return std::max(1, std::min(offered, num_pieces));
+}
+
+/** \brief Threads for the chains of a run. */
 inline int
 numThreadsFor(const ChainOptions& options, bool is_thread_safe)
 {
-  if (!is_thread_safe || omp_in_parallel() != 0)
-    return 1;
-  const int offered =
-      options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
-  return std::min(offered, options.num_chains);
+  return is_thread_safe ? numThreadsFor(options.num_threads, options.num_chains) : 1;
 }
 
 /** \brief work(chain) for every chain; a thread owns whole chains. Rethrows the first

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace bayesian_icp {
@@ -35,18 +36,22 @@ struct MonteCarloIcpRun {
   /** Poses (x, y, z, roll, pitch, yaw) [m, rad], the end canonical. */
   Vector6d start = Vector6d::Zero();
   Vector6d end = Vector6d::Zero();
+  /** What follows is as in IcpResult. */
   bool has_converged = false;
+  IcpStop stop = IcpStop::TooFewPairs;
   int num_iterations = 0;
-  /** Mean squared distance of the last pairs [m^2]. */
-  double mean_squared_distance = 0.0;
+  /** Of the pairs of the last iteration, before its step [m^2]. */
+  double mean_squared_distance = std::numeric_limits<double>::infinity();
 };
 
-/** \brief Called with the number of finished runs, by one thread at a time; returns
- * false to stop. */
+/** \brief Called with the number of finished runs, by one thread at a time, not always
+ * the same one; returns false to stop. An exception stops the runs and reaches the
+ * caller. */
 using MonteCarloIcpProgress = std::function<bool(int num_done)>;
 
 /** \brief Run ICP from random starts (Maken, Ramos, Ott 2020, section IV).
- * \param[in] source 3 x n, finite, source frame [m]
+ * \param[in] source 3 x n, finite, source frame [m]; starts are poses about the origin
+ *            of that frame
  * \return the runs in the order of their index; if stopped, those that were finished */
 BAYESIAN_ICP_EXPORT std::vector<MonteCarloIcpRun>
 monteCarloIcp(const Eigen::Matrix3Xd& source,

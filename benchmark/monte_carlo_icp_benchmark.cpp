@@ -1,0 +1,138 @@
+// What a run of ICP to completion costs, ours and PCL's, from the same starts in the
+// same process, and what 10 000 of ours would: monte_carlo_icp_benchmark FOLDER [RUNS
+// [PCL_RUNS]], FOLDER with source.pcd and target.pcd.
+//
+// Processor time, so that other work of the machine matters less; every run is timed by
+// itself, which gives the standard error of their mean.
+#include "benchmark_clouds.h"
+
+#include <bayesian_icp/baselines/monte_carlo_icp.h>
+#include <bayesian_icp/calibration/twist.h>
+
+#include <pcl/registration/icp.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <vector>
+
+namespace {
+
+using namespace bayesian_icp;
+
+constexpr double num_paper_runs = 10000.0;
+
+double
+cpuSeconds()
+{
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+struct Mean {
+  double value = 0.0;
+  double standard_error = 0.0;
+};
+
+Mean
+meanOf(const std::vector<double>& values)
+{
+  const auto count = static_cast<double>(values.size());
+  Mean mean;
+  double sum_of_squares = 0.0;
+  for (const double value : values) {
+    mean.value += value / count;
+    sum_of_squares += value * value;
+  }
+  const double variance = sum_of_squares / count - mean.value * mean.value;
+  mean.standard_error = std::sqrt(std::max(0.0, variance) / std::max(1.0, count - 1.0));
+  return mean;
+}
+
+/** Seconds of our runs [0, num_runs). */
+std::vector<double>
+timeOurs(const Eigen::Matrix3Xd& source,
+         const KdTree& target,
+         int num_runs,
+         std::vector<MonteCarloIcpRun>& runs)
+{
+  std::vector<double> seconds;
+  MonteCarloIcpOptions options;
+  options.num_runs = 1;
+  options.num_threads = 1;
+  for (int i = 0; i < num_runs; ++i) {
+    options.first_run = i;
+    const double begin = cpuSeconds();
+    runs.push_back(monteCarloIcp(source, target, options).front());
+    seconds.push_back(cpuSeconds() - begin);
+  }
+  return seconds;
+}
+
+double
+timePcl(const Cloud::Ptr& source,
+        const Cloud::Ptr& target,
+        const pcl::search::KdTree<pcl::PointXYZ>::Ptr& tree,
+        const MonteCarloIcpRun& run)
+{
+  pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
+  icp.setSearchMethodTarget(tree, true);
+  icp.setInputSource(source);
+  icp.setInputTarget(target);
+  icp.setMaximumIterations(MonteCarloIcpOptions().icp.max_iterations);
+  Cloud moved;
+  const double begin = cpuSeconds();
+  icp.align(moved, isometryOf(run.start).matrix().cast<float>());
+  return cpuSeconds() - begin;
+}
+
+void
+print(const char* name, const std::vector<double>& seconds)
+{
+  const Mean mean = meanOf(seconds);
+  std::printf("%s: %.1f +- %.1f ms a run (%zu runs)\n",
+              name,
+              1e3 * mean.value,
+              1e3 * mean.standard_error,
+              seconds.size());
+}
+
+} // namespace
+
+int
+main(int argc, char** argv)
+{
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: %s FOLDER [RUNS [PCL_RUNS]]\n", argv[0]);
+    return 2;
+  }
+  const std::string folder = argv[1];
+  const int num_runs = argc > 2 ? std::atoi(argv[2]) : 100;
+  const int num_pcl_runs = std::min(num_runs, argc > 3 ? std::atoi(argv[3]) : 5);
+  const Cloud::Ptr source = readCloud(folder + "/source.pcd");
+  const Cloud::Ptr target = readCloud(folder + "/target.pcd");
+  if (source->empty() || target->empty() || num_pcl_runs < 1) {
+    std::fprintf(stderr, "%s: no clouds, or no runs\n", folder.c_str());
+    return 3;
+  }
+  std::vector<MonteCarloIcpRun> runs;
+  const std::vector<double> ours = timeOurs(
+      pointsOf(*source).cast<double>(), KdTree(pointsOf(*target)), num_runs, runs);
+  const pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(
+      new pcl::search::KdTree<pcl::PointXYZ>);
+  tree->setInputCloud(target);
+  std::vector<double> theirs, same_starts;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(num_pcl_runs); ++i) {
+    theirs.push_back(timePcl(source, target, tree, runs[i]));
+    same_starts.push_back(ours[i]);
+  }
+  print("ours", ours);
+  print("ours, the starts that PCL had", same_starts);
+  print("pcl::IterativeClosestPoint", theirs);
+  std::printf("ratio %.1f\n", meanOf(theirs).value / meanOf(same_starts).value);
+  const Mean mean = meanOf(ours);
+  std::printf("10000 runs on two cores: %.0f +- %.0f s if both are free and as fast\n",
+              mean.value * num_paper_runs / 2.0,
+              mean.standard_error * num_paper_runs / 2.0);
+  return 0;
+}
