@@ -53,10 +53,9 @@ normalsOfMatches(const Matrix3Xd& target_normals, const MatchedPoints& matches)
 
 } // namespace
 
-BaselineProblem::BaselineProblem(const CoverageCase& coverage_case)
+BaselineProblem::BaselineProblem(const CoverageCase& coverage_case, Index max_points)
 : case_(coverage_case)
-, source_columns_(
-      chosenColumns(case_.source.cols(), max_source_points, coverage_case.seed))
+, source_columns_(chosenColumns(case_.source.cols(), max_points, coverage_case.seed))
 , source_(case_.source(Eigen::all, source_columns_))
 , prior_(case_.prior_mean, case_.prior_sd.cwiseAbs2(), case_.source.rowwise().mean())
 , origin_(case_.target.col(0))

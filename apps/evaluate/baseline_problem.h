@@ -12,13 +12,14 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief At most so many source points are registered. */
+/** \brief At most so many source points are registered, unless said otherwise. */
 constexpr Eigen::Index max_source_points = 2000;
 
 class BaselineProblem {
 public:
   /** \param[in] coverage_case must outlive this object; not empty */
-  explicit BaselineProblem(const CoverageCase& coverage_case);
+  explicit BaselineProblem(const CoverageCase& coverage_case,
+                           Eigen::Index max_points = max_source_points);
 
   /** \brief Nearest target point of each source point, without normals. Not
    * thread-safe: it counts. */

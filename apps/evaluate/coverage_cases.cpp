@@ -1,5 +1,7 @@
 #include "coverage_cases.h"
 
+#include <io/text_hash.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -25,21 +27,6 @@ struct ScanPlan {
   View target_view;
   double lost_part = 0.0;
 };
-
-/** \brief A number that differs from case to case (64 bit FNV-1a), so that cases of one
- * seed share no random numbers. */
-std::uint64_t
-streamOf(const std::string& scene, const std::string& condition)
-{
-  std::uint64_t hash = 14695981039346656037u;
-  std::string name = scene;
-  name.append("/").append(condition);
-  for (const char character : name) {
-    hash ^= static_cast<unsigned char>(character);
-    hash *= 1099511628211u;
-  }
-  return hash;
-}
 
 void
 halveResolution(SensorOptions& sensor)
@@ -164,7 +151,8 @@ makeCoverageCase(const std::string& scene,
                  std::uint64_t seed)
 {
   const CoverageSetup setup = coverageSetup(scene);
-  Random random(seed, streamOf(scene, condition));
+  // Cases of one seed share no random numbers.
+  Random random(seed, io::hashOf(scene + '/' + condition));
   const ScanPlan plan = planScans(setup, condition, random);
   const std::uint64_t scan_seed = random.index(std::size_t{1} << 62);
   const simulator::Scene solids = simulator::makeScene(setup.simulated_scene);

@@ -76,8 +76,7 @@ blocksOf(const std::string& prefix, const Methods& methods, const Data& data)
 {
   std::string blocks;
   for (std::size_t i = 0; i < methods.size(); ++i)
-    blocks += '$' + prefix + std::to_string(i) + " << EOD\n" + data(methods[i].second) +
-              "EOD\n";
+    blocks += plot::dataBlock(prefix + std::to_string(i), data(methods[i].second));
   return blocks;
 }
 

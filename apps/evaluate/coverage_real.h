@@ -4,6 +4,7 @@
 #pragma once
 
 #include "coverage_case.h"
+#include "scan_manifest.h"
 
 #include <map>
 #include <memory>
@@ -13,19 +14,10 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief Standard deviations of a pair, of each axis [m, rad]. */
-struct RealScale {
-  double prior_sd_translation = 0.0;
-  double prior_sd_rotation = 0.0;
-  /** Accuracy of the ground truth. */
-  double truth_sd_translation = 0.0;
-  double truth_sd_rotation = 0.0;
-};
-
 /** \brief The pairs of a folder; a pair is read when it is first needed. */
 class RealPairs {
 public:
-  /** \brief Read FOLDER/manifest.json.
+  /** \brief Read FOLDER/manifest.json, which has a prior of each pair.
    * \throws io::FileError */
   explicit RealPairs(const std::string& folder);
 
@@ -40,25 +32,19 @@ public:
   makeCase(const std::string& name, std::uint64_t seed) const;
 
 private:
-  /** Names of files are relative to the folder. */
-  struct Entry {
-    std::string name, source, target, ground_truth;
-    RealScale scale;
-  };
-
   /** 3 x n, finite, the source where the ground truth puts it, target frame [m]. */
   struct Clouds {
     Eigen::Matrix3Xd source_in_target, target;
   };
 
-  const Entry&
+  const ManifestEntry&
   entryOf(const std::string& name) const;
 
   std::shared_ptr<const Clouds>
-  cloudsOf(const Entry& entry) const;
+  cloudsOf(const ManifestEntry& entry) const;
 
   std::string folder_;
-  std::vector<Entry> entries_;
+  std::vector<ManifestEntry> entries_;
   mutable std::mutex mutex_;
   mutable std::map<std::string, std::shared_ptr<const Clouds>> clouds_;
 };

@@ -8,7 +8,6 @@
 #include <Eigen/Cholesky>
 
 #include <cmath>
-#include <optional>
 
 namespace bayesian_icp::evaluate {
 
@@ -19,8 +18,6 @@ constexpr std::uint64_t gaussian_stream = 0x636f766572;
 constexpr std::uint64_t truth_stream = gaussian_stream + 1;
 
 constexpr Eigen::Index num_gaussian_draws = 2000;
-/** All pairs of so many draws give the energy score's second term. */
-constexpr Eigen::Index num_paired_draws = 400;
 constexpr Eigen::Index min_draws = 8;
 
 /** The posterior about MethodResult::mean, as twists. */
@@ -99,38 +96,6 @@ scoredDraws(const TwistPosterior& posterior, const Matrix6d& factor, std::uint64
   return draws;
 }
 
-/** \param[in] scaled_draws,truth in units of the prior's standard deviations */
-double
-energyScore(const PoseMatrix& scaled_draws, const Vector6d& truth)
-{
-  const Eigen::Index size = scaled_draws.rows();
-  const double to_truth =
-      (scaled_draws.rowwise() - truth.transpose()).rowwise().norm().mean();
-  const Eigen::Index num_paired = std::min(size, num_paired_draws);
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < num_paired; ++i)
-    for (Eigen::Index j = 0; j < i; ++j)
-      sum += (scaled_draws.row(i * size / num_paired) -
-              scaled_draws.row(j * size / num_paired))
-                 .norm();
-  const auto num_pairs = static_cast<double>(num_paired * (num_paired - 1) / 2);
-  return to_truth - 0.5 * sum / num_pairs;
-}
-
-/** L with covariance = L L^T; empty if there is none. */
-std::optional<Matrix6d>
-factorOf(const Matrix6d& covariance)
-{
-  // In units of its own standard deviations it is as well conditioned as can be.
-  const Vector6d sd = covariance.diagonal().cwiseSqrt();
-  const Matrix6d correlation =
-      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
-  const Eigen::LLT<Matrix6d> cholesky(correlation);
-  if (!correlation.allFinite() || cholesky.info() != Eigen::Success)
-    return std::nullopt;
-  return sd.asDiagonal() * Matrix6d(cholesky.matrixL());
-}
-
 void
 addGaussianScores(const CoverageCase& problem,
                   const TwistPosterior& posterior,
@@ -200,8 +165,9 @@ coverageScoreOf(const CoverageCase& problem, const MethodResult& result)
   addGaussianScores(problem, posterior, *factor, result.shape, score);
   score.pit = pitOf(posterior);
   const auto scale = problem.prior_sd.cwiseInverse().asDiagonal();
-  score.energy_score = energyScore(
-      scoredDraws(posterior, *factor, problem.seed) * scale, scale * posterior.truth);
+  score.energy_score =
+      energyScore(scoredDraws(posterior, *factor, problem.seed) * scale,
+                  (scale * posterior.truth).transpose());
   addErrors(problem, result, posterior.moments.mean, score);
   return score;
 }

@@ -13,6 +13,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/** All pairs of so many draws give the energy score's second term. */
+constexpr Eigen::Index num_paired_draws = 400;
+
 double
 logDeterminant(const Eigen::LLT<Matrix6d>& llt)
 {
@@ -67,6 +70,19 @@ unwrapAbout(const Vector6d& centre, const PoseMatrix& draws)
   return unwrapped;
 }
 
+std::optional<Matrix6d>
+factorOf(const Matrix6d& covariance)
+{
+  // In units of its own standard deviations it is as well conditioned as can be.
+  const Vector6d sd = covariance.diagonal().cwiseSqrt();
+  const Matrix6d correlation =
+      sd.cwiseInverse().asDiagonal() * covariance * sd.cwiseInverse().asDiagonal();
+  const Eigen::LLT<Matrix6d> cholesky(correlation);
+  if (!correlation.allFinite() || cholesky.info() != Eigen::Success)
+    return std::nullopt;
+  return sd.asDiagonal() * Matrix6d(cholesky.matrixL());
+}
+
 double
 gaussianKl(const Moments& p, const Moments& q)
 {
@@ -111,6 +127,23 @@ kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b)
     largest = std::max(largest, difference);
   });
   return largest;
+}
+
+double
+energyScore(const PoseMatrix& draws, const PoseMatrix& outcomes)
+{
+  double to_outcomes = 0.0;
+  for (Eigen::Index i = 0; i < outcomes.rows(); ++i)
+    to_outcomes += (draws.rowwise() - outcomes.row(i)).rowwise().norm().mean();
+  const Eigen::Index size = draws.rows();
+  const Eigen::Index num_paired = std::min(size, num_paired_draws);
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < num_paired; ++i)
+    for (Eigen::Index j = 0; j < i; ++j)
+      sum +=
+          (draws.row(i * size / num_paired) - draws.row(j * size / num_paired)).norm();
+  const auto num_pairs = static_cast<double>(num_paired * (num_paired - 1) / 2);
+  return to_outcomes / static_cast<double>(outcomes.rows()) - 0.5 * sum / num_pairs;
 }
 
 double

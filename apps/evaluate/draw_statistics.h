@@ -5,6 +5,7 @@
 
 #include <bayesian_icp/pose.h>
 
+#include <optional>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -23,6 +24,10 @@ momentsOf(const PoseMatrix& draws);
 PoseMatrix
 unwrapAbout(const Vector6d& centre, const PoseMatrix& draws);
 
+/** \brief L with covariance = L L^T, lower triangular; empty if there is none. */
+std::optional<Matrix6d>
+factorOf(const Matrix6d& covariance);
+
 /** \brief KL(p || q) of two Gaussians [nats]; infinite if q is degenerate. */
 double
 gaussianKl(const Moments& p, const Moments& q);
@@ -39,6 +44,12 @@ wasserstein1(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 /** \brief Largest difference of two empirical distribution functions, in [0, 1]. */
 double
 kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
+/** \brief Energy score E|X - y| - E|X - X'| / 2 of draws X, mean over the outcomes y
+ * (one a row, at least one); smaller is better. E|X - X'| is that of 400 of the draws.
+ * Coordinates need a common scale: give all in units of some standard deviations. */
+double
+energyScore(const PoseMatrix& draws, const PoseMatrix& outcomes);
 
 /** \brief The middle one of at least one value, or the mean of the middle two. */
 double

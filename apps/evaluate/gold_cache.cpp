@@ -1,10 +1,11 @@
 #include "gold_cache.h"
 
+#include "input_hash.h"
+
 #include <io/output_folder.h>
+#include <io/text_hash.h>
 
 #include <fstream>
-#include <iomanip>
-#include <sstream>
 #include <stdexcept>
 
 namespace bayesian_icp::evaluate {
@@ -14,41 +15,6 @@ namespace {
 /** To be changed with the moves of the runs or the energy: old files are then ignored.
  */
 constexpr char format[] = "bayesian_icp gold standard 1\n";
-
-/** FNV-1a, 64 bits. */
-class Hash {
-public:
-  void
-  add(const void* data, std::size_t size)
-  {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i)
-      value_ = (value_ ^ bytes[i]) * 0x100000001b3u;
-  }
-
-  void
-  add(double number)
-  {
-    add(&number, sizeof number);
-  }
-
-  template <typename Derived>
-  void
-  addMatrix(const Eigen::PlainObjectBase<Derived>& matrix)
-  {
-    add(matrix.data(),
-        sizeof(typename Derived::Scalar) * static_cast<std::size_t>(matrix.size()));
-  }
-
-  std::uint64_t
-  value() const
-  {
-    return value_;
-  }
-
-private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
-};
 
 void
 write(std::ostream& stream, double number)
@@ -106,7 +72,7 @@ toTheta(const Problem& problem, GoldStandard& gold)
 std::uint64_t
 goldKey(const Problem& problem, const GoldOptions& options)
 {
-  Hash hash;
+  InputHash hash;
   hash.add(format, sizeof format);
   hash.addMatrix(problem.scene().source);
   hash.addMatrix(problem.scene().target.points());
@@ -123,14 +89,6 @@ goldKey(const Problem& problem, const GoldOptions& options)
                               static_cast<double>(options.seed)})
     hash.add(number);
   return hash.value();
-}
-
-std::string
-textOf(std::uint64_t key)
-{
-  std::ostringstream text;
-  text << std::hex << std::setw(16) << std::setfill('0') << key;
-  return text.str();
 }
 
 void
@@ -177,7 +135,7 @@ cachedGold(const Problem& problem,
            const std::string& folder,
            const std::function<void(const std::string&)>& report)
 {
-  const std::string name = "gold_" + textOf(goldKey(problem, options)) + ".bin";
+  const std::string name = "gold_" + io::textOfHash(goldKey(problem, options)) + ".bin";
   GoldStandard gold;
   if (readFile(folder + "/" + name, gold) &&
       (gold.has_converged || gold.seconds >= options.max_seconds))

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "input_hash.h"
 #include "scene.h"
 
 #include <cstdint>
@@ -15,10 +16,6 @@ namespace bayesian_icp::evaluate {
  * options of its runs. The number of threads and of seconds are left out. */
 std::uint64_t
 goldKey(const Problem& problem, const GoldOptions& options);
-
-/** \brief Sixteen hexadecimal digits. */
-std::string
-textOf(std::uint64_t key);
 
 /** \brief Read the gold standard of \p problem from \p folder, or make it and write it
  * there. One that had not converged is made again if more time is allowed now. Its

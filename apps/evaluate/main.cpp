@@ -3,6 +3,7 @@
  * sub-command each.
  */
 #include "coverage_command.h"
+#include "paper_command.h"
 #include "samplers_command.h"
 #include "sbc_command.h"
 
@@ -10,38 +11,57 @@
 
 #include <io/errors.h>
 
-#include <cstring>
 #include <exception>
+#include <functional>
 #include <iostream>
+#include <string>
+#include <vector>
 
 namespace {
 
 enum ExitCode { Good = 0, NotReached = 1, BadUsage = 2, BadFile = 3 };
 
 struct SubCommand {
-  const char* name;
-  const char* summary;
-  /** The exit code Good or NotReached; throws for the others. */
-  int (*run)(int argc, const char* const* argv);
+  std::string name;
+  std::string summary;
+  /** The exit code Good, NotReached or BadFile; throws for the others and for BadFile.
+   */
+  std::function<int(int argc, const char* const* argv)> run;
 };
 
-const SubCommand sub_commands[] = {
-    {"samplers",
-     "distance of every sampler's draws to a gold standard, and their rate",
-     bayesian_icp::evaluate::runSamplersCommand},
-    {"coverage",
-     "posteriors of every method against the true pose, on simulated and real scans",
-     bayesian_icp::evaluate::runCoverageCommand},
-    {"sbc",
-     "simulation-based calibration: ranks of true poses among draws of the samplers",
-     bayesian_icp::evaluate::runSbcCommand},
-};
+std::vector<SubCommand>
+subCommands()
+{
+  namespace evaluate = bayesian_icp::evaluate;
+  std::vector<SubCommand> commands = {
+      {"samplers",
+       "distance of every sampler's draws to a gold standard, and their rate",
+       evaluate::runSamplersCommand},
+      {"coverage",
+       "posteriors of every method against the true pose, on simulated and real scans",
+       evaluate::runCoverageCommand},
+      {"sbc",
+       "simulation-based calibration: ranks of true poses among draws of the samplers",
+       evaluate::runSbcCommand},
+      {"paper",
+       "the paper's whole evaluation: all experiments below, and a report",
+       evaluate::runPaperCommand},
+  };
+  for (const evaluate::NamedExperiment& experiment : evaluate::paperExperiments())
+    commands.push_back({experiment.name,
+                        experiment.summary,
+                        [&experiment](int argc, const char* const* argv) {
+                          return evaluate::runExperimentCommand(
+                              experiment.run, experiment.details, argc, argv);
+                        }});
+  return commands;
+}
 
 void
 printHelp(std::ostream& stream)
 {
   stream << "Usage: pcl_bayesian_icp_evaluate COMMAND [options]\n\nCommands:\n";
-  for (const SubCommand& command : sub_commands)
+  for (const SubCommand& command : subCommands())
     stream << "  " << command.name << "  " << command.summary << '\n';
   stream
       << "\nCOMMAND --help tells its options. Exit codes: 0 good, 1 a result is not\n"
@@ -79,13 +99,13 @@ run(const SubCommand& command, int argc, const char* const* argv)
 int
 main(int argc, char** argv)
 {
-  const char* name = argc > 1 ? argv[1] : "";
-  if (std::strcmp(name, "--help") == 0) {
+  const std::string name = argc > 1 ? argv[1] : "";
+  if (name == "--help") {
     printHelp(std::cout);
     return Good;
   }
-  for (const SubCommand& command : sub_commands)
-    if (std::strcmp(command.name, name) == 0)
+  for (const SubCommand& command : subCommands())
+    if (command.name == name)
       return run(command, argc - 1, argv + 1);
   printHelp(std::cerr);
   return BadUsage;

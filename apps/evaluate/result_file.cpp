@@ -7,29 +7,10 @@ namespace bayesian_icp::evaluate {
 
 namespace {
 
-constexpr char header[] =
-    "gold_key,scene,sigma,effective_points,sampler,seed,status,kl,"
-    "kl_x,kl_y,kl_z,kl_roll,kl_pitch,kl_yaw,w1_x,w1_y,w1_z,w1_roll,w1_pitch,w1_yaw,"
-    "ks_x,ks_y,ks_z,ks_roll,ks_pitch,ks_yaw,rhat,bulk_ess,tail_ess,seconds,draws,"
-    "min_ess_per_second";
+const std::string header =
+    std::string("gold_key,scene,sigma,effective_points,sampler,seed,status,") +
+    score_columns + ",min_ess_per_second";
 constexpr std::size_t num_columns = 32;
-
-/** Numbers of a score in the order of the columns from kl to draws. */
-template <typename ScoreType, typename Visit>
-void
-forEachNumber(ScoreType& score, const Visit& visit)
-{
-  visit(score.kl);
-  for (auto* vector :
-       {&score.coordinate_kl, &score.wasserstein, &score.kolmogorov_smirnov})
-    for (int k = 0; k < 6; ++k)
-      visit((*vector)[k]);
-  visit(score.rhat);
-  visit(score.bulk_ess);
-  visit(score.tail_ess);
-  visit(score.seconds);
-  visit(score.num_draws);
-}
 
 std::string
 rowOf(const ScoredRun& run)

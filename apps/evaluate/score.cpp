@@ -51,7 +51,7 @@ scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
   addDiagnostics(summary, score);
   const PoseMatrix pooled_draws = pooledDraws(run.chains.chains);
   score.num_draws = static_cast<double>(pooled_draws.rows());
-  if (pooled_draws.rows() < 10) {
+  if (pooled_draws.rows() < min_scored_draws) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     score.kl = infinity;
     score.coordinate_kl.setConstant(infinity);

@@ -53,10 +53,35 @@ struct Score {
   }
 };
 
+/** \brief Names of the numbers of a score in a CSV file, and a visit to each in that
+ * order. */
+constexpr char score_columns[] =
+    "kl,kl_x,kl_y,kl_z,kl_roll,kl_pitch,kl_yaw,w1_x,w1_y,w1_z,w1_roll,w1_pitch,w1_yaw,"
+    "ks_x,ks_y,ks_z,ks_roll,ks_pitch,ks_yaw,rhat,bulk_ess,tail_ess,seconds,draws";
+
+template <typename ScoreType, typename Visit>
+void
+forEachNumber(ScoreType& score, const Visit& visit)
+{
+  visit(score.kl);
+  for (auto* vector :
+       {&score.coordinate_kl, &score.wasserstein, &score.kolmogorov_smirnov})
+    for (int k = 0; k < 6; ++k)
+      visit((*vector)[k]);
+  visit(score.rhat);
+  visit(score.bulk_ess);
+  visit(score.tail_ess);
+  visit(score.seconds);
+  visit(score.num_draws);
+}
+
 struct ScoredRun {
   RunName name;
   Score score;
 };
+
+/** \brief With fewer draws there are no distances. */
+constexpr Eigen::Index min_scored_draws = 10;
 
 /** \param[in] gold_draws poses theta of the gold standard */
 Score

@@ -2,6 +2,8 @@
 
 #include "gold_cache.h"
 
+#include <io/text_hash.h>
+
 #include <cmath>
 #include <limits>
 #include <set>
@@ -44,7 +46,7 @@ Study::runOnce(const std::string& name, std::uint64_t seed, const Sampler& sampl
               problem_.cell().effective_points,
               name,
               seed,
-              textOf(goldKey(problem_, options_.gold))};
+              io::textOfHash(goldKey(problem_, options_.gold))};
   if (const ScoredRun* known = results_.find(run.name))
     return known->score;
   const SamplerRun made = sampler(seed);

@@ -102,6 +102,21 @@ quotedForGnuplot(const std::string& text)
 }
 
 std::string
+dataBlock(const std::string& name, const std::string& lines)
+{
+  return '$' + name + " << EOD\n" + lines + "EOD\n";
+}
+
+std::string
+panelsWithKey(std::size_t num_rows, std::size_t num_columns)
+{
+  return "set multiplot layout " + std::to_string(num_rows) + ", " +
+         std::to_string(num_columns) +
+         " margins screen 0.06, 0.83, 0.16, 0.93 spacing screen 0.055, 0.2\n"
+         "set key at screen 0.99, 0.95 right top vertical samplen 1 font ',10'\n";
+}
+
+std::string
 pictures(const std::string& file, const std::string& size, const std::string& plot)
 {
   std::ostringstream lines;

@@ -5,6 +5,7 @@
 
 #include "io/errors.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,17 @@ makePlotFolder(const std::string& folder);
 /** \brief A string of gnuplot's. */
 std::string
 quotedForGnuplot(const std::string& text);
+
+/** \brief Lines that give data a name, $NAME.
+ * \param[in] lines numbers with spaces between, ends of lines included */
+std::string
+dataBlock(const std::string& name, const std::string& lines);
+
+/** \brief A line that begins several panels in one picture, their common key to the
+ * right of them: all titles are those of the first panel that has any. Ends with "unset
+ * multiplot". */
+std::string
+panelsWithKey(std::size_t num_rows, std::size_t num_columns);
 
 /** \brief Lines that write one picture as SVG and PNG.
  * \param[in] file without its ending

@@ -1,0 +1,70 @@
+#include "scan_manifest.h"
+
+#include <io/errors.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr double radians_per_degree = 3.14159265358979323846 / 180.0;
+
+/** \throws nlohmann::json::exception */
+ManifestEntry
+entryOf(const nlohmann::json& json)
+{
+  ManifestEntry entry;
+  const auto& files = json.at("files");
+  entry.name = json.at("name");
+  entry.source = files.at("source");
+  entry.target = files.at("target");
+  entry.ground_truth = files.at("ground_truth");
+  entry.initial_guess = files.value("initial_guess", "");
+  if (const auto prior = json.find("suggested_prior_sigma"); prior != json.end())
+    entry.prior_sd = {prior->at("translation_m"), prior->at("rotation_rad")};
+  const auto& accuracy = json.at("ground_truth_accuracy");
+  // The manifest's are of the whole vector.
+  entry.truth_sd.translation =
+      accuracy.at("translation_m").get<double>() / std::sqrt(3.0);
+  entry.truth_sd.rotation =
+      accuracy.at("rotation_deg").get<double>() * radians_per_degree / std::sqrt(3.0);
+  return entry;
+}
+
+} // namespace
+
+std::vector<ManifestEntry>
+readManifest(const std::string& folder)
+{
+  const std::string file = folder + "/" + manifest_name;
+  std::ifstream stream(file);
+  if (!stream)
+    throw io::FileError(file, "cannot be read");
+  std::vector<ManifestEntry> entries;
+  try {
+    for (const auto& json : nlohmann::json::parse(stream))
+      entries.push_back(entryOf(json));
+  }
+  catch (const nlohmann::json::exception& error) {
+    throw io::FileError(file, error.what());
+  }
+  return entries;
+}
+
+Eigen::Isometry3d
+readTransform(const std::string& file)
+{
+  std::ifstream stream(file);
+  Eigen::Isometry3d transform;
+  for (Eigen::Index i = 0; i < 16; ++i)
+    if (!(stream >> transform.matrix()(i / 4, i % 4)))
+      throw io::FileError(file, "is not a 4 x 4 matrix");
+  if (!transform.linear().isUnitary(1e-3))
+    throw io::FileError(file, "is not a rigid motion");
+  return transform;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,136 @@
+// The sub-commands of the paper's evaluation, run as a user would.
+#include "command_helpers.h"
+#include "csv_rows.h"
+#include "paper_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** The rows without the column of seconds, which differ from run to run. */
+Rows
+withoutSeconds(Rows rows)
+{
+  const auto header = rows.front();
+  const auto column = std::find(header.begin(), header.end(), "seconds");
+  if (column != header.end())
+    for (auto& row : rows)
+      row.erase(row.begin() + (column - header.begin()));
+  return rows;
+}
+
+class PaperCommand : public FolderTest {
+protected:
+  void
+  SetUp() override
+  {
+    FolderTest::SetUp();
+    if (runShell("gnuplot --version").exit_code != 0)
+      GTEST_SKIP() << "no gnuplot";
+  }
+
+  CommandResult
+  run(const std::string& arguments) const
+  {
+    return runShell("cd '" + folder_.string() + "' && '" BAYESIAN_ICP_EVALUATE "' " +
+                    arguments);
+  }
+
+  fs::path
+  runsOfIcp() const
+  {
+    for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+      if (entry.path().filename().string().rfind("monte_carlo_good_", 0) == 0)
+        return entry.path();
+    return {};
+  }
+};
+
+constexpr char small[] =
+    " --data . --output out --quick --repeats 2 --baseline-runs 10";
+
+} // namespace
+
+TEST_F(PaperCommand, BrokenPairsAreSkippedAndTheExitCodeSaysSo)
+{
+  writeScanPair(folder_, "good");
+  writeScanPair(folder_, "broken");
+  std::ofstream(folder_ / "broken/T_target_source.txt") << "1 0 0";
+  const CommandResult result =
+      run(std::string("distribution --pairs broken,good,missing") + small);
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  for (const char* piece : {"pair broken is skipped: ./broken/T_target_source.txt",
+                            "pair missing is skipped: ./missing/source.pcd",
+                            "2 pairs were skipped",
+                            "## Distribution (Table I)"})
+    EXPECT_NE(result.output.find(piece), std::string::npos) << result.output;
+  const Rows rows = rowsOf(folder_ / "out/distribution.csv");
+  ASSERT_GT(rows.size(), 2u);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    EXPECT_EQ(rows[i][1], "good");
+}
+
+TEST_F(PaperCommand, GoesOnAfterFilesThatWereCutOff)
+{
+  writeScanPair(folder_, "good");
+  const std::string command = std::string("distribution --pairs good") + small;
+  const CommandResult first = run(command);
+  ASSERT_EQ(first.exit_code, 0) << first.output;
+  const fs::path results = folder_ / "out/distribution.csv";
+  const std::string icp_rows = contentOf(runsOfIcp());
+  const Rows rows = rowsOf(results);
+  fs::resize_file(results, fs::file_size(results) - 100);
+  fs::resize_file(runsOfIcp(), icp_rows.size() - 150);
+  const CommandResult second = run(command);
+  EXPECT_EQ(second.exit_code, 0) << second.output;
+  EXPECT_EQ(contentOf(runsOfIcp()), icp_rows);
+  EXPECT_TRUE(withoutSeconds(rowsOf(results)) == withoutSeconds(rows));
+  // Only what was lost is made again.
+  EXPECT_EQ(count(" runs\n", second.output), 1) << second.output;
+  // A file that is not ours is not touched.
+  std::ofstream(results) << "x,y\n";
+  EXPECT_EQ(run(command).exit_code, 3);
+  EXPECT_EQ(contentOf(results), "x,y\n");
+}
+
+TEST_F(PaperCommand, ThreadsMakeNoDifference)
+{
+  writeScanPair(folder_, "good");
+  const std::string command = std::string("distribution --pairs good") + small;
+  ASSERT_EQ(run(command + " --threads 1").exit_code, 0);
+  const std::string icp_rows = contentOf(runsOfIcp());
+  const Rows rows = rowsOf(folder_ / "out/distribution.csv");
+  fs::remove_all(folder_ / "out");
+  ASSERT_EQ(run(command + " --threads 3").exit_code, 0);
+  EXPECT_EQ(contentOf(runsOfIcp()), icp_rows);
+  EXPECT_TRUE(withoutSeconds(rowsOf(folder_ / "out/distribution.csv")) ==
+              withoutSeconds(rows));
+}
+
+TEST_F(PaperCommand, BadOptionsExitWithTwoAndLeaveNothing)
+{
+  for (const char* arguments : {"--baseline-runs 7",
+                                "--repeats 1",
+                                "--points -1",
+                                "--start-translation 0",
+                                "--start-rotation nan",
+                                "--threads 1000",
+                                "--output ''",
+                                "--quic",
+                                "word"})
+    for (const char* command : {"paper ", "samples "}) {
+      const CommandResult result = run(std::string(command) + arguments);
+      EXPECT_EQ(result.exit_code, 2) << arguments << ": " << result.output;
+      EXPECT_TRUE(fs::is_empty(folder_)) << arguments;
+    }
+  EXPECT_EQ(run("paper --data nowhere").exit_code, 3);
+  const CommandResult help = run("burn-in --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_NE(help.output.find("--baseline-runs"), std::string::npos);
+}
