@@ -45,6 +45,8 @@ replacesIterativeClosestPoint()
 {
   const ScanPair<pcl::PointXYZ> scans;
   auto registration = std::make_shared<Registration>();
+  // The scans have no noise, in which the default preset measures.
+  registration->setPreset(bayesian_icp::Preset::Paper);
   registration->setSeed(7);
   registration->setNumberOfThreads(2);
 

@@ -65,6 +65,7 @@ main()
       R.transpose() * (target.colwise() - truth.head<3>()).eval();
 
   bayesian_icp::Options options;
+  options.preset = bayesian_icp::Preset::Paper; // a search of its own
   options.chains.num_draws = 800;
   options.mini_batch.batch_size = 80;
   const bayesian_icp::PosteriorEstimate estimate = bayesian_icp::estimatePosterior(
