@@ -26,6 +26,7 @@ registersOwnPointType()
   registration.setInputSource(scans.source);
   registration.setInputTarget(scans.target);
   registration.setMaximumIterations(50);
+  registration.setPreset(bayesian_icp::Preset::Paper);
   registration.setNumberOfSamples(100);
   pcl::PointCloud<EchoPoint> output;
   registration.align(output);
