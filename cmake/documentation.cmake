@@ -13,7 +13,13 @@ set(program_descriptions
     "pcl_bayesian_icp_evaluate|check whether covariances of registrations are right"
     "pcl_bayesian_icp_evaluate coverage|how often the truth is within the regions of a posterior"
     "pcl_bayesian_icp_evaluate samplers|compare draws of the samplers with a gold standard"
-    "pcl_bayesian_icp_evaluate sbc|simulation-based calibration of the samplers")
+    "pcl_bayesian_icp_evaluate sbc|simulation-based calibration of the samplers"
+    "pcl_bayesian_icp_evaluate paper|the paper's whole evaluation and a report"
+    "pcl_bayesian_icp_evaluate distribution|divergence of every method from Monte Carlo ICP"
+    "pcl_bayesian_icp_evaluate samples|divergence as a function of the number of draws"
+    "pcl_bayesian_icp_evaluate burn-in|divergence as a function of the length of burn-in"
+    "pcl_bayesian_icp_evaluate runtime|seconds per 1000 draws"
+    "pcl_bayesian_icp_evaluate accuracy|errors of posterior means, SGD-ICP and ICP")
 
 find_program(DOXYGEN doxygen)
 if(DOXYGEN AND IS_TOP_LEVEL)
@@ -39,7 +45,8 @@ foreach(entry IN LISTS program_descriptions)
   set(command "${CMAKE_MATCH_2}")
   set(description "${CMAKE_MATCH_3}")
   if(HELP2MAN AND NOT CMAKE_CROSSCOMPILING AND program IN_LIST installed_programs)
-    string(REPLACE " " "-" page ${PROJECT_BINARY_DIR}/man/${program}${command}.1)
+    string(REPLACE " " "-" page "${program}${command}.1")
+    set(page ${PROJECT_BINARY_DIR}/man/${page})
     separate_arguments(words UNIX_COMMAND "${command}")
     add_custom_command(
       OUTPUT ${page}
@@ -53,7 +60,7 @@ foreach(entry IN LISTS program_descriptions)
 endforeach()
 if(man_pages)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/man)
-  add_custom_target(man ALL DEPENDS ${man_pages})
+  add_custom_target(bayesian_icp_man ALL DEPENDS ${man_pages})
   install(FILES ${man_pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 endif()
 
