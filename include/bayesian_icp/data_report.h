@@ -129,8 +129,8 @@ flagsOf(const DataReport& report);
  * (0.00, 0.00, 1.00) through (0.100, 0.200, 0.050) m", "screw about ... with a pitch of
  * 0.250 m/rad". Opposite twists have the same words. Translation is what moves all
  * points nearly alike; the point is the axis' nearest to the centre.
- * \param[in] twist left, target frame, of unit root mean squared displacement [1,
- * rad/m] \param[in] centre of the twist, target frame [m] */
+ * \param[in] twist left, target frame, of unit rms displacement [1, rad/m]
+ * \param[in] centre of the twist, target frame [m] */
 BAYESIAN_ICP_EXPORT std::string
 describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre);
 

@@ -116,8 +116,8 @@ BAYESIAN_ICP_EXPORT std::string
 tumLine(const PoseEstimate& estimate, const ExportOptions& options);
 
 /** \brief The covariance that belongs to tumLine(): the same timestamp, then 36
- * numbers, row by row, of CovarianceConvention::R3xSO3. \throws std::invalid_argument
- * with complaintAboutExport() or options.validate() */
+ * numbers, row by row, of CovarianceConvention::R3xSO3.
+ * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 tumCovarianceLine(const PoseEstimate& estimate, const ExportOptions& options);
 

@@ -15,7 +15,8 @@ class BAYESIAN_ICP_EXPORT Gaussian {
 public:
   Gaussian() = default;
 
-  /** \param[in] precision symmetric, positive definite */
+  /** \param[in] mean of the Gaussian
+   * \param[in] precision symmetric, positive definite */
   Gaussian(const Vector6d& mean, const Matrix6d& precision);
 
   /** \brief mean + L z with z standard normal. */
@@ -99,8 +100,10 @@ collectGradients(StochasticEnergy& energy,
                  Random& random);
 
 /** \brief One step of the regression: new mean, precision and noise.
+ * \param[in] sums from collectGradients() at \p fit
  * \param[in] gain in (0, 1], share of the new slope in the precision
- * \param[in] prior_precision its half bounds the precision from below */
+ * \param[in] prior_precision its half bounds the precision from below
+ * \param[in,out] fit to be improved */
 BAYESIAN_ICP_EXPORT void
 updateFit(const RegressionSums& sums,
           double gain,
@@ -109,6 +112,9 @@ updateFit(const RegressionSums& sums,
 
 /** \brief Fit a Gaussian at \p start: from a tempered one that looks over the roughness
  * of the likelihood down to temperature 1. Serves one chain.
+ * \param[in] energy -log density and its stochastic gradients
+ * \param[in] start near a mode
+ * \param[in] random generator of the chain
  * \param[in] keep_going asked after each iteration; returning false ends the fit */
 BAYESIAN_ICP_EXPORT GaussianFit
 fitTempered(StochasticEnergy& energy,

@@ -28,6 +28,7 @@ BAYESIAN_ICP_EXPORT Vector6d
 termNoise(const GaussianFit& fit);
 
 /** \brief Plan the steps of a fit.
+ * \param[in] fit the Gaussian and the noise of the gradients there
  * \param[in] num_terms n of the energy
  * \param[in] batch_size m, or 0 to find the one with most effective draws a term
  * \param[in] max_step_size largest b_k, in (0, 1] */

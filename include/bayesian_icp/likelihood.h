@@ -43,8 +43,10 @@ meanEnergy(const Vector6d& pose,
 /** \brief Mean gradient of a mini-batch, eqs. (2) and (3), with respect to
  * (x, y, z, roll, pitch, yaw) [m, m^2/rad]: the gradient of meanEnergy at fixed
  * correspondences.
+ * \param[in] pose at which it is taken [m, rad]
  * \param[in] source_points 3 x m, source frame [m]
- * \param[in] moved_points 3 x m, the same points in the target frame [m] */
+ * \param[in] moved_points 3 x m, the same points in the target frame [m]
+ * \param[in] correspondences of the moved points */
 BAYESIAN_ICP_EXPORT Vector6d
 meanGradient(const Vector6d& pose,
              const Eigen::Matrix3Xd& source_points,

@@ -14,7 +14,9 @@ namespace bayesian_icp {
 class BAYESIAN_ICP_EXPORT MatchedBatch {
 public:
   /** \param[in] source_points 3 x n, source frame [m]; must outlive this object, like
-   *            \p search */
+   *            \p search
+   * \param[in] search finds correspondences in the target
+   * \param[in] mini_batches of this chain or descent */
   MatchedBatch(const Eigen::Matrix3Xd& source_points,
                const CorrespondenceSearch& search,
                const MiniBatches& mini_batches);

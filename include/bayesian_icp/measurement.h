@@ -39,8 +39,10 @@ struct BAYESIAN_ICP_EXPORT PoseMeasurement {
  * of the posterior minus those of the prior, linearised at the posterior mean.
  *
  * Fused with the prior again it is the posterior. Right as far as the posterior is
- * nearly Gaussian. \param[in] prior with which \p posterior was sampled \return NaN if
- * \p posterior has no finite mean and covariance */
+ * nearly Gaussian.
+ * \param[in] posterior mean and covariances
+ * \param[in] prior with which \p posterior was sampled
+ * \return NaN if \p posterior has no finite mean and covariance */
 BAYESIAN_ICP_EXPORT PoseMeasurement
 withoutPrior(const PoseEstimate& posterior, const Prior& prior);
 

@@ -37,6 +37,7 @@ public:
 
   /** \brief One random walk with \p factor or, every other time, 0.3 of it, which is
    * accepted where the density is rough.
+   * \param[in] factor L of the step L z, z standard normal
    * \param[in] temperature the density is exp(-U / temperature)
    * \return whether it was accepted */
   bool

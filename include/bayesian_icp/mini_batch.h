@@ -27,7 +27,8 @@ toString(MiniBatchSampling sampling);
 class BAYESIAN_ICP_EXPORT MiniBatches {
 public:
   /** \param[in] num_points size n of the source, positive
-   * \param[in] batch_size m of Algorithm 1; more than n is taken as n */
+   * \param[in] batch_size m of Algorithm 1; more than n is taken as n
+   * \param[in] sampling how a batch is drawn */
   MiniBatches(std::size_t num_points,
               std::size_t batch_size,
               MiniBatchSampling sampling);

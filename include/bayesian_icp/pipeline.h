@@ -28,6 +28,8 @@ constexpr std::size_t min_correspondences = 3;
  *            `calibrated`, which needs the target's points, is refused here
  * \param[in] initial_pose start of the chains, and mean of the prior unless the options
  *            say otherwise [m, rad]
+ * \param[in] options preset, prior, chains and what else the preset uses
+ * \param[in] progress told of every step; returns false to cancel
  * \return an estimate whose summary.status says what happened; bad options or input
  * give a status, not an exception. Exceptions of \p search and \p progress pass
  *         through. */
@@ -40,7 +42,12 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
 
 /** \brief The same for a target given by its points, of which it makes what the preset
  * needs: the one way for preset `calibrated` that keeps all digits of far coordinates.
- * \param[in] target_points 3 x n, target frame [m]; not finite ones are left out */
+ * \param[in] source_points 3 x n, finite, source frame [m]
+ * \param[in] target_points 3 x n, target frame [m]; not finite ones are left out
+ * \param[in] initial_pose as above
+ * \param[in] options as above; any preset
+ * \param[in] progress as above
+ * \return as above */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Eigen::Matrix3Xd& target_points,

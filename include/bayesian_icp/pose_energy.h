@@ -52,7 +52,9 @@ public:
   /** \param[in] source_points 3 x n, finite, source frame [m]
    * \param[in] target must outlive this object; with normals for
    *            Residual::PointToPlane
-   * \param[in] weight N / sigma^2 [1/m^2] */
+   * \param[in] prior of theta
+   * \param[in] weight N / sigma^2 [1/m^2]
+   * \param[in] residual what a distance costs */
   PoseEnergy(const Eigen::Matrix3Xd& source_points,
              const Target& target,
              const Prior& prior,
@@ -79,8 +81,11 @@ public:
   toPhi(const Vector6d& theta) const;
 
   /** \brief Likelihood terms of a batch at the centred pose \p phi.
+   * \param[in] phi centred pose [m, rad]
    * \param[in] indices source points of the batch, at least one
-   * \param[in] residual in place of residual(): burn-in starts without a kernel */
+   * \param[in] extras what is wanted beside the gradient
+   * \param[in] residual in place of residual(): burn-in starts without a kernel
+   * \param[in,out] workspace of this thread */
   BatchTerms
   batchTerms(const Vector6d& phi,
              const std::vector<std::size_t>& indices,

@@ -16,7 +16,10 @@ class BAYESIAN_ICP_EXPORT PosteriorGradient {
 public:
   /** \param[in] source_points 3 x n, source frame [m]; must outlive this object, like
    *            \p search and \p prior
-   * \param[in] weight N / sigma^2 [1/m^2] */
+   * \param[in] search finds correspondences in the target
+   * \param[in] prior of the pose
+   * \param[in] weight N / sigma^2 [1/m^2]
+   * \param[in] mini_batches of this chain */
   PosteriorGradient(const Eigen::Matrix3Xd& source_points,
                     const CorrespondenceSearch& search,
                     const Prior& prior,

@@ -53,11 +53,15 @@ struct PreconditionedOptions {
  * Langevin steps; or all chains together learn a proposal of Metropolis steps, for all
  * modes, then freeze it and sample.
  *
+ * Draws are bit-identical for every number of threads: what the chains share is put
+ * together from their results in the order of the chains.
+ *
+ * \param[in] target makes the energy of each chain
+ * \param[in] sampler how the steps are made
  * \param[in] options num_burn_in 0 and thinning 1 are automatic, so that draws are
  *            nearly independent; initial_spread is not used (the energies draw their
  *            starts)
- * Draws are bit-identical for every number of threads: what the chains share is put
- * together from their results in the order of the chains. */
+ * \param[in] progress told of every step; returns false to cancel */
 BAYESIAN_ICP_EXPORT ChainSet
 runPreconditionedChains(const PreconditionedTarget& target,
                         const PreconditionedOptions& sampler,

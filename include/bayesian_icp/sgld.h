@@ -65,8 +65,12 @@ stepSizeAt(const SgldOptions& options, long step, long num_steps);
 
 /** \brief One Langevin step, eqs. (5), (8), (9): pose - alpha/2 A gradient + eta with
  * injected noise eta ~ N(0, noise_factor alpha A).
+ * \param[in] pose from which the step is made [m, rad]
+ * \param[in] energy_gradient of -log posterior there [1/m, 1/rad]
  * \param[in] preconditioner diagonal of A
- * \param[in] step_size alpha of this step */
+ * \param[in] step_size alpha of this step
+ * \param[in] noise_factor 1 by the paper, 0 for a descent
+ * \param[in] random generator of the chain */
 BAYESIAN_ICP_EXPORT Vector6d
 sgldStep(const Vector6d& pose,
          const Vector6d& energy_gradient,

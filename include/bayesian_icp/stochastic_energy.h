@@ -78,7 +78,9 @@ public:
 
   /** \brief Temperature from which the warm-up cools down: one at which a Gaussian is
    * wide enough to look over the roughness of the likelihood. The default is 1.
-   * \param[in] covariance of the Gaussian at temperature 1 */
+   * \param[in] x near a mode
+   * \param[in] covariance of the Gaussian at temperature 1
+   * \param[in] random generator of the chain */
   virtual double
   initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random);
 

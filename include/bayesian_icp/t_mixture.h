@@ -24,10 +24,12 @@ public:
 
   /** \param[in] draws many rows, finite and not in a plane; components get at least 60
    *            of them, so that there may be fewer
+   * \param[in] num_components wanted
    * \param[in] random chooses the first centres */
   TMixture(const PoseMatrix& draws, int num_components, Random& random);
 
   /** \brief One more component.
+   * \param[in] mean of the component
    * \param[in] covariance positive definite; of the t's Gaussian, not of the t
    * \param[in] weight in (0, 1], what it weighs in the mixture thereafter; not used for
    *            the first component */

@@ -35,6 +35,7 @@ BAYESIAN_ICP_EXPORT ClosedFormDerivatives
 closedFormDerivatives(const MatchedPoints& matches, const Eigen::Vector3d& centre);
 
 /** \brief The covariance at the minimum.
+ * \param[in] derivatives at the minimum
  * \param[in] sigma noise of every coordinate of every point [m]
  * \return not finite where the Hessian is singular */
 BAYESIAN_ICP_EXPORT Matrix6d

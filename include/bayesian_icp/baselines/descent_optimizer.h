@@ -52,6 +52,7 @@ public:
 };
 
 /** \brief An optimiser that has seen no gradient yet.
+ * \param[in] optimizer which one
  * \param[in] step_size NaN: defaultStepSize() */
 BAYESIAN_ICP_EXPORT std::unique_ptr<DescentOptimizer>
 makeDescentOptimizer(SgdOptimizer optimizer, double step_size);

@@ -58,7 +58,8 @@ residualVariance(const GaussNewton& sums);
 /** \brief Gauss-Newton Hessian of GICP, sum_i A_i^T C_i^-1 A_i, in units of its energy
  * (no sigma).
  * \param[in] moved 3 x n, target frame [m]
- * \param[in] covariances C_i = C_target + R C_source R^T of each pair, target frame */
+ * \param[in] covariances C_i = C_target + R C_source R^T of each pair, target frame
+ * \param[in] centre of the twists, target frame [m] */
 BAYESIAN_ICP_EXPORT Matrix6d
 generalizedIcpHessian(const Eigen::Matrix3Xd& moved,
                       const std::vector<Eigen::Matrix3d>& covariances,

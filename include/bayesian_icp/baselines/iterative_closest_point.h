@@ -67,7 +67,9 @@ struct IcpResult {
  * pcl::IterativeClosestPoint but for rounding (PCL moves its cloud in single precision,
  * again each time; this one takes the pose in double).
  * \param[in] source 3 x n, finite, source frame [m]
+ * \param[in] target points, target frame [m]
  * \param[in] start T_target_source
+ * \param[in] options when to stop, and the gate
  * \return has_converged false, at the last pose, where fewer than three points have a
  *         target point within max_distance */
 BAYESIAN_ICP_EXPORT IcpResult

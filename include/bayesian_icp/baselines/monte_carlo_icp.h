@@ -52,6 +52,9 @@ using MonteCarloIcpProgress = std::function<bool(int num_done)>;
 /** \brief Run ICP from random starts (Maken, Ramos, Ott 2020, section IV).
  * \param[in] source 3 x n, finite, source frame [m]; starts are poses about the origin
  *            of that frame
+ * \param[in] target points, target frame [m]
+ * \param[in] options starts, ICP and threads
+ * \param[in] progress told of each finished run; may be empty
  * \return the runs in the order of their index; if stopped, those that were finished */
 BAYESIAN_ICP_EXPORT std::vector<MonteCarloIcpRun>
 monteCarloIcp(const Eigen::Matrix3Xd& source,

@@ -81,7 +81,9 @@ using StochasticGradientIcpProgress =
  * from \p initial_pose. The source is dealt out in shuffled epochs.
  * \param[in] source_points 3 x n, finite, source frame [m]
  * \param[in] search finds correspondences within its gate; called by this thread only
- */
+ * \param[in] initial_pose T_target_source [m, rad]
+ * \param[in] options step size, batches and when to stop
+ * \param[in] progress told of each step; may be empty */
 BAYESIAN_ICP_EXPORT StochasticGradientIcpResult
 stochasticGradientIcp(
     const Eigen::Matrix3Xd& source_points,

@@ -69,6 +69,9 @@ struct EstimateOptions {
 
 /** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
  * result from there) and estimate its covariance.
+ * \param[in] scorer of the source against the target's surface
+ * \param[in] prior whose mean is the first start
+ * \param[in] options how many points and rounds
  * \param[in] start of a single start in place of the two; may be null */
 BAYESIAN_ICP_EXPORT CalibratedEstimate
 estimateCalibrated(const SurfaceScorer& scorer,

@@ -12,6 +12,7 @@ namespace bayesian_icp {
 
 /** \brief The report of \p estimate; directions are ordered by their posterior standard
  * deviation.
+ * \param[in] estimate to report
  * \param[in] num_source_points source points that were used, positive
  * \param[in] target that the estimate is of */
 BAYESIAN_ICP_EXPORT DataReport

@@ -47,8 +47,11 @@ struct Secants {
 };
 
 /** \brief Measure the curvature about a mode.
+ * \param[in] scorer of the source against the target's surface
+ * \param[in] mode T_target_source
  * \param[in] at_mode scores there
  * \param[in] tau scale of the residuals in Tukey's weight
+ * \param[in] plan directions and lengths of the steps
  * \param[in] previous secants about the same mode, which are kept where the step would
  *            be nearly the same */
 BAYESIAN_ICP_EXPORT Secants

@@ -39,7 +39,9 @@ activeScores(const SurfaceScores& scores, const Eigen::Matrix3Xd& source_points)
  * sum of outer products of the clusters' total scores is corrected for the pose having
  * been fitted, by f = 6 / (6 - sum_b tr((H_w^-1 H_b)^2)), H_b the Gauss-Newton
  * information of cluster b; without jacobians by f = L / (L - 1).
- * \param[in] working_information H_w: what the fit was held by */
+ * \param[in] points their scores and positions
+ * \param[in] working_information H_w: what the fit was held by
+ * \param[in] options number of clusters, and partitions to average over */
 BAYESIAN_ICP_EXPORT Matrix6d
 clusteredCovariance(const PointScores& points,
                     const Matrix6d& working_information,
@@ -58,6 +60,7 @@ struct ScoreCovariance {
 /** \brief Estimate J: half the shape of 48 clusters, half that of independent points,
  * both of the size of clusters that are independent, and larger by nu / (nu - 13) for
  * the nu = n / kappa_inf independent points from which it was estimated.
+ * \param[in] points their scores and positions
  * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
 BAYESIAN_ICP_EXPORT ScoreCovariance
 scoreCovariance(const PointScores& points, const Matrix6d& fit_precision);

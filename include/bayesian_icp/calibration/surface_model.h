@@ -78,6 +78,7 @@ struct SurfaceModelOptions {
 class BAYESIAN_ICP_EXPORT SurfaceModel {
 public:
   /** \param[in] target_points 3 x n [m]; points that are not finite are left out
+   * \param[in] options of the patches
    * \param[in] num_threads 0: as OpenMP would */
   explicit SurfaceModel(const Eigen::Matrix3Xd& target_points,
                         const SurfaceModelOptions& options = SurfaceModelOptions(),

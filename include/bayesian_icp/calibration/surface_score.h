@@ -68,9 +68,11 @@ public:
   SurfaceScorer(const Eigen::Matrix3Xd& source_points, const SurfaceModel& model);
 
   /** \brief Evaluate all points.
+   * \param[in] T_target_source where
    * \param[in] tau scale of the residuals in Tukey's weight; infinite: least squares
    * \param[in] centre of the twists, target frame [m]
-   * \param[in,out] hints empty, or of an earlier call on this object */
+   * \param[in,out] hints empty, or of an earlier call on this object
+   * \param[out] scores of all points */
   void
   evaluate(const Eigen::Isometry3d& T_target_source,
            const Eigen::Vector3d& centre,
@@ -79,7 +81,11 @@ public:
            SurfaceScores& scores) const;
 
   /** \brief Sum of the scores of some points.
+   * \param[in] T_target_source where
+   * \param[in] centre of the twists, target frame [m]
+   * \param[in] tau as in evaluate()
    * \param[in] indices columns of the source, repeats allowed
+   * \param[in,out] hints as in evaluate()
    * \param[out] total sum of their scores
    * \return how many of them have a usable patch, whatever their weight */
   int
