@@ -173,9 +173,10 @@ TEST(Icp, StepsAreThoseOfPcl)
         EXPECT_LT((ours * bound.centroid - theirs * bound.centroid).norm(),
                   bound.translation);
         // Far from the fixed point the bound is small beside the step.
-        if (num_iterations < 500)
+        if (num_iterations < 500) {
           EXPECT_GT((ours * bound.centroid - pose * bound.centroid).norm(),
                     10.0 * bound.translation);
+        }
         IcpOptions on = options;
         on.max_iterations = num_iterations;
         pose = pair.run(pose, on).T_target_source;

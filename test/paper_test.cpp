@@ -383,7 +383,8 @@ TEST_F(Report, HtmlNeedsNoOtherFile)
   for (const char* name : {"one", "two"})
     std::ofstream(folder_ / (std::string(name) + ".svg"))
         << "<?xml version='1.0'?>\n<svg viewBox=\"0 0 9 9\"><defs><circle id='gpDot'/>"
-           "</defs><use xlink:href='#gpDot'/></svg>\n";
+           "<g id='gpPt0'><use xlink:href='#gpDot'/></g></defs>"
+           "<use xlink:href='#gpPt0'/></svg>\n";
   std::ostringstream html;
   writeHtml(exampleReport(), folder_.string(), html);
   const std::string text = html.str();
@@ -394,7 +395,7 @@ TEST_F(Report, HtmlNeedsNoOtherFile)
                             ">a|b</th>",
                             ">1</td>",
                             "<circle id='figure-1-gpDot'/>",
-                            "<use xlink:href='#figure-1-gpDot'/>",
+                            "<use xlink:href='#figure-1-gpPt0'/>",
                             "<circle id='figure-2-gpDot'/>"})
     EXPECT_NE(text.find(piece), std::string::npos) << piece;
   EXPECT_EQ(text.find("<?xml"), std::string::npos);
