@@ -1,7 +1,7 @@
 /** \file
  * \brief pcl_bayesian_icp: registers a cloud to another and tells how sure that is.
  */
-#include "io/errors.h"
+#include "io/failure.h"
 #include "io/numbers.h"
 #include "plot/gnuplot.h"
 #include "register/command_line.h"
@@ -22,13 +22,8 @@
 namespace bayesian_icp::app {
 namespace {
 
-enum ExitCode {
-  Good = 0,
-  NoPosterior = 1,
-  BadUsage = 2,
-  BadFile = 3,
-  Interrupted = 130
-};
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, NoPosterior = 1, Interrupted = 130 };
 
 void
 tell(const std::string& message)
@@ -209,16 +204,7 @@ main(int argc, char** argv)
   try {
     return app::runTool(argc, argv);
   }
-  catch (const io::UsageError& error) {
-    app::tell(std::string(error.what()) + " (see --help)");
-    return app::BadUsage;
-  }
-  catch (const io::FileError& error) {
-    app::tell(error.what());
-    return app::BadFile;
-  }
-  catch (const std::exception& error) {
-    app::tell(std::string("failed: ") + error.what());
-    return app::NoPosterior;
+  catch (...) {
+    return io::explainFailure("pcl_bayesian_icp");
   }
 }

@@ -7,7 +7,7 @@
 #include "batch/batch_run.h"
 #include "batch/ranks.h"
 #include "io/cloud_file.h"
-#include "io/errors.h"
+#include "io/failure.h"
 #include "io/numbers.h"
 #include "register/interrupt.h"
 
@@ -19,7 +19,8 @@
 namespace bayesian_icp::app {
 namespace {
 
-enum ExitCode { Good = 0, NotAllOk = 1, BadUsage = 2, BadFile = 3, Interrupted = 130 };
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = 130 };
 
 void
 tell(const std::string& message)
@@ -174,27 +175,6 @@ runTool(int argc, char** argv, const Ranks& ranks)
                                       : runToFile(request, ranks, pairs);
 }
 
-/** Says why the run ends. \return the exit code for that */
-int
-explain(const std::exception_ptr& failure)
-{
-  try {
-    std::rethrow_exception(failure);
-  }
-  catch (const io::UsageError& error) {
-    tell(std::string(error.what()) + " (see --help)");
-    return BadUsage;
-  }
-  catch (const io::FileError& error) {
-    tell(error.what());
-    return BadFile;
-  }
-  catch (const std::exception& error) {
-    tell(std::string("failed: ") + error.what());
-    return NotAllOk;
-  }
-}
-
 } // namespace
 } // namespace bayesian_icp::app
 
@@ -207,7 +187,7 @@ main(int argc, char** argv)
     return runTool(argc, argv, ranks);
   }
   catch (...) {
-    const int exit_code = explain(std::current_exception());
+    const int exit_code = bayesian_icp::io::explainFailure("pcl_bayesian_icp_batch");
     ranks.abort(exit_code);
     return exit_code;
   }

@@ -2,7 +2,7 @@
  * \brief pcl_bayesian_icp_pose_graph: consecutive scans in, a pose graph for g2o out.
  */
 #include "io/cloud_file.h"
-#include "io/errors.h"
+#include "io/failure.h"
 #include "io/output_folder.h"
 #include "pose_graph/graph_command.h"
 #include "register/interrupt.h"
@@ -13,7 +13,8 @@
 namespace bayesian_icp::app {
 namespace {
 
-enum ExitCode { Good = 0, NotAllOk = 1, BadUsage = 2, BadFile = 3, Interrupted = 130 };
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = 130 };
 
 void
 tell(const std::string& message)
@@ -78,16 +79,7 @@ main(int argc, char** argv)
   try {
     return app::runTool(argc, argv);
   }
-  catch (const io::UsageError& error) {
-    app::tell(std::string(error.what()) + " (see --help)");
-    return app::BadUsage;
-  }
-  catch (const io::FileError& error) {
-    app::tell(error.what());
-    return app::BadFile;
-  }
-  catch (const std::exception& error) {
-    app::tell(std::string("failed: ") + error.what());
-    return app::NotAllOk;
+  catch (...) {
+    return io::explainFailure("pcl_bayesian_icp_pose_graph");
   }
 }

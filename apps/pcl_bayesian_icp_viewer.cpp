@@ -1,7 +1,7 @@
 /** \file
  * \brief pcl_bayesian_icp_viewer: shows a registration and how sure it is.
  */
-#include "io/errors.h"
+#include "io/failure.h"
 #include "io/output_folder.h"
 #include "register/interrupt.h"
 #include "register/progress_bar.h"
@@ -19,13 +19,8 @@
 namespace bayesian_icp::viewer {
 namespace {
 
-enum ExitCode {
-  Good = 0,
-  NotToBeTrusted = 1,
-  BadUsage = 2,
-  BadFile = 3,
-  Interrupted = 130
-};
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, NotToBeTrusted = 1, Interrupted = 130 };
 
 void
 tell(const std::string& message)
@@ -170,16 +165,7 @@ main(int argc, char** argv)
   try {
     return viewer::runTool(argc, argv);
   }
-  catch (const io::UsageError& error) {
-    viewer::tell(std::string(error.what()) + " (see --help)");
-    return viewer::BadUsage;
-  }
-  catch (const io::FileError& error) {
-    viewer::tell(error.what());
-    return viewer::BadFile;
-  }
-  catch (const std::exception& error) {
-    viewer::tell(std::string("failed: ") + error.what());
-    return viewer::NotToBeTrusted;
+  catch (...) {
+    return io::explainFailure("pcl_bayesian_icp_viewer");
   }
 }

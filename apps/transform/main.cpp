@@ -2,7 +2,7 @@
  * \brief pcl_bayesian_icp_transform: moves a cloud by a pose that was found.
  */
 #include "io/cloud_file.h"
-#include "io/errors.h"
+#include "io/failure.h"
 #include "io/motion.h"
 #include "io/output_folder.h"
 #include "io/posterior_file.h"
@@ -17,14 +17,6 @@ namespace bayesian_icp::transform {
 namespace {
 
 namespace fs = std::filesystem;
-
-enum ExitCode { Good = 0, Failed = 1, BadUsage = 2, BadFile = 3 };
-
-void
-tell(const std::string& message)
-{
-  std::cerr << "pcl_bayesian_icp_transform: " << message << '\n';
-}
 
 void
 print(const std::string& text)
@@ -85,7 +77,7 @@ runTool(int argc, char** argv)
     transformCloud(request);
     break;
   }
-  return Good;
+  return 0;
 }
 
 } // namespace
@@ -98,16 +90,7 @@ main(int argc, char** argv)
   try {
     return transform::runTool(argc, argv);
   }
-  catch (const io::UsageError& error) {
-    transform::tell(std::string(error.what()) + " (see --help)");
-    return transform::BadUsage;
-  }
-  catch (const io::FileError& error) {
-    transform::tell(error.what());
-    return transform::BadFile;
-  }
-  catch (const std::exception& error) {
-    transform::tell(std::string("failed: ") + error.what());
-    return transform::Failed;
+  catch (...) {
+    return io::explainFailure("pcl_bayesian_icp_transform");
   }
 }
