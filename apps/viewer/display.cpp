@@ -13,10 +13,11 @@ namespace bayesian_icp::viewer {
 void
 requireDisplay()
 {
-  if (Display* display = XOpenDisplay(nullptr)) {
-    XCloseDisplay(display);
+  // Open to the end of the program: a server such as Xvfb starts over when its last
+  // client leaves, and VTK would come in between.
+  static Display* const display = XOpenDisplay(nullptr);
+  if (display != nullptr)
     return;
-  }
   const char* name = std::getenv("DISPLAY");
   const bool is_named = name != nullptr && *name != '\0';
   throw std::runtime_error(

@@ -89,7 +89,7 @@ class ScreenTest(ViewerTest):
         if not shutil.which("Xvfb"):
             raise unittest.SkipTest("Xvfb is not here (see scripts/bootstrap)")
         reading, writing = os.pipe()
-        screen = ["-screen", "0", "1280x1024x24", "-nolisten", "tcp"]
+        screen = ["-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-noreset"]
         cls.server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(writing), *screen],
             pass_fds=[writing],
