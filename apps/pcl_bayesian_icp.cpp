@@ -1,8 +1,8 @@
 /** \file
  * \brief pcl_bayesian_icp: registers a cloud to another and tells how sure that is.
  */
-#include "io/failure.h"
 #include "io/numbers.h"
+#include "io/program.h"
 #include "plot/gnuplot.h"
 #include "register/command_line.h"
 #include "register/export_files.h"
@@ -29,14 +29,6 @@ void
 tell(const std::string& message)
 {
   std::cerr << "pcl_bayesian_icp: " << message << '\n';
-}
-
-void
-print(const std::string& text)
-{
-  std::cout << text << std::flush;
-  if (!std::cout)
-    throw io::FileError("standard output", "cannot be written");
 }
 
 /** PCL registers coordinates of 32 bits. */
@@ -87,7 +79,7 @@ printExport(const Request& request, const Run& run)
 {
   const ExportFormat format = request.exports.formats.front();
   try {
-    print(
+    io::print(
         exportText(format, PoseEstimate(run.result.summary), request.exports.options));
     return true;
   }
@@ -142,9 +134,9 @@ report(const Request& request, const Run& run)
   if (printsExport(request))
     is_exported = printExport(request, run);
   else if (request.is_json)
-    print(posteriorJson(run));
+    io::print(posteriorJson(run));
   else if (!request.is_quiet)
-    print(reportText(run));
+    io::print(reportText(run));
   // The table has the status already.
   const bool has_table =
       !printsExport(request) && !request.is_json && !request.is_quiet;
@@ -183,10 +175,10 @@ runTool(int argc, char** argv)
   const Request request = parseCommandLine(argc, argv);
   switch (request.kind) {
   case Request::Kind::ShowHelp:
-    print(helpText());
+    io::print(helpText());
     return Good;
   case Request::Kind::ShowVersion:
-    print("pcl_bayesian_icp " BAYESIAN_ICP_VERSION "\n");
+    io::print("pcl_bayesian_icp " BAYESIAN_ICP_VERSION "\n");
     return Good;
   case Request::Kind::Register:
     break;

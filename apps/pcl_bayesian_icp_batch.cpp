@@ -7,8 +7,8 @@
 #include "batch/batch_run.h"
 #include "batch/ranks.h"
 #include "io/cloud_file.h"
-#include "io/failure.h"
 #include "io/numbers.h"
+#include "io/program.h"
 #include "register/interrupt.h"
 
 #include <bayesian_icp/summary.h>
@@ -26,14 +26,6 @@ void
 tell(const std::string& message)
 {
   std::cerr << "pcl_bayesian_icp_batch: " + message + '\n';
-}
-
-void
-print(const std::string& text)
-{
-  std::cout << text << std::flush;
-  if (!std::cout)
-    throw io::FileError("standard output", "cannot be written");
 }
 
 /** Tells of each pair on standard error. */
@@ -89,7 +81,7 @@ runToStandardOutput(const BatchRequest& request,
 {
   ProgressLines progress(ranks, pairs.size(), !request.is_quiet);
   runBatch(pairs, runOptionsOf(request), [&](const BatchResult& result) {
-    print(batchLine(result) + '\n');
+    io::print(batchLine(result) + '\n');
     progress.show(result);
   });
   return exitCodeOf(progress.numNotOk() == 0);
@@ -154,11 +146,11 @@ runTool(int argc, char** argv, const Ranks& ranks)
   const BatchRequest request = parseBatchCommand(argc, argv);
   switch (request.kind) {
   case BatchRequest::Kind::ShowHelp:
-    print(batchHelpText());
+    io::print(batchHelpText());
     return Good;
   case BatchRequest::Kind::ShowVersion:
-    print(std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
-          (Ranks::hasMpi() ? " with MPI\n" : " without MPI\n"));
+    io::print(std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
+              (Ranks::hasMpi() ? " with MPI\n" : " without MPI\n"));
     return Good;
   case BatchRequest::Kind::Register:
     break;

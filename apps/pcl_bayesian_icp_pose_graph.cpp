@@ -2,8 +2,8 @@
  * \brief pcl_bayesian_icp_pose_graph: consecutive scans in, a pose graph for g2o out.
  */
 #include "io/cloud_file.h"
-#include "io/failure.h"
 #include "io/output_folder.h"
+#include "io/program.h"
 #include "pose_graph/graph_command.h"
 #include "register/interrupt.h"
 
@@ -20,14 +20,6 @@ void
 tell(const std::string& message)
 {
   std::cerr << "pcl_bayesian_icp_pose_graph: " + message + '\n';
-}
-
-void
-print(const std::string& text)
-{
-  std::cout << text << std::flush;
-  if (!std::cout)
-    throw io::FileError("standard output", "cannot be written");
 }
 
 int
@@ -58,10 +50,10 @@ runTool(int argc, char** argv)
   const GraphCommand command = parseGraphCommand(argc, argv);
   switch (command.kind) {
   case GraphCommand::Kind::ShowHelp:
-    print(graphHelpText());
+    io::print(graphHelpText());
     return Good;
   case GraphCommand::Kind::ShowVersion:
-    print("pcl_bayesian_icp_pose_graph " BAYESIAN_ICP_VERSION "\n");
+    io::print("pcl_bayesian_icp_pose_graph " BAYESIAN_ICP_VERSION "\n");
     return Good;
   case GraphCommand::Kind::MakeGraph:
     break;

@@ -1,8 +1,8 @@
 /** \file
  * \brief pcl_bayesian_icp_viewer: shows a registration and how sure it is.
  */
-#include "io/failure.h"
 #include "io/output_folder.h"
+#include "io/program.h"
 #include "register/interrupt.h"
 #include "register/progress_bar.h"
 #include "viewer/command_line.h"
@@ -26,14 +26,6 @@ void
 tell(const std::string& message)
 {
   std::cerr << "pcl_bayesian_icp_viewer: " << message << '\n';
-}
-
-void
-print(const std::string& text)
-{
-  std::cout << text << std::flush;
-  if (!std::cout)
-    throw io::FileError("standard output", "cannot be written");
 }
 
 /** Where a screenshot goes; it is known before the work whether it can be written. */
@@ -83,7 +75,7 @@ openWindow(const Request& request,
 {
   window.emplace(request.view, cloud_files);
   if (!request.view.isOffScreen() && !request.is_quiet)
-    print("pcl_bayesian_icp_viewer: press h in the window for its keys\n");
+    io::print("pcl_bayesian_icp_viewer: press h in the window for its keys\n");
 }
 
 /** Registers where there is no saved posterior. */
@@ -144,10 +136,10 @@ runTool(int argc, char** argv)
   const Request request = parseCommandLine(argc, argv);
   switch (request.kind) {
   case Request::Kind::ShowHelp:
-    print(helpText());
+    io::print(helpText());
     return Good;
   case Request::Kind::ShowVersion:
-    print("pcl_bayesian_icp_viewer " BAYESIAN_ICP_VERSION "\n");
+    io::print("pcl_bayesian_icp_viewer " BAYESIAN_ICP_VERSION "\n");
     return Good;
   case Request::Kind::Show:
     break;

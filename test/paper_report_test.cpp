@@ -46,8 +46,16 @@ cellsOf(const std::string& markdown,
   return cells;
 }
 
-class PaperReport : public FolderTest {
+/** The report stays in the build folder, to be looked at. */
+class PaperReport : public testing::Test {
 protected:
+  void
+  SetUp() override
+  {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+
   CommandResult
   run() const
   {
@@ -55,6 +63,8 @@ protected:
                     "' && '" BAYESIAN_ICP_EVALUATE
                     "' paper --quick --data '" BAYESIAN_ICP_DATA_DIR "' --output out");
   }
+
+  const std::filesystem::path folder_ = BAYESIAN_ICP_REPORT_DIR;
 };
 
 } // namespace

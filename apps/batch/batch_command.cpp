@@ -1,5 +1,6 @@
 #include "batch/batch_command.h"
 
+#include "io/command_line.h"
 #include "io/errors.h"
 #include "register/option_descriptions.h"
 #include "register/settings_options.h"
@@ -53,22 +54,22 @@ BatchRequest
 parseBatchCommand(int argc, const char* const* argv)
 {
   const po::variables_map given =
-      splitCommandLine(argc, argv, describeOptionsOfBatch(), "manifest");
+      io::splitCommandLine(argc, argv, describeOptionsOfBatch(), "manifest");
   BatchRequest request;
   if (given.count("help") > 0 || given.count("version") > 0) {
     request.kind = given.count("help") > 0 ? BatchRequest::Kind::ShowHelp
                                            : BatchRequest::Kind::ShowVersion;
     return request;
   }
-  if (given.count("manifest") == 0)
+  const std::vector<std::string> manifests = io::optionTexts(given, "manifest");
+  if (manifests.empty())
     throw io::UsageError("a manifest is needed");
-  const auto manifests = given["manifest"].as<std::vector<std::string>>();
   if (manifests.size() > 1)
     throw io::UsageError("one manifest is needed, " + io::quoted(manifests[1]) +
                          " is one too many");
   request.manifest_file = manifests[0];
-  request.results_file = textOf(given, "results");
-  request.output_folder = textOf(given, "output");
+  request.results_file = io::optionText(given, "results");
+  request.output_folder = io::optionText(given, "output");
   request.is_quiet = given.count("quiet") > 0;
   request.use_suggested_prior = given.count("suggested-prior") > 0;
   if (request.use_suggested_prior)

@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 namespace bayesian_icp::evaluate {
 
@@ -27,12 +26,6 @@ public:
   add(double number)
   {
     add(&number, sizeof number);
-  }
-
-  void
-  add(const std::string& text)
-  {
-    add(text.data(), text.size());
   }
 
   template <typename Derived>

@@ -29,13 +29,7 @@ thinned(const Eigen::Matrix3Xf& points, std::size_t size)
 Eigen::Matrix3Xf
 finitePoints(const std::string& file)
 {
-  const io::CloudFile cloud = io::readCloud(file);
-  Eigen::Matrix3Xf finite(3, static_cast<Eigen::Index>(cloud.num_finite));
-  Eigen::Index column = 0;
-  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
-    if (cloud.points.col(i).allFinite())
-      finite.col(column++) = cloud.points.col(i);
-  return finite;
+  return io::finitePoints(io::readCloud(file));
 }
 
 Scene

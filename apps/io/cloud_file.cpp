@@ -144,6 +144,17 @@ readCloud(const std::string& name)
   return cloud;
 }
 
+Eigen::Matrix3Xf
+finitePoints(const CloudFile& cloud)
+{
+  Eigen::Matrix3Xf finite(3, static_cast<Eigen::Index>(cloud.num_finite));
+  Eigen::Index column = 0;
+  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
+    if (cloud.points.col(i).allFinite())
+      finite.col(column++) = cloud.points.col(i);
+  return finite;
+}
+
 CloudFile
 movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion)
 {

@@ -40,6 +40,10 @@ struct CloudFile {
 CloudFile
 readCloud(const std::string& name);
 
+/** \brief The points of a cloud that are finite, in their order, 3 x n [m]. */
+Eigen::Matrix3Xf
+finitePoints(const CloudFile& cloud);
+
 /** \brief The same cloud in another frame: x, y, z are moved and normal_x, normal_y,
  * normal_z turned where they are finite, and the viewpoint with them. All other fields
  * and the order of the points are kept. */

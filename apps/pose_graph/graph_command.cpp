@@ -1,5 +1,6 @@
 #include "pose_graph/graph_command.h"
 
+#include "io/command_line.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "register/option_descriptions.h"
@@ -80,7 +81,7 @@ GraphCommand
 parseGraphCommand(int argc, const char* const* argv)
 {
   const po::variables_map given =
-      splitCommandLine(argc, argv, describeOptionsOfGraph(), "scan");
+      io::splitCommandLine(argc, argv, describeOptionsOfGraph(), "scan");
   GraphCommand command;
   if (given.count("help") > 0 || given.count("version") > 0) {
     command.kind = given.count("help") > 0 ? GraphCommand::Kind::ShowHelp
@@ -88,16 +89,14 @@ parseGraphCommand(int argc, const char* const* argv)
     return command;
   }
   GraphRequest& request = command.request;
-  if (given.count("scan") > 0)
-    request.scans = scansOf(given["scan"].as<std::vector<std::string>>());
+  request.scans = scansOf(io::optionTexts(given, "scan"));
   if (request.scans.size() < 2)
     throw io::UsageError("a folder or at least two scans are needed");
-  command.output_file = textOf(given, "output");
+  command.output_file = io::optionText(given, "output");
   if (command.output_file.empty())
     throw io::UsageError("--output is needed");
-  if (given.count("loop") > 0)
-    for (const std::string& text : given["loop"].as<std::vector<std::string>>())
-      request.loops.push_back(loopOf(text, request.scans.size()));
+  for (const std::string& text : io::optionTexts(given, "loop"))
+    request.loops.push_back(loopOf(text, request.scans.size()));
   request.has_weak_edges = given.count("weak-edges") > 0;
   request.settings = settingsFrom(given, Settings(), command.note);
   command.is_quiet = given.count("quiet") > 0;

@@ -1,5 +1,6 @@
 #include "register/command_line.h"
 
+#include "io/command_line.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "register/export_options.h"
@@ -14,21 +15,6 @@ namespace bayesian_icp::app {
 namespace po = boost::program_options;
 
 namespace {
-
-void
-takeClouds(const po::variables_map& given, Request& request)
-{
-  std::vector<std::string> clouds;
-  if (given.count("cloud") > 0)
-    clouds = given["cloud"].as<std::vector<std::string>>();
-  if (clouds.size() < 2)
-    throw io::UsageError("two clouds are needed, a source and a target");
-  if (clouds.size() > 2)
-    throw io::UsageError("two clouds are needed, " + io::quoted(clouds[2]) +
-                         " is one too many");
-  request.source_file = clouds[0];
-  request.target_file = clouds[1];
-}
 
 void
 takeExports(const po::variables_map& given, Request& request)
@@ -73,7 +59,7 @@ parseCommandLine(int argc, const char* const* argv)
 {
   po::options_description all = describeOptions();
   all.add(describeSgdOptions()); // refused before, unless help is asked for
-  const po::variables_map given = splitCommandLine(argc, argv, all, "cloud");
+  const po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
   Request request;
   request.command = commandOf(argc, argv);
   if (given.count("help") > 0 || given.count("version") > 0) {
@@ -81,8 +67,8 @@ parseCommandLine(int argc, const char* const* argv)
         given.count("help") > 0 ? Request::Kind::ShowHelp : Request::Kind::ShowVersion;
     return request;
   }
-  takeClouds(given, request);
-  request.output_folder = textOf(given, "output");
+  io::takeClouds(given, "cloud", request.source_file, request.target_file);
+  request.output_folder = io::optionText(given, "output");
   request.wants_report = given.count("no-report") == 0;
   if (!request.wants_report && request.output_folder.empty())
     throw io::UsageError("--no-report: has no effect without --output");

@@ -159,7 +159,7 @@ posteriorOf(const RegistrationResult& result)
           {"modes", modesJson(result.summary.modes)},
           {"modes_note",
            "weights are estimates, good to a factor of a few; mean and covariances of "
-           "the whole posterior mix modes in proportion to their chains; preset paper "
+           "the whole posterior mix modes in proportion to their draws; preset paper "
            "looks for no modes"},
           {"chains", chainsJson(result.chains)}};
 }

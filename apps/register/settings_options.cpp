@@ -1,5 +1,6 @@
 #include "register/settings_options.h"
 
+#include "io/command_line.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "register/choices.h"
@@ -7,8 +8,6 @@
 #include "register/guess.h"
 #include "register/setting_fields.h"
 #include "register/unused_settings.h"
-
-#include <boost/program_options/parsers.hpp>
 
 namespace bayesian_icp::app {
 
@@ -130,52 +129,13 @@ refuseLengths(const po::variables_map& given, const std::string& config)
 
 } // namespace
 
-po::variables_map
-splitCommandLine(int argc,
-                 const char* const* argv,
-                 po::options_description options,
-                 const char* positional_name)
-{
-  namespace style = po::command_line_style;
-  // No guessing: an abbreviated or misspelt option is an error.
-  const int accepted =
-      (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
-  options.add_options()(positional_name, po::value<std::vector<std::string>>());
-  po::positional_options_description positional;
-  positional.add(positional_name, -1);
-  po::variables_map given;
-  try {
-    po::store(po::command_line_parser(argc, argv)
-                  .options(options)
-                  .positional(positional)
-                  .style(accepted)
-                  .run(),
-              given);
-  }
-  catch (const po::error& error) {
-    throw io::UsageError(error.what());
-  }
-  return given;
-}
-
-std::string
-textOf(const po::variables_map& given, const std::string& name)
-{
-  if (given.count(name) == 0)
-    return "";
-  auto text = given[name].as<std::string>();
-  if (text.empty())
-    throw io::UsageError("--" + name + ": the name is empty");
-  return text;
-}
-
 Settings
 settingsFrom(const po::variables_map& given,
              const Settings& defaults,
              std::string& note)
 {
   Settings settings = defaults;
-  const std::string config = textOf(given, "config");
+  const std::string config = io::optionText(given, "config");
   if (!config.empty())
     settings = readConfigFile(config, note);
   SettingsReader reader{given};

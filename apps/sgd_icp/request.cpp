@@ -1,5 +1,6 @@
 #include "sgd_icp/request.h"
 
+#include "io/command_line.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "register/guess.h"
@@ -7,7 +8,9 @@
 
 #include <boost/program_options.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <vector>
 
@@ -24,57 +27,35 @@ constexpr SgdOptimizer optimizers[] = {SgdOptimizer::FixedStep,
                                        SgdOptimizer::RmsProp};
 
 /** Options of Bayesian ICP that SGD-ICP has, too. */
-po::options_description
-sharedOptions()
-{
-  po::options_description shared;
-  auto add = shared.add_options();
-  add("method", po::value<std::string>())("json", "")("quiet", "");
-  for (const char* name : {"output,o",
-                           "guess",
-                           "max-distance,d",
-                           "iterations,i",
-                           "batch-size",
-                           "step-size",
-                           "seed"})
-    add(name, po::value<std::string>());
-  return shared;
-}
+constexpr const char* shared_options[] = {"method",
+                                          "json",
+                                          "quiet",
+                                          "output",
+                                          "guess",
+                                          "max-distance",
+                                          "iterations",
+                                          "batch-size",
+                                          "step-size",
+                                          "seed"};
 
-/** No guessing: an abbreviated or misspelt option is an error. */
-int
-style()
+bool
+isShared(const std::string& option)
 {
-  namespace style = po::command_line_style;
-  return (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
+  return std::find(std::begin(shared_options), std::end(shared_options), option) !=
+         std::end(shared_options);
 }
 
 po::variables_map
 split(int argc, const char* const* argv)
 {
-  po::options_description all = sharedOptions();
-  all.add(describeSgdOptions());
-  all.add_options()("cloud", po::value<std::vector<std::string>>());
-  po::positional_options_description positional;
-  positional.add("cloud", -1);
-  po::variables_map given;
-  try {
-    po::store(po::command_line_parser(argc, argv)
-                  .options(all)
-                  .positional(positional)
-                  .style(style())
-                  .run(),
-              given);
-  }
-  catch (const po::unknown_option& error) {
-    const std::string option = error.get_option_name();
-    const std::string name = option.substr(option.find_first_not_of('-'));
-    if (describeOptions().find_nothrow(name, false) != nullptr)
+  const po::options_description of_bayesian_icp = describeOptions();
+  po::options_description all;
+  all.add(of_bayesian_icp).add(describeSgdOptions());
+  const po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
+  for (const auto& option : of_bayesian_icp.options()) {
+    const std::string& name = option->long_name();
+    if (given.count(name) > 0 && !isShared(name))
       throw io::UsageError("--" + name + ": has no effect with method sgd-icp");
-    throw io::UsageError(error.what());
-  }
-  catch (const po::error& error) {
-    throw io::UsageError(error.what());
   }
   return given;
 }
@@ -107,21 +88,6 @@ takeOptimizer(const po::variables_map& given, SgdOptimizer& optimizer)
     names += (names.empty() ? "" : ", ") + std::string(toString(candidate));
   }
   throw io::UsageError("--optimizer: " + io::quoted(name) + " is not one of " + names);
-}
-
-void
-takeClouds(const po::variables_map& given, SgdRequest& request)
-{
-  std::vector<std::string> clouds;
-  if (given.count("cloud") > 0)
-    clouds = given["cloud"].as<std::vector<std::string>>();
-  if (clouds.size() < 2)
-    throw io::UsageError("two clouds are needed, a source and a target");
-  if (clouds.size() > 2)
-    throw io::UsageError("two clouds are needed, " + io::quoted(clouds[2]) +
-                         " is one too many");
-  request.source_file = clouds[0];
-  request.target_file = clouds[1];
 }
 
 void
@@ -193,7 +159,7 @@ isSgdIcpAskedFor(int argc, const char* const* argv)
   try {
     po::store(po::command_line_parser(argc, argv)
                   .options(known)
-                  .style(style())
+                  .style(io::option_style)
                   .allow_unregistered()
                   .run(),
               given);
@@ -223,12 +189,8 @@ parseSgdCommandLine(int argc, const char* const* argv)
 {
   const po::variables_map given = split(argc, argv);
   SgdRequest request;
-  takeClouds(given, request);
-  if (given.count("output") > 0) {
-    request.output_folder = given["output"].as<std::string>();
-    if (request.output_folder.empty())
-      throw io::UsageError("--output: the name is empty");
-  }
+  io::takeClouds(given, "cloud", request.source_file, request.target_file);
+  request.output_folder = io::optionText(given, "output");
   request.is_json = given.count("json") > 0;
   request.is_quiet = given.count("quiet") > 0;
   takeOptions(given, request);

@@ -1,7 +1,7 @@
 #include "sgd_icp/run.h"
 
-#include "io/errors.h"
 #include "io/output_folder.h"
+#include "io/program.h"
 #include "register/interrupt.h"
 #include "register/progress_bar.h"
 
@@ -22,17 +22,6 @@ double
 secondsSince(Clock::time_point start)
 {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-Eigen::Matrix3Xd
-finitePoints(const io::CloudFile& cloud)
-{
-  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(cloud.num_finite));
-  Eigen::Index size = 0;
-  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
-    if (cloud.points.col(i).allFinite())
-      points.col(size++) = cloud.points.col(i).cast<double>();
-  return points;
 }
 
 double
@@ -65,7 +54,7 @@ registerFiles(const SgdRequest& request)
   ProgressBar bar(!request.is_quiet, "descending");
   catchInterrupt();
   start = Clock::now();
-  const Eigen::Matrix3Xd source = finitePoints(run.source);
+  const Eigen::Matrix3Xd source = io::finitePoints(run.source).cast<double>();
   const KdTree tree(run.target.points);
   run.result = stochasticGradientIcp(
       source,
@@ -107,11 +96,8 @@ runSgdIcp(int argc, const char* const* argv)
     writeFiles(run, *folder);
   else if (folder)
     std::cerr << "pcl_bayesian_icp: no step was made, so no files are written\n";
-  if (!request.is_quiet) {
-    std::cout << (request.is_json ? sgdJson(run) : sgdReportText(run)) << std::flush;
-    if (!std::cout)
-      throw io::FileError("standard output", "cannot be written");
-  }
+  if (!request.is_quiet)
+    io::print(request.is_json ? sgdJson(run) : sgdReportText(run));
   // The table has the status already.
   if (!run.result.has_converged && (request.is_json || request.is_quiet))
     std::cerr << "pcl_bayesian_icp: " << endText(run) << '\n';

@@ -1,5 +1,6 @@
 #include "transform/command_line.h"
 
+#include "io/command_line.h"
 #include "io/errors.h"
 
 #include <boost/program_options.hpp>
@@ -37,32 +38,6 @@ describeOptions()
   return options;
 }
 
-po::variables_map
-splitCommandLine(int argc, const char* const* argv)
-{
-  namespace style = po::command_line_style;
-  // No guessing: an abbreviated or misspelt option is an error.
-  const int accepted =
-      (style::unix_style | style::allow_long_disguise) & ~style::allow_guessing;
-  po::options_description all = describeOptions();
-  all.add_options()("cloud", po::value<std::vector<std::string>>());
-  po::positional_options_description positional;
-  positional.add("cloud", -1);
-  po::variables_map given;
-  try {
-    po::store(po::command_line_parser(argc, argv)
-                  .options(all)
-                  .positional(positional)
-                  .style(accepted)
-                  .run(),
-              given);
-  }
-  catch (const po::error& error) {
-    throw io::UsageError(error.what());
-  }
-  return given;
-}
-
 void
 takeChoice(const po::variables_map& given, Request& request)
 {
@@ -79,16 +54,15 @@ takeChoice(const po::variables_map& given, Request& request)
 Request
 parseCommandLine(int argc, const char* const* argv)
 {
-  const po::variables_map given = splitCommandLine(argc, argv);
+  const po::variables_map given =
+      io::splitCommandLine(argc, argv, describeOptions(), "cloud");
   Request request;
   if (given.count("help") > 0 || given.count("version") > 0) {
     request.kind =
         given.count("help") > 0 ? Request::Kind::ShowHelp : Request::Kind::ShowVersion;
     return request;
   }
-  std::vector<std::string> clouds;
-  if (given.count("cloud") > 0)
-    clouds = given["cloud"].as<std::vector<std::string>>();
+  const std::vector<std::string> clouds = io::optionTexts(given, "cloud");
   if (clouds.size() != 2)
     throw io::UsageError("two files are needed, the input and the output, not " +
                          std::to_string(clouds.size()));

@@ -2,10 +2,10 @@
  * \brief pcl_bayesian_icp_transform: moves a cloud by a pose that was found.
  */
 #include "io/cloud_file.h"
-#include "io/failure.h"
 #include "io/motion.h"
 #include "io/output_folder.h"
 #include "io/posterior_file.h"
+#include "io/program.h"
 #include "transform/command_line.h"
 
 #include <Eigen/Geometry>
@@ -17,14 +17,6 @@ namespace bayesian_icp::transform {
 namespace {
 
 namespace fs = std::filesystem;
-
-void
-print(const std::string& text)
-{
-  std::cout << text << std::flush;
-  if (!std::cout)
-    throw io::FileError("standard output", "cannot be written");
-}
 
 Eigen::Matrix4d
 motionOf(const Request& request)
@@ -67,10 +59,10 @@ runTool(int argc, char** argv)
   const Request request = parseCommandLine(argc, argv);
   switch (request.kind) {
   case Request::Kind::ShowHelp:
-    print(helpText());
+    io::print(helpText());
     break;
   case Request::Kind::ShowVersion:
-    print("pcl_bayesian_icp_transform " BAYESIAN_ICP_VERSION "\n");
+    io::print("pcl_bayesian_icp_transform " BAYESIAN_ICP_VERSION "\n");
     break;
   case Request::Kind::Transform:
     io::silencePcl();

@@ -1,5 +1,6 @@
 #include "viewer/command_line.h"
 
+#include "io/command_line.h"
 #include "io/errors.h"
 #include "register/option_descriptions.h"
 #include "register/settings_options.h"
@@ -16,13 +17,6 @@ namespace po = boost::program_options;
 
 namespace {
 
-std::vector<std::string>
-textsOf(const po::variables_map& given, const std::string& name)
-{
-  return given.count(name) > 0 ? given[name].as<std::vector<std::string>>()
-                               : std::vector<std::string>();
-}
-
 bool
 isPosterior(const std::string& name)
 {
@@ -36,7 +30,7 @@ void
 takeFiles(const po::variables_map& given, Request& request)
 {
   std::vector<std::string> clouds;
-  for (const std::string& file : textsOf(given, "file")) {
+  for (const std::string& file : io::optionTexts(given, "file")) {
     if (!isPosterior(file))
       clouds.push_back(file);
     else if (request.posterior_file.empty())
@@ -61,7 +55,7 @@ takeRepeated(const po::variables_map& given,
              const Read& read,
              std::vector<Value>& values)
 {
-  for (const std::string& text : textsOf(given, name))
+  for (const std::string& text : io::optionTexts(given, name))
     values.push_back(read(name, text));
   if (values.size() > 3)
     throw io::UsageError("-" + name +
@@ -71,7 +65,9 @@ takeRepeated(const po::variables_map& given,
 void
 takePclViewerOptions(const po::variables_map& given, ViewOptions& view)
 {
-  const auto textOf = [&given](const char* name) { return app::textOf(given, name); };
+  const auto textOf = [&given](const char* name) {
+    return io::optionText(given, name);
+  };
   if (given.count("bc") > 0)
     view.background = readColor("bc", textOf("bc"));
   takeRepeated(given, "fc", readColor, view.foregrounds);
@@ -87,7 +83,9 @@ takePclViewerOptions(const po::variables_map& given, ViewOptions& view)
 void
 takeOwnOptions(const po::variables_map& given, ViewOptions& view)
 {
-  const auto textOf = [&given](const char* name) { return app::textOf(given, name); };
+  const auto textOf = [&given](const char* name) {
+    return io::optionText(given, name);
+  };
   if (given.count("show") > 0)
     view.layers = readLayers(textOf("show"));
   if (given.count("show") > 0 && view.is_multiview)
@@ -125,7 +123,7 @@ Request
 parseCommandLine(int argc, const char* const* argv)
 {
   const po::variables_map given =
-      app::splitCommandLine(argc, argv, describeOptions(), "file");
+      io::splitCommandLine(argc, argv, describeOptions(), "file");
   Request request;
   if (given.count("help") > 0 || given.count("version") > 0) {
     request.kind =

@@ -53,7 +53,8 @@ struct Progress {
   long total_steps;
   /** Canonical pose at which the chain is now [m, rad]; NaN while nothing is sampled.
    * Preset `calibrated` adjusts the spread of its draws when all are there, by a factor
-   * of at most 1.4 in any direction: its chains are shown here before that. */
+   * of at most 1.4 in any direction, and makes them Student's t: its chains are shown
+   * here before that. */
   Vector6d pose = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 

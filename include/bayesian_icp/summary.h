@@ -27,8 +27,8 @@ enum class Status {
    * and covariance describe the draws, but not reliably the posterior. */
   NotMixed,
   /** Chains are in modes between which they do not travel: see Summary::modes. Mean and
-   * covariance of all draws mix them in proportion to their chains, not their weight.
-   */
+   * covariance of all draws mix them in proportion to their draws: with preset `exact`
+   * to their chains, not their weight. */
   SeveralModes,
   /** At least one chain ran away, became non-finite, or jumped by more than half a turn
    * in most of its steps (white noise on the circle). Its draws are left out of the
@@ -105,7 +105,7 @@ struct BAYESIAN_ICP_EXPORT Summary {
   /** Draws behind mean and covariance: those of the chains that did not diverge. */
   long num_draws = 0;
   /** Modes in which the chains are, heaviest first; empty if nobody looked for them
-   * (presets `paper` and `calibrated`). */
+   * (preset `paper`) or, with preset `calibrated`, if there is one. */
   std::vector<Mode> modes;
   /** What the clouds say about the pose (preset `calibrated`). */
   DataReport data;

@@ -46,9 +46,11 @@ monteCarloIcp(const Eigen::Matrix3Xd& source,
 {
   const int num_runs = std::max(0, options.num_runs);
   const int num_threads = numThreadsFor(options.num_threads, num_runs);
-  const ProgressCallback callback = [&progress](const Progress& state) {
-    return !progress || progress(static_cast<int>(state.steps));
-  };
+  ProgressCallback callback;
+  if (progress)
+    callback = [&progress](const Progress& state) {
+      return progress(static_cast<int>(state.steps));
+    };
   RunState state(callback, num_runs);
   std::vector<IcpRunner> icp(static_cast<std::size_t>(num_threads),
                              IcpRunner(source, target));

@@ -57,9 +57,10 @@ public:
     const int num_chains = options_.num_chains * static_cast<int>(modes_.size());
     chains_.resize(static_cast<std::size_t>(num_chains));
     planAll();
-    forEachChain(num_chains, numThreadsFor(options_, true), run_, [&](int i) {
-      sampleChain(i);
-    });
+    forEachChain(num_chains,
+                 numThreadsFor(options_.num_threads, num_chains),
+                 run_,
+                 [&](int i) { sampleChain(i); });
     ChainSet result;
     auto chain = chains_.begin();
     Random random(options_.seed, scale_stream);

@@ -9,7 +9,7 @@ namespace bayesian_icp::evaluate {
 
 namespace {
 
-constexpr char header[] =
+constexpr char columns[] =
     "scene,condition,seed,method,valid,nees,region,log_score,energy_score,"
     "pit_vx,pit_vy,pit_vz,pit_wx,pit_wy,pit_wz,z_vx,z_vy,z_vz,z_wx,z_wy,z_wz,"
     "relative_sd_vx,relative_sd_vy,relative_sd_vz,"
@@ -45,16 +45,6 @@ fieldOf(std::string text)
   return text;
 }
 
-std::string
-rowOf(const CoverageRun& run)
-{
-  std::string row = fieldOf(run.name.scene) + ',' + fieldOf(run.name.condition) + ',' +
-                    io::textOf(run.name.seed) + ',' + fieldOf(run.name.method) +
-                    (run.score.is_valid ? ",1" : ",0");
-  forEachNumber(run.score, [&row](auto number) { row += ',' + io::textOf(number); });
-  return row + ',' + fieldOf(run.score.notes);
-}
-
 template <typename Number>
 void
 readField(std::string_view field, Number& number)
@@ -63,9 +53,33 @@ readField(std::string_view field, Number& number)
     throw std::runtime_error("not a number");
 }
 
-/** \throws std::exception if the line is not a row */
+} // namespace
+
+bool
+CoverageRunName::operator<(const CoverageRunName& other) const
+{
+  return std::tie(scene, condition, seed, method) <
+         std::tie(other.scene, other.condition, other.seed, other.method);
+}
+
+std::string
+CoverageRun::header()
+{
+  return columns;
+}
+
+std::string
+CoverageRun::row() const
+{
+  std::string row = fieldOf(name.scene) + ',' + fieldOf(name.condition) + ',' +
+                    io::textOf(name.seed) + ',' + fieldOf(name.method) +
+                    (score.is_valid ? ",1" : ",0");
+  forEachNumber(score, [&row](auto number) { row += ',' + io::textOf(number); });
+  return row + ',' + fieldOf(score.notes);
+}
+
 CoverageRun
-runOf(const std::string& line)
+CoverageRun::ofRow(const std::string& line)
 {
   const auto fields = io::splitAt(',', line);
   if (fields.size() != num_columns || (fields[4] != "0" && fields[4] != "1"))
@@ -79,36 +93,6 @@ runOf(const std::string& line)
   forEachNumber(run.score, [&](auto& number) { readField(fields[column++], number); });
   run.score.notes = std::string(fields.back());
   return run;
-}
-
-} // namespace
-
-bool
-CoverageRunName::operator<(const CoverageRunName& other) const
-{
-  return std::tie(scene, condition, seed, method) <
-         std::tie(other.scene, other.condition, other.seed, other.method);
-}
-
-CoverageFile::CoverageFile(const std::string& name)
-: file_(name, header, [this](const std::string& row) {
-  const CoverageRun run = runOf(row);
-  runs_[run.name] = run;
-})
-{}
-
-const CoverageRun*
-CoverageFile::find(const CoverageRunName& name) const
-{
-  const auto found = runs_.find(name);
-  return found == runs_.end() ? nullptr : &found->second;
-}
-
-void
-CoverageFile::add(const CoverageRun& run)
-{
-  file_.add(rowOf(run));
-  runs_[run.name] = run;
 }
 
 } // namespace bayesian_icp::evaluate

@@ -4,11 +4,9 @@
 #pragma once
 
 #include "coverage_score.h"
-#include "row_file.h"
+#include "run_file.h"
 
-#include <map>
 #include <string>
-#include <vector>
 
 namespace bayesian_icp::evaluate {
 
@@ -26,27 +24,19 @@ struct CoverageRunName {
 struct CoverageRun {
   CoverageRunName name;
   CoverageScore score;
+
+  static std::string
+  header();
+
+  std::string
+  row() const;
+
+  /** \throws std::exception if the line is not a row */
+  static CoverageRun
+  ofRow(const std::string& line);
 };
 
-/** \brief The CSV file: a row a run, in the order in which they ended. Not for several
- * threads at once. */
-class CoverageFile {
-public:
-  /** \brief Read what is there; see RowFile. */
-  explicit CoverageFile(const std::string& name);
-
-  /** \brief The run of this name, or null. */
-  const CoverageRun*
-  find(const CoverageRunName& name) const;
-
-  /** \brief Write a row, at once.
-   * \throws io::FileError */
-  void
-  add(const CoverageRun& run);
-
-private:
-  std::map<CoverageRunName, CoverageRun> runs_;
-  RowFile file_;
-};
+/** \brief The CSV file. Not for several threads at once. */
+using CoverageFile = RunFile<CoverageRun>;
 
 } // namespace bayesian_icp::evaluate

@@ -4,41 +4,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace bayesian_icp::evaluate {
 
 namespace {
 
-/** Nodes of the midpoint rule over the quantiles of a chi-square variable. */
-constexpr int num_nodes = 64;
-
-double
-quantileOf(int degrees_of_freedom, int node)
+/** Nodes of the midpoint rule over a chi-square variable: quantiles of equal weight.
+ * With no degree of freedom it is zero. */
+std::vector<double>
+nodesOf(int degrees_of_freedom)
 {
-  return boost::math::quantile(boost::math::chi_squared(degrees_of_freedom),
-                               (node + 0.5) / num_nodes);
+  constexpr int num_nodes = 64;
+  if (degrees_of_freedom == 0)
+    return {0.0};
+  const boost::math::chi_squared distribution(degrees_of_freedom);
+  std::vector<double> nodes;
+  for (int i = 0; i < num_nodes; ++i)
+    nodes.push_back(boost::math::quantile(distribution, (i + 0.5) / num_nodes));
+  return nodes;
 }
 
-/** Of \p distance or less; \p degrees_of_freedom may be 0. */
+/** Of \p distance or less. */
 double
 chiSquaredProbability(int degrees_of_freedom, double distance)
 {
-  if (degrees_of_freedom == 0)
-    return distance >= 0.0 ? 1.0 : 0.0;
   return boost::math::cdf(boost::math::chi_squared(degrees_of_freedom),
                           std::max(0.0, distance));
-}
-
-/** P(w X + Y < distance), X and Y chi-square with k and 6 - k degrees of freedom. */
-double
-probabilityAtScale(double w, int k, double distance)
-{
-  if (k == 6)
-    return chiSquaredProbability(6, distance / w);
-  double sum = 0.0;
-  for (int node = 0; node < num_nodes; ++node)
-    sum += chiSquaredProbability(k, (distance - quantileOf(6 - k, node)) / w);
-  return sum / num_nodes;
 }
 
 } // namespace
@@ -48,13 +40,16 @@ regionOf(double nees, const RegionShape& shape)
 {
   if (!std::isfinite(nees))
     return nees;
-  const int nu = shape.degrees_of_freedom;
-  if (nu == 0 || shape.num_held == 0)
+  const int nu = shape.degrees_of_freedom, k = shape.num_held;
+  if (nu == 0 || k == 0)
     return chiSquaredProbability(6, nees);
+  // P(w X + Y < nees), X and Y chi-square with k and 6 - k degrees of freedom.
+  const std::vector<double> scales = nodesOf(nu), others = nodesOf(6 - k);
   double sum = 0.0;
-  for (int node = 0; node < num_nodes; ++node)
-    sum += probabilityAtScale((nu - 2) / quantileOf(nu, node), shape.num_held, nees);
-  return sum / num_nodes;
+  for (const double scale : scales)
+    for (const double other : others)
+      sum += chiSquaredProbability(k, (nees - other) * scale / (nu - 2));
+  return sum / static_cast<double>(scales.size() * others.size());
 }
 
 } // namespace bayesian_icp::evaluate

@@ -36,9 +36,9 @@ namespace pcl {
  *
  * Other than pcl::IterativeClosestPoint of PCL 1.13, source points that are not finite
  * (or further out than 1e18 m) are skipped and kept in the output, and indices are
- * honoured in the estimate (the output is the whole cloud, as in PCL). The sampler
- * applies rejectors and a user's own correspondence estimation to each mini-batch. One
- * object is for one thread at a time, as in PCL.
+ * honoured in the estimate (the output is the whole cloud, as in PCL). With presets
+ * `exact` and `paper` the sampler applies rejectors and a user's own correspondence
+ * estimation to each mini-batch. One object is for one thread at a time, as in PCL.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration

@@ -1,5 +1,6 @@
 /** \file
- * \brief How a program ends that cannot do what it was asked.
+ * \brief What all programs do alike: print, and end where they cannot do what was
+ * asked.
  */
 #pragma once
 
@@ -9,6 +10,16 @@
 #include <string>
 
 namespace bayesian_icp::io {
+
+/** \brief Print on standard output.
+ * \throws FileError if it cannot be written, for example because the disk is full */
+inline void
+print(const std::string& text)
+{
+  std::cout << text << std::flush;
+  if (!std::cout)
+    throw FileError("standard output", "cannot be written");
+}
 
 /** \brief Say on standard error why \p program ends. To be called in a `catch (...)`.
  * \return the exit code: 2 usage, 3 a file, 1 anything else */
