@@ -97,8 +97,8 @@ struct ChainMode {
 struct ChainSet {
   std::vector<Chain> chains;
   bool cancelled = false;
-  /** Modes that were told apart; empty if nobody looked (presets `paper` and
-   * `calibrated`). */
+  /** Modes that were told apart; empty if nobody looked (preset `paper`) or, with
+   * preset `calibrated`, if there is one. */
   std::vector<ChainMode> modes;
   /** Chains whose own mode was clearly worse and that were moved to another one, and
    * how much worse the nearest of those modes was [nats]. */

@@ -69,8 +69,8 @@ struct DataFlags {
   bool wrong_basin = false;
   /** Less than min_active_fraction of the source points lie on the target's surface. */
   bool low_support = false;
-  /** Fewer than min_effective_patches independent patches hold the pose: too few for a
-   * Gaussian's quantiles. */
+  /** Fewer than min_effective_patches independent patches hold the pose: too few to
+   * rely on the width. */
   bool few_patches = false;
   /** The surfaces disagree by more than the noise: residual_scale above
    * max_residual_scale. */
