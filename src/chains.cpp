@@ -25,7 +25,7 @@ jumpsByHalfATurn(const Vector6d& pose, const Vector6d& next)
 
 /** Algorithm 1 for one chain. */
 Chain
-runChain(const Vector6d& start,
+runChain(const Vector6d& guess,
          const SamplerTarget& target,
          const SgldOptions& sgld,
          const ChainOptions& options,
@@ -33,32 +33,28 @@ runChain(const Vector6d& start,
          RunState& run)
 {
   Random random(options.seed, static_cast<std::uint64_t>(chain_index));
-  auto gradientAt = target.make_gradient(chain_index);
-  RmsPropPreconditioner preconditioner(sgld);
   const long num_steps = numStepsOf(options, chain_index);
+  Vector6d start = guess;
+  if (!options.initial_spread.isZero(0.0))
+    start += options.initial_spread.cwiseProduct(random.normal6());
+  SgldChain sgld_chain(
+      sgld, num_steps, start, target.make_gradient(chain_index), random);
 
   Chain chain;
   chain.draws.resize(options.numDrawsOf(chain_index), 6);
   long num_kept = 0, num_jumps = 0;
-  Vector6d pose = start;
-  if (!options.initial_spread.isZero(0.0))
-    pose += options.initial_spread.cwiseProduct(random.normal6());
-
-  for (long step = 0; step < num_steps && !run.stopped(); ++step) {
-    const EnergyGradient gradient = gradientAt(pose, random);           // (2, 3, 6, 7)
-    const Vector6d A = preconditioner.update(gradient.mini_batch_mean); // (10, 11)
-    const double alpha = stepSizeAt(sgld, step, num_steps);
-    const Vector6d next = sgldStep(
-        pose, gradient.energy, A, alpha, sgld.noise_factor, random); // (5, 8, 9)
-    num_jumps += jumpsByHalfATurn(pose, next);
-    pose = next;
+  for (long step = 1; step <= num_steps && !run.stopped(); ++step) {
+    const Vector6d last_pose = sgld_chain.position();
+    sgld_chain.step();
+    const Vector6d& pose = sgld_chain.position();
+    num_jumps += jumpsByHalfATurn(last_pose, pose);
     chain.diverged = !pose.allFinite() || target.has_diverged(pose);
     if (chain.diverged)
       break;
-    const long sampled = step + 1 - options.num_burn_in;
+    const long sampled = step - options.num_burn_in;
     if (sampled > 0 && sampled % options.thinning == 0)
       chain.draws.row(num_kept++) = canonicalPose(pose).transpose();
-    run.reportStep(chain_index, step + 1, [&pose] { return pose; });
+    run.reportStep(chain_index, step, [&pose] { return pose; });
   }
   chain.diverged = chain.diverged || 2 * num_jumps > num_steps;
   chain.draws.conservativeResize(num_kept, 6);

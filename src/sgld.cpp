@@ -1,6 +1,7 @@
 #include <bayesian_icp/sgld.h>
 
 #include <cmath>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -44,6 +45,35 @@ sgldStep(const Vector6d& pose,
                                       .cwiseProduct(random.normal6());
   return pose - 0.5 * step_size * preconditioner.cwiseProduct(energy_gradient) +
          injected_noise;
+}
+
+SgldChain::SgldChain(const SgldOptions& options,
+                     long num_steps,
+                     const Vector6d& start,
+                     MiniBatchGradient gradient,
+                     Random& random)
+: options_(options)
+, num_steps_(num_steps)
+, pose_(start)
+, gradient_(std::move(gradient))
+, preconditioner_(options)
+, random_(random)
+{}
+
+void
+SgldChain::step()
+{
+  const EnergyGradient gradient = gradient_(pose_, random_);           // (2, 3, 6, 7)
+  const Vector6d A = preconditioner_.update(gradient.mini_batch_mean); // (10, 11)
+  const double alpha = stepSizeAt(options_, steps_made_++, num_steps_);
+  pose_ = sgldStep(
+      pose_, gradient.energy, A, alpha, options_.noise_factor, random_); // (5, 8, 9)
+}
+
+const Vector6d&
+SgldChain::position() const
+{
+  return pose_;
 }
 
 } // namespace bayesian_icp

@@ -65,9 +65,8 @@ using ProgressCallback = std::function<bool(const Progress&)>;
 
 /** \brief What the chains sample. */
 struct SamplerTarget {
-  using GradientFunction = std::function<EnergyGradient(const Vector6d&, Random&)>;
   /** Makes the stochastic gradient of one chain. */
-  std::function<GradientFunction(int chain)> make_gradient;
+  std::function<MiniBatchGradient(int chain)> make_gradient;
   /** Whether a pose is so far out that the chain has to be stopped. */
   std::function<bool(const Vector6d&)> has_diverged;
   /** Whether gradients of different chains may be evaluated at once. */

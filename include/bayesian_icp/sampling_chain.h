@@ -1,5 +1,7 @@
 /** \file
- * \brief A Markov chain in six dimensions, whatever its steps are.
+ * \brief A Markov chain in six dimensions, whatever its steps are: those of Algorithm 1
+ * with the paper's RMSProp preconditioner (SgldChain), of a preconditioner that is
+ * learned before and then frozen (LangevinChain), or of Metropolis (MetropolisChain).
  */
 #pragma once
 

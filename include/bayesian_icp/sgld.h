@@ -4,9 +4,10 @@
  */
 #pragma once
 
-#include <bayesian_icp/export.h>
-#include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
+#include <bayesian_icp/sampling_chain.h>
+
+#include <functional>
 
 namespace bayesian_icp {
 
@@ -41,6 +42,9 @@ struct EnergyGradient {
    * preconditioner learns from [m, m^2/rad]. */
   Vector6d mini_batch_mean;
 };
+
+/** \brief Gradients of the next mini-batch at a pose. */
+using MiniBatchGradient = std::function<EnergyGradient(const Vector6d&, Random&)>;
 
 /** \brief Diagonal preconditioner of the paper, eqs. (10) and (11). */
 class BAYESIAN_ICP_EXPORT RmsPropPreconditioner {
@@ -78,5 +82,36 @@ sgldStep(const Vector6d& pose,
          double step_size,
          double noise_factor,
          Random& random);
+
+/** \brief One chain of Algorithm 1. */
+class BAYESIAN_ICP_EXPORT SgldChain : public SamplingChain {
+public:
+  /** \param[in] options constants of Algorithm 1; must outlive this object
+   * \param[in] num_steps length of the chain, for the block decay of the step size
+   * \param[in] start first pose [m, rad]
+   * \param[in] gradient draws a mini-batch and gives its gradients
+   * \param[in] random must outlive this object */
+  SgldChain(const SgldOptions& options,
+            long num_steps,
+            const Vector6d& start,
+            MiniBatchGradient gradient,
+            Random& random);
+
+  void
+  step() override;
+
+  /** \brief The pose [m, rad]; its angles may lie beyond one turn. */
+  const Vector6d&
+  position() const override;
+
+private:
+  const SgldOptions& options_;
+  long num_steps_;
+  long steps_made_ = 0;
+  Vector6d pose_;
+  MiniBatchGradient gradient_;
+  RmsPropPreconditioner preconditioner_;
+  Random& random_;
+};
 
 } // namespace bayesian_icp
