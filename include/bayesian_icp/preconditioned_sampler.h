@@ -39,8 +39,9 @@ toString(MetropolisUse use);
 struct PreconditionedOptions {
   /** Terms a step; 0 is automatic. Not used by metropolis steps. */
   std::size_t batch_size = 0;
-  /** Largest step size, in (0, 1]; 1 would be a Newton step. */
-  double max_step_size = 0.75;
+  /** Largest step size, in (0, 1]; 1 would be a Newton step. Longer steps bias the
+   * draws of a rough density: docs/performance.md. */
+  double max_step_size = 0.6;
   /** Steps on StochasticEnergy::fullEnergy(), asymptotically exact. */
   MetropolisUse metropolis = MetropolisUse::Automatic;
 };
