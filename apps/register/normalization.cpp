@@ -62,6 +62,30 @@ scaleResult(double unit, RegistrationResult& result)
   scaleSummary(unit, result.summary);
 }
 
+/** \p progress, told of poses in metres; empty if it is. */
+ProgressCallback
+inMetres(double unit, const ProgressCallback& progress)
+{
+  if (!progress)
+    return progress;
+  return [unit, &progress](const Progress& scaled) {
+    Progress state = scaled;
+    state.pose.head<3>() *= unit;
+    return progress(state);
+  };
+}
+
+IcpCallback
+inMetres(double unit, const IcpCallback& icp_progress)
+{
+  if (!icp_progress)
+    return icp_progress;
+  return [unit, &icp_progress](Eigen::Matrix4d T_target_source) {
+    T_target_source.topRightCorner<3, 1>() *= unit;
+    icp_progress(T_target_source);
+  };
+}
+
 } // namespace
 
 bool
@@ -74,15 +98,19 @@ RegistrationResult
 registerNormalized(const Eigen::Matrix3Xf& source,
                    const Eigen::Matrix3Xf& target,
                    const Settings& settings,
-                   const ProgressCallback& progress)
+                   const ProgressCallback& progress,
+                   const IcpCallback& icp_progress)
 {
   const float largest = std::max(largestCoordinate(source), largestCoordinate(target));
   const float unit = largest > 0.0F ? largest : 1.0F;
   Settings scaled = settings;
   scaled.is_normalized = false;
   scaled.scaleLengths(1.0 / double(unit));
-  RegistrationResult result =
-      registerClouds(source / unit, target / unit, scaled, progress);
+  RegistrationResult result = registerClouds(source / unit,
+                                             target / unit,
+                                             scaled,
+                                             inMetres(unit, progress),
+                                             inMetres(unit, icp_progress));
   scaleResult(double(unit), result);
   return result;
 }

@@ -14,11 +14,12 @@ bool
 isNormalized(const Settings& settings);
 
 /** \brief As registerClouds(), with both clouds divided by their largest coordinate;
- * the results are in metres again. */
+ * the results, and what the callbacks are told, are in metres again. */
 RegistrationResult
 registerNormalized(const Eigen::Matrix3Xf& source,
                    const Eigen::Matrix3Xf& target,
                    const Settings& settings,
-                   const ProgressCallback& progress);
+                   const ProgressCallback& progress,
+                   const IcpCallback& icp_progress);
 
 } // namespace bayesian_icp::app

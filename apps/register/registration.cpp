@@ -108,7 +108,7 @@ registerClouds(const Eigen::Matrix3Xf& source,
                const IcpCallback& icp_progress)
 {
   if (isNormalized(settings))
-    return registerNormalized(source, target, settings, progress);
+    return registerNormalized(source, target, settings, progress, icp_progress);
   Icp icp;
   configure(settings, icp);
   icp.setInputSource(cloudOf(source));
