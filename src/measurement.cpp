@@ -11,11 +11,6 @@ namespace {
 /** Of a prior that is infinitely wide [1/m^2, 1/rad^2]. */
 constexpr double least_precision = 1e-12;
 
-constexpr CovarianceConvention conventions[] = {CovarianceConvention::Parameters,
-                                                CovarianceConvention::R3xSO3,
-                                                CovarianceConvention::LeftSE3,
-                                                CovarianceConvention::RightSE3};
-
 /** Derivative of the error about \p mean in \p convention by the left twist. */
 Matrix6d
 derivativeByLeftTwist(const Vector6d& mean, CovarianceConvention convention)
@@ -39,7 +34,7 @@ estimateOf(const Vector6d& mean, const Matrix6d& left_se3)
 {
   PoseEstimate estimate;
   estimate.mean = mean;
-  for (const auto convention : conventions) {
+  for (const auto convention : covariance_conventions) {
     const Matrix6d J = derivativeByLeftTwist(mean, convention);
     const Matrix6d covariance = J * left_se3 * J.transpose();
     estimate.covariances[static_cast<std::size_t>(convention)] =

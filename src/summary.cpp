@@ -11,11 +11,6 @@ namespace bayesian_icp {
 
 namespace {
 
-constexpr CovarianceConvention conventions[] = {CovarianceConvention::Parameters,
-                                                CovarianceConvention::R3xSO3,
-                                                CovarianceConvention::LeftSE3,
-                                                CovarianceConvention::RightSE3};
-
 PoseMatrix
 errorsAbout(const Vector6d& mean,
             const PoseMatrix& draws,
@@ -209,7 +204,7 @@ summarize(const ChainSet& chain_set)
   summary.num_diverged_chains = summary.num_chains - static_cast<int>(chains.size());
   summary.num_draws = draws.rows();
   summary.mean = meanPose(draws);
-  for (const auto convention : conventions)
+  for (const auto convention : covariance_conventions)
     summary.covariances[static_cast<std::size_t>(convention)] =
         covarianceAbout(summary.mean, draws, convention);
 

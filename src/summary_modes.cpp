@@ -45,7 +45,7 @@ modesMessage(const Summary& summary)
     std::snprintf(weight, sizeof(weight), " %.3f", mode.weight);
     text += weight;
   }
-  return text + "; mean and covariance mix them, see Summary::modes";
+  return text + "; mean and covariance mix them";
 }
 
 std::string

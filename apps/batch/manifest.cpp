@@ -103,11 +103,6 @@ void
 takeSettings(const json& settings, BatchPair& pair)
 {
   pair.settings = settingsOf(settings, pair.settings);
-  if (settings.contains("sgld") && settings["sgld"].contains("step_size"))
-    pair.settings.is_step_size_times_points = false;
-  if (settings.contains("posterior") &&
-      settings["posterior"].contains("effective_points"))
-    pair.settings.is_effective_points_source_size = false;
   const std::string complaint = pair.settings.validate();
   if (!complaint.empty())
     refuse(complaint);

@@ -42,8 +42,6 @@ codeHtml(const std::string& text);
 enum class FigureWidth {
   /** Beside others of its kind, as many as there is room for. */
   Small,
-  /** All of it. */
-  Full,
   /** All of it; where that is too little to read it, the figure can be scrolled. */
   Scrolled
 };

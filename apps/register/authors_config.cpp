@@ -1,5 +1,6 @@
 #include "register/authors_config.h"
 
+#include "io/coordinates.h"
 #include "io/errors.h"
 #include "register/json_values.h"
 
@@ -114,10 +115,10 @@ countAt(const json& document, const std::string& group, const std::string& key)
 Vector6d
 poseAt(const json& document, const std::string& group, const std::string& prefix)
 {
-  const char* names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   Vector6d pose;
-  for (int k = 0; k < 6; ++k)
-    pose[k] = numberAt(document, group, prefix + names[k]);
+  for (std::size_t k = 0; k < 6; ++k)
+    pose[static_cast<Eigen::Index>(k)] =
+        numberAt(document, group, prefix + coordinate_names[k]);
   return pose;
 }
 

@@ -1,5 +1,6 @@
 #include "register/posterior_json.h"
 
+#include "io/coordinates.h"
 #include "io/posterior_file.h"
 #include "register/data_json.h"
 #include "register/json_values.h"
@@ -12,8 +13,6 @@ namespace bayesian_icp::app {
 namespace {
 
 using nlohmann::ordered_json;
-
-const char* const coordinate_names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 /** A convention of a covariance in words. */
 struct Convention {
@@ -65,8 +64,8 @@ ordered_json
 meanJson(const Vector6d& mean)
 {
   ordered_json json;
-  for (int k = 0; k < 6; ++k)
-    json[std::string(coordinate_names[k]) + (k < 3 ? "_m" : "_rad")] = jsonOf(mean[k]);
+  for (std::size_t k = 0; k < 6; ++k)
+    json[coordinateKey(k)] = jsonOf(mean[static_cast<Eigen::Index>(k)]);
   json["T_target_source"] = jsonOf(matrixOf(mean));
   return json;
 }

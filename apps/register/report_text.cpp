@@ -1,5 +1,6 @@
 #include "register/report_text.h"
 
+#include "io/coordinates.h"
 #include "io/numbers.h"
 #include "register/data_text.h"
 #include "register/text_layout.h"
@@ -13,11 +14,10 @@ namespace bayesian_icp::app {
 
 namespace {
 
-constexpr double degrees_per_radian = 57.295779513082320877;
 constexpr std::size_t label_width = 12;
 constexpr std::size_t column_width = 12;
 constexpr std::size_t diagnostic_width = 10;
-const char* const coordinate_names[] = {
+const char* const coordinate_labels[] = {
     "x [m]", "y [m]", "z [m]", "roll [rad]", "pitch [rad]", "yaw [rad]"};
 
 /** Mean, deviation and interval, each times \p factor. */
@@ -44,7 +44,7 @@ coordinateTable(const Summary& summary)
   table += '\n';
   for (std::size_t k = 0; k < 6; ++k) {
     const CoordinateSummary& coordinate = summary.coordinates[k];
-    table += leftAligned(coordinate_names[k], label_width) +
+    table += leftAligned(coordinate_labels[k], label_width) +
              estimateCells(coordinate, 1.0, 6) +
              cell(coordinate.rhat, 3, diagnostic_width) +
              cell(coordinate.bulk_ess, 0, diagnostic_width) +
@@ -68,7 +68,7 @@ modeText(const Mode& mode, std::size_t number)
   text += '\n';
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (const Eigen::Index k : {row, row + 3})
-      text += leftAligned(std::string(k < 3 ? "  " : "   ") + coordinate_names[k],
+      text += leftAligned(std::string(k < 3 ? "  " : "   ") + coordinate_labels[k],
                           label_width + 2) +
               cell(mode.mean[k], 6, column_width) + " +-" +
               cell(std::sqrt(mode.covariance(k, k)), 6, column_width);

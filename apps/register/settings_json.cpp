@@ -209,6 +209,10 @@ settingsOf(const json& document, const Settings& defaults)
   SettingsReader reader{document, {}, {}};
   visitSettings(settings, reader);
   reader.refuseUnknownKeys();
+  if (document.contains(json::json_pointer("/sgld/step_size")))
+    settings.is_step_size_times_points = false;
+  if (document.contains(json::json_pointer("/posterior/effective_points")))
+    settings.is_effective_points_source_size = false;
   return settings;
 }
 

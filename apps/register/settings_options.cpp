@@ -2,10 +2,10 @@
 
 #include "io/command_line.h"
 #include "io/errors.h"
+#include "io/motion.h"
 #include "io/numbers.h"
 #include "register/choices.h"
 #include "register/config_file.h"
-#include "register/guess.h"
 #include "register/setting_fields.h"
 #include "register/unused_settings.h"
 
@@ -71,7 +71,7 @@ convert(const std::string& option, const std::string& text, Vector6d& value)
 void
 convert(const std::string&, const std::string& text, Eigen::Matrix4d& value)
 {
-  value = readGuess(text);
+  value = io::readMotion("guess", text);
 }
 
 template <typename Choice>

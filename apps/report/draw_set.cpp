@@ -1,6 +1,6 @@
 #include "report/draw_set.h"
 
-#include "report/coordinates.h"
+#include "io/coordinates.h"
 
 #include <algorithm>
 #include <cmath>

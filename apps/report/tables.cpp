@@ -1,8 +1,8 @@
 #include "report/tables.h"
 
+#include "io/coordinates.h"
 #include "io/numbers.h"
 #include "register/data_text.h"
-#include "report/coordinates.h"
 
 #include <pcl/pcl_config.h>
 

@@ -1,8 +1,8 @@
 #include "report/verdict.h"
 
+#include "io/coordinates.h"
 #include "io/numbers.h"
 #include "register/data_text.h"
-#include "report/coordinates.h"
 
 #include <algorithm>
 #include <cmath>

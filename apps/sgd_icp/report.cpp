@@ -1,5 +1,7 @@
+#include "io/coordinates.h"
 #include "io/numbers.h"
 #include "register/json_values.h"
+#include "register/posterior_json.h"
 #include "register/text_layout.h"
 #include "sgd_icp/run.h"
 
@@ -11,17 +13,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double degrees_per_radian = 57.295779513082320877;
-const char* const coordinate_names[] = {
-    "x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"};
-
 std::string
 poseTable(const Vector6d& pose)
 {
-  const char* labels[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   std::string table;
   for (int k = 0; k < 6; ++k) {
-    table += leftAligned(labels[k], 6) + cell(pose[k], 6, 12) + (k < 3 ? " m" : " rad");
+    table += leftAligned(coordinate_names[static_cast<std::size_t>(k)], 6) +
+             cell(pose[k], 6, 12) + (k < 3 ? " m" : " rad");
     if (k >= 3)
       table += cell(degrees_per_radian * pose[k], 4, 12) + " deg";
     table += '\n';
@@ -33,14 +31,6 @@ std::string
 cloudLine(const char* role, const io::CloudFile& cloud)
 {
   return role + cloud.file + ", " + io::textOf(cloud.num_finite) + " finite points\n";
-}
-
-ordered_json
-cloudJson(const io::CloudFile& cloud)
-{
-  return {{"file", cloud.file},
-          {"points", cloud.points.cols()},
-          {"finite_points", cloud.num_finite}};
 }
 
 double
@@ -119,8 +109,8 @@ std::string
 sgdJson(const SgdRun& run)
 {
   ordered_json pose;
-  for (int k = 0; k < 6; ++k)
-    pose[coordinate_names[k]] = jsonOf(run.result.pose[k]);
+  for (std::size_t k = 0; k < 6; ++k)
+    pose[coordinateKey(k)] = jsonOf(run.result.pose[static_cast<Eigen::Index>(k)]);
   const ordered_json document = {
       {"schema", "pcl_bayesian_icp/sgd_icp"},
       {"schema_version", 1},

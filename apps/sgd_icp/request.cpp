@@ -2,8 +2,8 @@
 
 #include "io/command_line.h"
 #include "io/errors.h"
+#include "io/motion.h"
 #include "io/numbers.h"
-#include "register/guess.h"
 #include "register/option_descriptions.h"
 
 #include <boost/program_options.hpp>
@@ -105,7 +105,7 @@ takeOptions(const po::variables_map& given, SgdRequest& request)
   take(given, "max-distance", request.max_distance);
   options.is_one_to_one = given.count("keep-duplicates") == 0;
   if (given.count("guess") > 0)
-    request.guess = readGuess(given["guess"].as<std::string>());
+    request.guess = io::readMotion("guess", given["guess"].as<std::string>());
 }
 
 /** The option that a complaint of validate() speaks of. */

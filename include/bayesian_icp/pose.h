@@ -38,6 +38,13 @@ enum class CovarianceConvention {
   RightSE3
 };
 
+/** \brief All of them, in their order. */
+inline constexpr std::array<CovarianceConvention, 4> covariance_conventions = {
+    CovarianceConvention::Parameters,
+    CovarianceConvention::R3xSO3,
+    CovarianceConvention::LeftSE3,
+    CovarianceConvention::RightSE3};
+
 /** \brief Short name of a convention: "parameters", "r3xso3", "left_se3", "right_se3".
  */
 BAYESIAN_ICP_EXPORT const char*

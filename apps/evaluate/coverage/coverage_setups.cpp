@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include <io/coordinates.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -12,8 +14,6 @@ using simulator::SensorKind;
 using simulator::View;
 
 namespace {
-
-constexpr double degrees_per_radian = 180.0 / 3.14159265358979323846;
 
 /** \brief What a camera's image looks like. */
 struct Image {
@@ -37,7 +37,7 @@ depthCamera(const Image& image, const View& view)
   CoverageSetup setup;
   setup.sensor.camera.width = image.width;
   setup.sensor.camera.height = image.height;
-  setup.sensor.camera.horizontal_fov = image.field_of_view * degrees_per_radian;
+  setup.sensor.camera.horizontal_fov = image.field_of_view * app::degrees_per_radian;
   setup.sensor.jitter = 1.0;
   setup.sensor.min_range = 0.2;
   setup.sensor.max_range = 8.0;

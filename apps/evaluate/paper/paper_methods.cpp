@@ -1,5 +1,6 @@
 #include "paper_methods.h"
 
+#include "cpu_time.h"
 #include "draw_statistics.h"
 
 #include <bayesian_icp/calibration/twist.h>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <stdexcept>
 
@@ -21,12 +21,6 @@ constexpr std::uint64_t gaussian_stream = 0x67617573;
 /** Noise of Online-ICP: that of the paper's likelihood [m], or found by itself. */
 constexpr double paper_sigma = 1.0;
 constexpr double estimated = std::numeric_limits<double>::quiet_NaN();
-
-double
-cpuSeconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 using OptionChange = std::function<void(Options&)>;
 

@@ -3,16 +3,15 @@
  */
 #pragma once
 
-#include <array>
+#include <io/coordinates.h>
+
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief Names of the pose's coordinates, in their order. */
-constexpr std::array<const char*, 6> coordinate_names = {
-    "x", "y", "z", "roll", "pitch", "yaw"};
+using app::coordinate_names;
 
 /** \brief Mean and standard deviation over runs. */
 struct Spread {

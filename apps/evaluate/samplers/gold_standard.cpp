@@ -1,10 +1,10 @@
+#include "cpu_time.h"
 #include "draw_statistics.h"
 #include "gold_run.h"
 
 #include <bayesian_icp/diagnostics.h>
 
 #include <algorithm>
-#include <ctime>
 #include <iomanip>
 #include <sstream>
 
@@ -20,12 +20,6 @@ constexpr int num_adaptive_rounds = 3;
 constexpr int num_components = 12;
 /** Draws of a chain that are kept in the end. */
 constexpr Eigen::Index max_kept_draws = 4000;
-
-double
-cpuSeconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 void
 leaveWorseModes(std::vector<GoldRun>& runs)

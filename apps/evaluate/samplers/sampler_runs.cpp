@@ -1,11 +1,11 @@
 #include "sampler_runs.h"
 
+#include "cpu_time.h"
 #include "draw_statistics.h"
 
 #include <bayesian_icp/pipeline.h>
 
 #include <cmath>
-#include <ctime>
 
 namespace bayesian_icp::evaluate {
 
@@ -14,12 +14,6 @@ namespace {
 constexpr int num_chains = 4;
 /** Steps of each chain of a competitor: enough to see its rate, not to converge. */
 constexpr int num_competitor_steps = 1500;
-
-double
-cpuSeconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 /** Run the project's front door and time it. */
 SamplerRun

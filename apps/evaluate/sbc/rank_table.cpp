@@ -1,5 +1,6 @@
 #include "rank_table.h"
 
+#include <io/coordinates.h>
 #include <plot/gnuplot.h>
 
 #include <algorithm>
@@ -10,9 +11,6 @@
 namespace bayesian_icp::evaluate {
 
 namespace {
-
-constexpr std::array<const char*, 6> coordinates = {
-    "x", "y", "z", "roll", "pitch", "yaw"};
 
 template <typename... Values>
 std::string
@@ -48,7 +46,7 @@ printRankTable(const RankStudy& study, const RankFile& results, std::ostream& st
 {
   stream << "                        valid  chi-square of 10 bins, uniform if below "
          << max_rank_chi_square << " (0.1 %)\n  sampler               /runs";
-  for (const char* name : coordinates)
+  for (const char* name : app::coordinate_names)
     stream << format("%8s", name);
   stream << '\n';
   bool are_all_uniform = true;
@@ -83,11 +81,12 @@ plotRanks(const RankStudy& study, const RankFile& results, const std::string& fo
     for (int k = 0; k < 6; ++k) {
       const std::string name = "ranks" + std::to_string(i) + '_' + std::to_string(k);
       data += histogramBlock(name, rankHistogram(runs, k));
-      plot += "set title " +
-              plot::quotedForGnuplot(sampler.name + ' ' +
-                                     coordinates[static_cast<std::size_t>(k)]) +
-              "\nplot $" + name + " using 1:2 with boxes, " + format("%.1f", expected) +
-              " linecolor 'gray'\n";
+      plot +=
+          "set title " +
+          plot::quotedForGnuplot(sampler.name + ' ' +
+                                 app::coordinate_names[static_cast<std::size_t>(k)]) +
+          "\nplot $" + name + " using 1:2 with boxes, " + format("%.1f", expected) +
+          " linecolor 'gray'\n";
     }
   }
   plot::runGnuplot("set encoding utf8\n" + data +

@@ -5,10 +5,11 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 
 namespace bayesian_icp::app {
 
-constexpr double degrees_per_radian = 57.295779513082320877;
+inline constexpr double degrees_per_radian = 57.295779513082320877;
 
 inline constexpr std::array<const char*, 6> coordinate_names = {
     "x", "y", "z", "roll", "pitch", "yaw"};
@@ -17,6 +18,13 @@ constexpr bool
 isAngle(int coordinate)
 {
   return coordinate >= 3;
+}
+
+/** \brief Its key in the files: "x_m", "yaw_rad". */
+inline std::string
+coordinateKey(std::size_t coordinate)
+{
+  return coordinate_names[coordinate] + std::string(coordinate < 3 ? "_m" : "_rad");
 }
 
 } // namespace bayesian_icp::app
