@@ -6,7 +6,9 @@ function(bayesian_icp_configure target)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(
-    ${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic -Wshadow>
+    ${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic -Wshadow
+                      -Wconversion>
+                      $<$<BOOL:${BAYESIAN_ICP_WARNINGS_AS_ERRORS}>:-Werror>
                       # GCC 12 sees array bounds violated where it inlines Eigen's SSE code.
                       $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
 endfunction()

@@ -78,9 +78,9 @@ struct TimeText {
   std::string nanoseconds;
 
   explicit TimeText(std::int64_t timestamp_ns)
+  : seconds(std::to_string(timestamp_ns / nanoseconds_per_second))
+  , nanoseconds(std::to_string(timestamp_ns % nanoseconds_per_second))
   {
-    seconds = std::to_string(timestamp_ns / nanoseconds_per_second);
-    nanoseconds = std::to_string(timestamp_ns % nanoseconds_per_second);
     nanoseconds.insert(0, 9 - nanoseconds.size(), '0');
   }
 

@@ -28,7 +28,7 @@ finitePoints(const float* points, std::size_t num_points)
 Leaf
 makeLeaf(const Record* first, const Record* last)
 {
-  Leaf leaf;
+  Leaf leaf{};
   for (std::size_t i = 0; i < leaf_size; ++i, ++first) {
     const bool is_used = first < last;
     for (int axis = 0; axis < 3; ++axis)

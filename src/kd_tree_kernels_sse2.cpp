@@ -20,8 +20,8 @@ struct FourFloats {
   static Vector mul(Vector a, Vector b) { return _mm_mul_ps(a, b); }
   static Vector min(Vector a, Vector b) { return _mm_min_ps(a, b); }
   static Vector max(Vector a, Vector b) { return _mm_max_ps(a, b); }
-  static unsigned lessEqual(Vector a, Vector b) { return _mm_movemask_ps(_mm_cmple_ps(a, b)); }
-  static unsigned equal(Vector a, Vector b) { return _mm_movemask_ps(_mm_cmpeq_ps(a, b)); }
+  static unsigned lessEqual(Vector a, Vector b) { return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a, b))); }
+  static unsigned equal(Vector a, Vector b) { return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpeq_ps(a, b))); }
   // clang-format on
 
   static float

@@ -139,11 +139,11 @@ boundChildren(const Node& node, const float* query, const Best& best, float* bou
 inline Pending
 descend(std::uint32_t number, const float* bounds, unsigned promising, Pending*& end)
 {
-  const std::uint32_t first_child = fan_out * number + 1;
-  unsigned child = __builtin_ctz(promising);
+  const std::uint32_t first_child = static_cast<std::uint32_t>(fan_out) * number + 1;
+  auto child = static_cast<unsigned>(__builtin_ctz(promising));
   Pending nearest{bounds[child], first_child + child};
   while (promising &= promising - 1) {
-    child = __builtin_ctz(promising);
+    child = static_cast<unsigned>(__builtin_ctz(promising));
     const Pending other{bounds[child], first_child + child};
     const bool is_nearer = other.bound < nearest.bound;
     *end++ = is_nearer ? nearest : other;

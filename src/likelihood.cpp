@@ -19,8 +19,8 @@ meanEnergy(const Vector6d& pose,
   const Eigen::Matrix3d R = rotationOf(pose);
   double sum = 0.0;
   for (const auto& pair : correspondences) {
-    const Eigen::Vector3d moved =
-        R * source_points.col(pair.source_index) + pose.head<3>();
+    const auto index = static_cast<Eigen::Index>(pair.source_index);
+    const Eigen::Vector3d moved = R * source_points.col(index) + pose.head<3>();
     sum += 0.5 * (moved - pair.target_point).squaredNorm();
   }
   return sum / static_cast<double>(source_points.cols());
@@ -37,11 +37,11 @@ meanGradient(const Vector6d& pose,
   Eigen::Vector3d sum_of_residuals = Eigen::Vector3d::Zero();
   Eigen::Matrix3d sum_of_products = Eigen::Matrix3d::Zero();
   for (const auto& pair : correspondences) {
-    const Eigen::Vector3d residual =
-        moved_points.col(pair.source_index) - pair.target_point;
+    const auto index = static_cast<Eigen::Index>(pair.source_index);
+    const Eigen::Vector3d residual = moved_points.col(index) - pair.target_point;
     sum_of_residuals += residual; // eq. (2)
     sum_of_products.noalias() +=
-        residual * source_points.col(pair.source_index).transpose(); // eq. (3)
+        residual * source_points.col(index).transpose(); // eq. (3)
   }
   const auto dR = rotationDerivativesOf(pose);
   Vector6d sum;

@@ -48,8 +48,9 @@ Prior::energyGradient(const Vector6d& pose) const
   gradient.head<3>() = d.head<3>().cwiseQuotient(variance_.head<3>()); // eq. (6)
   const auto dR = rotationDerivativesOf(pose);
   for (int k = 3; k < 6; ++k)
-    gradient[k] = std::sin(d[k]) / variance_[k] + // eq. (7)
-                  gradient.head<3>().dot(dR[k - 3] * reference_point_);
+    gradient[k] =
+        std::sin(d[k]) / variance_[k] + // eq. (7)
+        gradient.head<3>().dot(dR[static_cast<std::size_t>(k - 3)] * reference_point_);
   return gradient;
 }
 

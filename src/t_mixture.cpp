@@ -132,10 +132,10 @@ TMixture::maximise(const PoseMatrix& draws, const Eigen::MatrixXd& shares)
     components_.push_back(makeComponent(mean, covariance + floor, std::log(weight)));
     total_weight += weight;
   }
+  if (components_.empty())
+    return maximise(draws, Eigen::MatrixXd::Ones(draws.rows(), 1));
   for (Component& c : components_)
     c.log_weight -= std::log(total_weight);
-  if (components_.empty())
-    maximise(draws, Eigen::MatrixXd::Ones(draws.rows(), 1));
 }
 
 Vector6d

@@ -154,8 +154,8 @@ private:
   const Matrix6d& J_;
   Eigen::LDLT<Matrix6d> J_factor_;
   PatchHints hints_;
-  SurfaceScores forward_;
-  SurfaceScores backward_;
+  SurfaceScores forward_{};
+  SurfaceScores backward_{};
   int num_evaluations_ = 0;
 };
 

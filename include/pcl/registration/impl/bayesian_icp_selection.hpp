@@ -97,11 +97,13 @@ private:
   {
     std::vector<bool> is_selected(num_points, false);
     for (const auto index : indices_)
-      is_selected[index] = true;
+      is_selected[static_cast<std::size_t>(index)] = true;
     indices_.clear();
-    for (const auto index : own)
-      if (static_cast<std::size_t>(index) < num_points && is_selected[index])
+    for (const auto index : own) {
+      const auto position = static_cast<std::size_t>(index);
+      if (position < num_points && is_selected[position])
         indices_.push_back(index);
+    }
   }
 
   Estimation& estimation_;

@@ -112,7 +112,8 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::computeTransform
   }
   if (is_subset)
     for (auto& correspondence : *correspondences_)
-      correspondence.index_query = usable[correspondence.index_query];
+      correspondence.index_query =
+          usable[static_cast<std::size_t>(correspondence.index_query)];
   if (source != whole || !is_output_moved) {
     output = *whole;
     transformCloud(*whole, output, final_transformation_);

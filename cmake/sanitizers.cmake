@@ -1,0 +1,27 @@
+# BAYESIAN_ICP_SANITIZER: every target of the build watched by a sanitizer. The presets asan
+# and tsan of CMakePresets.json set it, and what the programs need when they run.
+set(BAYESIAN_ICP_SANITIZER "" CACHE STRING
+    "Sanitizer: address (with undefined behaviour), thread, or empty for none")
+set_property(CACHE BAYESIAN_ICP_SANITIZER PROPERTY STRINGS "" address thread)
+
+if(BAYESIAN_ICP_SANITIZER STREQUAL address)
+  set(sanitizer_options -fsanitize=address,undefined,float-cast-overflow
+                        -fno-sanitize-recover=all)
+  # Eigen would choose another allocator than the PCL of the system was built with.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1 _GLIBCXX_ASSERTIONS)
+elseif(BAYESIAN_ICP_SANITIZER STREQUAL thread)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    message(FATAL_ERROR "BAYESIAN_ICP_SANITIZER=thread needs Clang with its libomp: the "
+                        "sanitizer does not see what GCC's libgomp synchronizes")
+  endif()
+  set(sanitizer_options -fsanitize=thread)
+elseif(BAYESIAN_ICP_SANITIZER)
+  message(FATAL_ERROR "BAYESIAN_ICP_SANITIZER=${BAYESIAN_ICP_SANITIZER}: not address, "
+                      "thread or empty")
+endif()
+
+add_compile_options(${sanitizer_options})
+add_link_options(${sanitizer_options})
+if(BAYESIAN_ICP_SANITIZER)
+  add_compile_options(-fno-omit-frame-pointer)
+endif()
