@@ -7,6 +7,7 @@
 #include <bayesian_icp/pipeline.h>
 
 #include <pcl/registration/checked_icp.h>
+#include <pcl/registration/impl/bayesian_icp_estimation.hpp>
 
 namespace pcl {
 
@@ -295,6 +296,19 @@ protected:
   keepFailure(bool is_guess_finite, const char* reason) override;
 
 private:
+  using SeededEstimation =
+      bayesian_icp_detail::SeededEstimation<PointSource, PointTarget, Scalar>;
+
+  /** \brief PCL's ICP; its pairs are found by a tree of this library where that gives
+   * the same ones. */
+  void
+  runIcp(PointCloudSource& output, const Matrix4& guess);
+
+  /** \brief Whether PCL's ICP would ask its default tree for nearest neighbours in the
+   * whole target. */
+  bool
+  mayUseOwnTree();
+
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
 
@@ -323,6 +337,7 @@ private:
   bayesian_icp::Options options_;
   bayesian_icp::ProgressCallback progress_callback_;
   bayesian_icp::PosteriorEstimate estimate_;
+  bayesian_icp_detail::TargetTree<PointTarget> target_tree_;
   bool use_mean_as_final_transformation_ = false;
 };
 
