@@ -181,16 +181,14 @@ gatherNeighbors(const PointNeighbors& cloud,
                 int count,
                 PatchFitWorkspace& workspace)
 {
-  cloud.find(point,
-             static_cast<std::size_t>(ball_to_neighborhood * count),
-             workspace.indices,
-             workspace.squared_distances);
-  PointRows ball(static_cast<Eigen::Index>(workspace.indices.size()), 3);
+  cloud.find(
+      point, static_cast<std::size_t>(ball_to_neighborhood * count), workspace.nearest);
+  const auto& indices = workspace.nearest.indices;
+  PointRows ball(static_cast<Eigen::Index>(indices.size()), 3);
   for (Eigen::Index i = 0; i < ball.rows(); ++i)
-    ball.row(i) =
-        (cloud.points().col(workspace.indices[static_cast<std::size_t>(i)]) - point)
-            .cast<double>()
-            .transpose();
+    ball.row(i) = (cloud.points().col(indices[static_cast<std::size_t>(i)]) - point)
+                      .cast<double>()
+                      .transpose();
   const Matrix3d axes = principalFrame(ball).axes;
   const Eigen::ArrayXd distances = ball.lazyProduct(axes.col(0)).array().square() +
                                    ball.lazyProduct(axes.col(1)).array().square();
@@ -234,9 +232,9 @@ fitPatch(const PointNeighbors& cloud,
         ((is_thick && next <= max_growth_for_noise) ||
          (is_narrow && next <= max_growth_for_width)))
       continue;
-    spacing = workspace.squared_distances.size() > 1
-                  ? std::sqrt(double(workspace.squared_distances[1]))
-                  : 0.0;
+    const auto& squared_distances = workspace.nearest.squared_distances;
+    spacing =
+        squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
     patch.sigma = frame.thickness;
     patch.is_usable = false;
     if (neighbors.rows() >= min_points && patch.radius > 0.0)

@@ -75,13 +75,14 @@ public:
   fitPatches()
   {
     const PointNeighbors cloud(points_);
-    const auto count = static_cast<std::ptrdiff_t>(columns_.size());
+    const auto order = patchesAlong(cloud.alongTree());
+    const auto count = static_cast<std::ptrdiff_t>(order.size());
 #pragma omp parallel num_threads(num_threads_)
     {
       PatchFitWorkspace workspace;
 #pragma omp for schedule(dynamic, 64)
       for (std::ptrdiff_t j = 0; j < count; ++j) {
-        const auto patch = static_cast<std::size_t>(j);
+        const std::size_t patch = order[static_cast<std::size_t>(j)];
         patches_[patch] = fitPatch(
             cloud, points_.col(columns_[patch]), options_, workspace, spacings_[patch]);
       }
@@ -93,24 +94,22 @@ public:
   poolNoise(const PointNeighbors& centres)
   {
     std::vector<double> pooled(patches_.size());
-    const auto count = static_cast<std::ptrdiff_t>(patches_.size());
+    const auto order = centres.alongTree();
+    const auto count = static_cast<std::ptrdiff_t>(order.size());
 #pragma omp parallel num_threads(num_threads_)
     {
-      PatchFitWorkspace workspace;
+      NeighborList nearest;
 #pragma omp for schedule(dynamic, 64)
       for (std::ptrdiff_t j = 0; j < count; ++j) {
-        centres.find(centres.points().col(j),
-                     num_pooled,
-                     workspace.indices,
-                     workspace.squared_distances);
+        const std::size_t patch = order[static_cast<std::size_t>(j)];
+        centres.find(patches_[patch].centre.cast<float>(), num_pooled, nearest);
         double sum = 0.0;
         int used = 0;
-        for (const auto index : workspace.indices)
+        for (const auto index : nearest.indices)
           if (patches_[index].is_usable) {
             sum += patches_[index].sigma * patches_[index].sigma;
             ++used;
           }
-        const auto patch = static_cast<std::size_t>(j);
         pooled[patch] = used > 0 ? std::sqrt(sum / used) : patches_[patch].sigma;
       }
     }
@@ -133,15 +132,17 @@ public:
   takeOver(const PointNeighbors& centres)
   {
     std::vector<std::uint32_t> donors(patches_.size(), KdTree::none);
-    const auto count = static_cast<std::ptrdiff_t>(patches_.size());
+    const auto order = centres.alongTree();
+    const auto count = static_cast<std::ptrdiff_t>(order.size());
 #pragma omp parallel num_threads(num_threads_)
     {
-      PatchFitWorkspace workspace;
+      NeighborList nearest;
 #pragma omp for schedule(dynamic, 64)
-      for (std::ptrdiff_t j = 0; j < count; ++j)
-        if (!patches_[static_cast<std::size_t>(j)].is_usable)
-          donors[static_cast<std::size_t>(j)] =
-              donorOf(patches_[static_cast<std::size_t>(j)].centre, centres, workspace);
+      for (std::ptrdiff_t j = 0; j < count; ++j) {
+        const std::size_t patch = order[static_cast<std::size_t>(j)];
+        if (!patches_[patch].is_usable)
+          donors[patch] = donorOf(patches_[patch].centre, centres, nearest);
+      }
     }
     // Donors are usable, so none of them is overwritten.
     for (std::size_t j = 0; j < patches_.size(); ++j)
@@ -193,18 +194,31 @@ public:
   }
 
 private:
+  /** The patches of those \p points that have one, in this order. */
+  std::vector<std::size_t>
+  patchesAlong(const std::vector<std::uint32_t>& points) const
+  {
+    std::vector<std::uint32_t> patch_of(static_cast<std::size_t>(points_.cols()),
+                                        KdTree::none);
+    for (std::size_t j = 0; j < columns_.size(); ++j)
+      patch_of[static_cast<std::size_t>(columns_[j])] = static_cast<std::uint32_t>(j);
+    std::vector<std::size_t> patches;
+    patches.reserve(columns_.size());
+    for (const auto point : points)
+      if (patch_of[point] != KdTree::none)
+        patches.push_back(patch_of[point]);
+    return patches;
+  }
+
   std::uint32_t
   donorOf(const Vector3d& centre,
           const PointNeighbors& centres,
-          PatchFitWorkspace& workspace) const
+          NeighborList& nearest) const
   {
-    centres.find(centre.cast<float>(),
-                 num_donors,
-                 workspace.indices,
-                 workspace.squared_distances);
+    centres.find(centre.cast<float>(), num_donors, nearest);
     std::uint32_t best = KdTree::none;
     double best_rank = std::numeric_limits<double>::infinity();
-    for (const auto index : workspace.indices) {
+    for (const auto index : nearest.indices) {
       const SurfacePatch& donor = patches_[index];
       if (!donor.is_usable)
         continue;
