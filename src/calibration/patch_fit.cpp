@@ -166,11 +166,12 @@ fitQuadric(const PointRows& local,
                    solution[5] * r * r};
   patch.sigma = std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
   const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
-  const bool is_quadric = patch.sigma < negligible_misfit * patch.radius ||
-                          misfit(regression, rss, num_points) < options.max_misfit;
-  patch.is_usable = solution.allFinite() && aspect >= min_aspect && is_quadric &&
+  // The test of the quadric last: it costs as much as the fit.
+  patch.is_usable = solution.allFinite() && aspect >= min_aspect &&
                     centroid_offset < options.max_centroid_offset * patch.radius &&
-                    patch.radius > options.min_radius_to_noise * patch.sigma;
+                    patch.radius > options.min_radius_to_noise * patch.sigma &&
+                    (patch.sigma < negligible_misfit * patch.radius ||
+                     misfit(regression, rss, num_points) < options.max_misfit);
 }
 
 /** The \p count points around \p point that are nearest to it in the plane of the

@@ -124,12 +124,14 @@ appendLeaf(const Leaf& leaf, const Vector3f& query, float limit, std::uint64_t* 
   return end;
 }
 
-/** Sort keys: into buckets of equal width in the squared distance, over which points of
- * a surface are spread evenly, and then those. */
+/** Sort the \p count nearest of the keys to the front: into buckets of equal width in
+ * the squared distance, over which points of a surface are spread evenly, and then
+ * those. */
 void
-sortByDistance(const std::vector<std::uint64_t>& keys,
-               std::vector<std::uint64_t>& sorted,
-               std::vector<std::uint32_t>& buckets)
+sortNearest(const std::vector<std::uint64_t>& keys,
+            std::size_t count,
+            std::vector<std::uint64_t>& sorted,
+            std::vector<std::uint32_t>& buckets)
 {
   float furthest = 0.f;
   for (const auto key : keys)
@@ -158,6 +160,8 @@ sortByDistance(const std::vector<std::uint64_t>& keys,
   const auto begin = sorted.begin();
   for (std::size_t bucket = 0; bucket < num_buckets; ++bucket) {
     const std::size_t first = buckets[bucket];
+    if (first >= count)
+      break;
     const std::size_t last =
         bucket + 1 < num_buckets ? buckets[bucket + 1] : sorted.size();
     if (last - first > 1)
@@ -236,7 +240,7 @@ PointNeighbors::find(const Vector3f& query, std::size_t count, NeighborList& lis
   const float limit = std::min(radius * radius, no_limit);
   if (gather(query, count, limit, list.found_) < count)
     gather(query, count, no_limit, list.found_);
-  sortByDistance(list.found_, list.sorted_, list.buckets_);
+  sortNearest(list.found_, count, list.sorted_, list.buckets_);
   list.indices.resize(count);
   list.squared_distances.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
