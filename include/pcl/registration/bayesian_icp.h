@@ -13,8 +13,9 @@ namespace pcl {
 
 /** \brief Iterative closest point with the posterior of its transformation.
  *
- * align() first runs pcl::IterativeClosestPoint unchanged: final transformation,
- * output, convergence and correspondences are its own. Then it samples the posterior of
+ * align() first runs pcl::IterativeClosestPoint: final transformation, output,
+ * convergence and correspondences are its own to the last bit, though a tree of this
+ * library finds the pairs where PCL's defaults would. Then it samples the posterior of
  * the source-to-target pose from the same guess, by preconditioned SGLD over
  * mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty with
  * Bayesian ICP, ICRA 2020). By default, Preset::Calibrated, it finds the scale from the
@@ -24,11 +25,10 @@ namespace pcl {
  * reciprocity, an own estimation and the maximum correspondence distance are for ICP
  * alone then, as each source point is judged in units of the noise.
  *
- * With setPreset(Preset::Exact) the sampler is one whose draws are right for the stated
- * measurement sigma, effective points, gate and prior; it takes its own search tree
- * unless a search of the user's own is installed. setPreset(Preset::Paper) is the
- * paper's Algorithm 1, literally. Both take the correspondence estimation, rejectors,
- * search tree and maximum correspondence distance that the object was given.
+ * With setPreset(Preset::Exact) draws are right for the stated measurement sigma,
+ * effective points, gate and prior; setPreset(Preset::Paper) is the paper's Algorithm
+ * 1, literally. Both take the correspondence estimation, rejectors, search tree and
+ * maximum correspondence distance that the object was given.
  *
  * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
  * transformation, guess included; translation in the target frame, R = Rz(yaw)
@@ -238,7 +238,7 @@ public:
     options_.chains.seed = seed;
   }
 
-  /** \brief OpenMP threads, 0 is automatic. The draws do not depend on it. */
+  /** \brief OpenMP threads, 0 is automatic. No result depends on it. */
   void
   setNumberOfThreads(unsigned int nr_threads = 0)
   {
