@@ -15,6 +15,9 @@ namespace {
 
 using kd_tree::Search;
 
+/** Fewer are done before another thread has woken up. */
+constexpr std::ptrdiff_t min_queries_to_share = 2048;
+
 Search
 searchOf(InstructionSet instruction_set)
 {
@@ -99,12 +102,38 @@ KdTree::nearest(const Eigen::Vector3f& query,
 {
   // Places without a point are infinitely far: a finite gate keeps them out.
   constexpr float max_float = std::numeric_limits<float>::max();
-  kd_tree::Best best{std::min(max_squared_distance, max_float), none};
+  kd_tree::Best best{
+      std::min(max_squared_distance, max_float), kd_tree::no_point, false};
   if (query.allFinite())
     tree_->search(tree_->view, query.data(), hint, best);
-  if (best.index == none)
-    best.squared_distance = std::numeric_limits<float>::infinity();
-  return {best.index, best.squared_distance};
+  if (best.index == kd_tree::no_point)
+    return {none, std::numeric_limits<float>::infinity(), false};
+  return {best.index, best.squared_distance, best.is_tied};
+}
+
+void
+KdTree::nearestOfAll(const Eigen::Matrix3Xf& queries,
+                     float max_squared_distance,
+                     std::vector<Neighbor>& neighbors,
+                     int num_threads) const
+{
+  const auto num_queries = static_cast<std::ptrdiff_t>(queries.cols());
+  neighbors.resize(static_cast<std::size_t>(num_queries),
+                   {none, std::numeric_limits<float>::infinity(), false});
+  if (num_threads <= 0)
+    num_threads = omp_get_max_threads();
+#pragma omp parallel num_threads(num_threads) if (num_queries >= min_queries_to_share)
+  {
+    std::uint32_t last = none;
+#pragma omp for schedule(dynamic, 512)
+    for (std::ptrdiff_t i = 0; i < num_queries; ++i) {
+      Neighbor& neighbor = neighbors[static_cast<std::size_t>(i)];
+      const std::uint32_t hint = neighbor.index == none ? last : neighbor.index;
+      neighbor = nearest(queries.col(i), max_squared_distance, hint);
+      if (neighbor.index != none)
+        last = neighbor.index;
+    }
+  }
 }
 
 std::size_t

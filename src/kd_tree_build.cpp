@@ -44,9 +44,9 @@ isEqual(const Record& a, const Record& b)
   return std::equal(a.coordinates, a.coordinates + 3, b.coordinates);
 }
 
-/** Whether all points of a leaf equal one in the leaf before it: that one has a smaller
- * index, so the leaf is never needed. Without this, a query as near to a million equal
- * points as to one would look at all of them. */
+/** Whether all points of a leaf equal two in the leaf before it: those have smaller
+ * indices, and tell of the tie, so the leaf is never needed. Without this, a query as
+ * near to a million equal points as to one would look at all of them. */
 bool
 isRedundant(const std::vector<Record>& records, std::size_t leaf)
 {
@@ -60,14 +60,14 @@ isRedundant(const std::vector<Record>& records, std::size_t leaf)
     return isEqual(*first, other);
   };
   return std::all_of(first, last, equals_first) &&
-         std::any_of(first - leaf_size, first, equals_first);
+         std::count_if(first - leaf_size, first, equals_first) >= 2;
 }
 
 Box
-leafBox(const std::vector<Record>& records, std::size_t leaf)
+leafBox(const std::vector<Record>& records, std::size_t leaf, RepeatedPoints repeated)
 {
   Box box;
-  if (isRedundant(records, leaf))
+  if (repeated == RepeatedPoints::LeftOut && isRedundant(records, leaf))
     return box;
   const std::size_t last = std::min(records.size(), (leaf + 1) * leaf_size);
   for (std::size_t i = leaf * leaf_size; i < last; ++i)
@@ -104,6 +104,7 @@ makeNodes(const std::vector<Record>& records,
           const Level& level,
           const Level& children,
           Storage& storage,
+          RepeatedPoints repeated,
           int num_threads)
 {
   const bool are_leaves = children.begin == storage.first_leaf;
@@ -113,7 +114,7 @@ makeNodes(const std::vector<Record>& records,
       const std::size_t below = fan_out * i + child;
       Box box;
       if (below < children.size)
-        box = are_leaves ? leafBox(records, below)
+        box = are_leaves ? leafBox(records, below, repeated)
                          : nodeBox(storage.nodes[children.begin + below]);
       setBox(storage.nodes[level.begin + i], child, box);
     }
@@ -143,7 +144,10 @@ usefulThreads(int num_threads, std::size_t num_points)
 } // namespace
 
 Storage
-build(const float* points, std::size_t num_points, int num_threads)
+build(const float* points,
+      std::size_t num_points,
+      int num_threads,
+      RepeatedPoints repeated)
 {
   std::vector<Record> records = finitePoints(points, num_points);
   const std::vector<Level> levels = levelsOf(records.size());
@@ -162,7 +166,8 @@ build(const float* points, std::size_t num_points, int num_threads)
   arrange(records, levels, storage.cells.data(), num_threads);
   makeLeaves(records, storage, num_threads);
   for (std::size_t depth = levels.size() - 1; depth > 0; --depth)
-    makeNodes(records, levels[depth - 1], levels[depth], storage, num_threads);
+    makeNodes(
+        records, levels[depth - 1], levels[depth], storage, repeated, num_threads);
   return storage;
 }
 

@@ -23,10 +23,17 @@ struct Storage {
   std::size_t num_points = 0;
 };
 
+/** Whether a search is to find all points that are equal to each other, or only the one
+ * of the smallest index and that there are more. */
+enum class RepeatedPoints { Kept, LeftOut };
+
 /** Build the tree over the finite points among \p num_points points x, y, z, x, y, z,
  * ... The result does not depend on \p num_threads, at least 1. */
 Storage
-build(const float* points, std::size_t num_points, int num_threads);
+build(const float* points,
+      std::size_t num_points,
+      int num_threads,
+      RepeatedPoints repeated = RepeatedPoints::LeftOut);
 
 } // namespace kd_tree
 } // namespace bayesian_icp

@@ -18,6 +18,8 @@ constexpr std::size_t fan_out = 8;
 constexpr std::size_t leaf_size = 16;
 
 constexpr std::uint32_t no_leaf = 0xffffffff;
+/** Greater than the index of any point. */
+constexpr std::uint32_t no_point = 0xffffffff;
 
 /** The bounding boxes of a node's children; boxes of no child are at infinity. */
 struct alignas(64) Node {
@@ -53,10 +55,12 @@ struct View {
 };
 
 /** The best point so far. Before any has been found: the largest squared distance
- * allowed, and an index greater than any. */
+ * allowed, and no_point. */
 struct Best {
   float squared_distance;
   std::uint32_t index;
+  /** Whether another point is as near. */
+  bool is_tied;
 };
 
 /** Improve \p best to the point nearest to the finite \p query, among equally near ones

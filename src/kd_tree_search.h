@@ -114,8 +114,13 @@ searchLeaf(const Leaf& leaf, const float* query, Best& best)
   for (std::size_t i = 0; i < num_packs; ++i)
     equal |= Pack::equal(distances[i], Pack::fill(smallest)) << (i * Pack::width);
   const std::uint32_t index = leaf.index[__builtin_ctz(equal)];
+  const bool has_found_one = best.index != no_point;
+  const bool is_tied = (equal & (equal - 1)) != 0 ||
+                       (has_found_one && smallest == best.squared_distance);
   if (isBetter(smallest, index, best))
-    best = {smallest, index};
+    best = {smallest, index, is_tied};
+  else
+    best.is_tied = is_tied;
 }
 
 /** Squared distances of the children's boxes; a bit for each child that may hold

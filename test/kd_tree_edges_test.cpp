@@ -95,6 +95,21 @@ TEST_P(KdTreeEdges, HugeCoordinatesAreSearchedAndOverflowIsBeyondEveryGate)
   EXPECT_EQ(treeOf(extremes).nearest(far, infinity, 3).index, 20u);
 }
 
+TEST_P(KdTreeEdges, TiesOfRepeatedPointsAreSeenAcrossLeaves)
+{
+  // Leaves of 16: so many repeated points are alone in theirs, and some are not.
+  for (Eigen::Index num_others = 10; num_others < 20; ++num_others) {
+    Eigen::Matrix3Xf points = Eigen::Matrix3Xf::Constant(3, num_others + 40, 100.f);
+    for (Eigen::Index i = 0; i < num_others; ++i)
+      points.col(num_others + 39 - i) << static_cast<float>(i), 0.f, 0.f;
+    const KdTree tree = treeOf(points);
+    const Eigen::Vector3f query(101.f, 100.f, 100.f);
+    for (std::uint32_t hint = 0; hint < points.cols(); ++hint)
+      ASSERT_TRUE(isSame(tree.nearest(query, infinity, hint), {0, 1.f, true}));
+    EXPECT_FALSE(tree.nearest(Eigen::Vector3f(0.1f, 0.f, 0.f), infinity).is_tied);
+  }
+}
+
 } // namespace
 } // namespace test
 } // namespace bayesian_icp

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -127,6 +128,28 @@ TEST(KdTree, SeveralThreadsMaySearchAtOnce)
   odd.join();
   for (std::size_t i = 0; i < 5000; ++i)
     ASSERT_TRUE(isSame(found[i], expected[i]));
+}
+
+TEST(KdTree, AnswersManyAsItAnswersEachForAnyNumberOfThreadsAndAnyHints)
+{
+  Random random(11, 0);
+  const Eigen::Matrix3Xf points = clouds().front().make(random, 3000);
+  Eigen::Matrix3Xf queries = clouds().front().make(random, 5000);
+  queries(1, 17) = std::numeric_limits<float>::quiet_NaN();
+  const KdTree tree(points);
+  constexpr float gate = 1e-3f; // some have a neighbour, some have none
+  for (const int num_threads : {0, 1, 2, 5}) {
+    std::vector<KdTree::Neighbor> found;
+    for (const float motion : {0.f, 0.01f, 1.f}) {
+      queries.array() += motion;
+      tree.nearestOfAll(queries, gate, found, num_threads);
+      ASSERT_EQ(found.size(), 5000u);
+      for (std::size_t i = 0; i < 5000; ++i)
+        ASSERT_TRUE(isSame(
+            found[i], tree.nearest(queries.col(static_cast<Eigen::Index>(i)), gate)));
+    }
+    queries.array() -= 1.01f;
+  }
 }
 
 TEST(KdTree, AnswersAfterAMove)

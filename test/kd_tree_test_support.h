@@ -112,15 +112,18 @@ bruteForce(const Eigen::Matrix3Xf& points,
            const Eigen::Vector3f& query,
            float max_squared_distance)
 {
-  KdTree::Neighbor nearest{KdTree::none, infinity};
+  KdTree::Neighbor nearest{KdTree::none, infinity, false};
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const float x = points(0, i) - query.x();
     const float y = points(1, i) - query.y();
     const float z = points(2, i) - query.z();
     const float squared_distance = (x * x + y * y) + z * z;
-    if (squared_distance <= max_squared_distance &&
-        squared_distance < nearest.squared_distance)
-      nearest = {static_cast<std::uint32_t>(i), squared_distance};
+    if (squared_distance > max_squared_distance)
+      continue;
+    if (squared_distance < nearest.squared_distance)
+      nearest = {static_cast<std::uint32_t>(i), squared_distance, false};
+    else if (squared_distance == nearest.squared_distance)
+      nearest.is_tied = true;
   }
   return nearest;
 }
@@ -129,13 +132,14 @@ bruteForce(const Eigen::Matrix3Xf& points,
 inline bool
 isSame(const KdTree::Neighbor& a, const KdTree::Neighbor& b)
 {
-  return a.index == b.index && a.squared_distance == b.squared_distance;
+  return a.index == b.index && a.squared_distance == b.squared_distance &&
+         a.is_tied == b.is_tied;
 }
 
 inline bool
 isNone(const KdTree::Neighbor& neighbor)
 {
-  return isSame(neighbor, {KdTree::none, infinity});
+  return isSame(neighbor, {KdTree::none, infinity, false});
 }
 
 } // namespace test

@@ -166,11 +166,12 @@ fitQuadric(const PointRows& local,
                    solution[5] * r * r};
   patch.sigma = std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
   const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
-  const bool is_quadric = patch.sigma < negligible_misfit * patch.radius ||
-                          misfit(regression, rss, num_points) < options.max_misfit;
-  patch.is_usable = solution.allFinite() && aspect >= min_aspect && is_quadric &&
+  // The test of the quadric last: it costs as much as the fit.
+  patch.is_usable = solution.allFinite() && aspect >= min_aspect &&
                     centroid_offset < options.max_centroid_offset * patch.radius &&
-                    patch.radius > options.min_radius_to_noise * patch.sigma;
+                    patch.radius > options.min_radius_to_noise * patch.sigma &&
+                    (patch.sigma < negligible_misfit * patch.radius ||
+                     misfit(regression, rss, num_points) < options.max_misfit);
 }
 
 /** The \p count points around \p point that are nearest to it in the plane of the
@@ -181,16 +182,14 @@ gatherNeighbors(const PointNeighbors& cloud,
                 int count,
                 PatchFitWorkspace& workspace)
 {
-  cloud.find(point,
-             static_cast<std::size_t>(ball_to_neighborhood * count),
-             workspace.indices,
-             workspace.squared_distances);
-  PointRows ball(static_cast<Eigen::Index>(workspace.indices.size()), 3);
+  cloud.find(
+      point, static_cast<std::size_t>(ball_to_neighborhood * count), workspace.nearest);
+  const auto& indices = workspace.nearest.indices;
+  PointRows ball(static_cast<Eigen::Index>(indices.size()), 3);
   for (Eigen::Index i = 0; i < ball.rows(); ++i)
-    ball.row(i) =
-        (cloud.points().col(workspace.indices[static_cast<std::size_t>(i)]) - point)
-            .cast<double>()
-            .transpose();
+    ball.row(i) = (cloud.points().col(indices[static_cast<std::size_t>(i)]) - point)
+                      .cast<double>()
+                      .transpose();
   const Matrix3d axes = principalFrame(ball).axes;
   const Eigen::ArrayXd distances = ball.lazyProduct(axes.col(0)).array().square() +
                                    ball.lazyProduct(axes.col(1)).array().square();
@@ -234,9 +233,9 @@ fitPatch(const PointNeighbors& cloud,
         ((is_thick && next <= max_growth_for_noise) ||
          (is_narrow && next <= max_growth_for_width)))
       continue;
-    spacing = workspace.squared_distances.size() > 1
-                  ? std::sqrt(double(workspace.squared_distances[1]))
-                  : 0.0;
+    const auto& squared_distances = workspace.nearest.squared_distances;
+    spacing =
+        squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
     patch.sigma = frame.thickness;
     patch.is_usable = false;
     if (neighbors.rows() >= min_points && patch.radius > 0.0)

@@ -7,13 +7,15 @@
 #include <bayesian_icp/pipeline.h>
 
 #include <pcl/registration/checked_icp.h>
+#include <pcl/registration/impl/bayesian_icp_estimation.hpp>
 
 namespace pcl {
 
 /** \brief Iterative closest point with the posterior of its transformation.
  *
- * align() first runs pcl::IterativeClosestPoint unchanged: final transformation,
- * output, convergence and correspondences are its own. Then it samples the posterior of
+ * align() first runs pcl::IterativeClosestPoint: final transformation, output,
+ * convergence and correspondences are its own to the last bit, though a tree of this
+ * library finds the pairs where PCL's defaults would. Then it samples the posterior of
  * the source-to-target pose from the same guess, by preconditioned SGLD over
  * mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty with
  * Bayesian ICP, ICRA 2020). By default, Preset::Calibrated, it finds the scale from the
@@ -23,11 +25,10 @@ namespace pcl {
  * reciprocity, an own estimation and the maximum correspondence distance are for ICP
  * alone then, as each source point is judged in units of the noise.
  *
- * With setPreset(Preset::Exact) the sampler is one whose draws are right for the stated
- * measurement sigma, effective points, gate and prior; it takes its own search tree
- * unless a search of the user's own is installed. setPreset(Preset::Paper) is the
- * paper's Algorithm 1, literally. Both take the correspondence estimation, rejectors,
- * search tree and maximum correspondence distance that the object was given.
+ * With setPreset(Preset::Exact) draws are right for the stated measurement sigma,
+ * effective points, gate and prior; setPreset(Preset::Paper) is the paper's Algorithm
+ * 1, literally. Both take the correspondence estimation, rejectors, search tree and
+ * maximum correspondence distance that the object was given.
  *
  * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
  * transformation, guess included; translation in the target frame, R = Rz(yaw)
@@ -237,7 +238,7 @@ public:
     options_.chains.seed = seed;
   }
 
-  /** \brief OpenMP threads, 0 is automatic. The draws do not depend on it. */
+  /** \brief OpenMP threads, 0 is automatic. No result depends on it. */
   void
   setNumberOfThreads(unsigned int nr_threads = 0)
   {
@@ -295,6 +296,19 @@ protected:
   keepFailure(bool is_guess_finite, const char* reason) override;
 
 private:
+  using SeededEstimation =
+      bayesian_icp_detail::SeededEstimation<PointSource, PointTarget, Scalar>;
+
+  /** \brief PCL's ICP; its pairs are found by a tree of this library where that gives
+   * the same ones. */
+  void
+  runIcp(PointCloudSource& output, const Matrix4& guess);
+
+  /** \brief Whether PCL's ICP would ask its default tree for nearest neighbours in the
+   * whole target. */
+  bool
+  mayUseOwnTree();
+
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
 
@@ -323,6 +337,7 @@ private:
   bayesian_icp::Options options_;
   bayesian_icp::ProgressCallback progress_callback_;
   bayesian_icp::PosteriorEstimate estimate_;
+  bayesian_icp_detail::TargetTree<PointTarget> target_tree_;
   bool use_mean_as_final_transformation_ = false;
 };
 

@@ -58,9 +58,46 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
     PointCloudSource& output,
     const Matrix4& guess)
 {
-  Icp::computeTransformation(output, guess);
+  runIcp(output, guess);
   samplePosterior(source, guess);
   return (!(use_mean_as_final_transformation_ && moveToMean(*source)));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
+    PointCloudSource& output, const Matrix4& guess)
+{
+  if (!mayUseOwnTree()) {
+    target_tree_.skip(*target_);
+    Icp::computeTransformation(output, guess);
+    return;
+  }
+  const int num_threads = options_.chains.num_threads;
+  // PCL's estimation would bring the tree up to date.
+  if (target_tree_.update(*target_, num_threads) || tree_->getInputCloud() != target_ ||
+      tree_->getIndices())
+    tree_->setInputCloud(target_);
+  const auto estimation = correspondence_estimation_;
+  const auto seeded =
+      pcl::make_shared<SeededEstimation>(target_tree_.get(), tree_, num_threads);
+  const bayesian_icp_detail::Substitution<decltype(correspondence_estimation_)>
+      substitution(correspondence_estimation_, seeded);
+  Icp::computeTransformation(output, guess);
+  estimation->setInputSource(seeded->getInputSource()); // the user may ask it, too
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::mayUseOwnTree()
+{
+  if (!this->hasDefaultEstimation() || use_reciprocal_correspondence_ ||
+      !isTreeOfWholeTarget())
+    return (false);
+  // As ICP does. An estimation that was given a point representation now passes it on
+  // to the tree.
+  correspondence_estimation_->setInputTarget(target_);
+  return (this->hasDefaultEstimation());
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -120,15 +157,11 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
         points, searchedTargetPoints(), start, options, progress_callback_));
   }
   if (options.preset == bayesian_icp::Preset::Exact && hasPlainCorrespondences() &&
-      isTreeOfWholeTarget())
+      isTreeOfWholeTarget()) {
+    target_tree_.update(*target_, options.chains.num_threads);
     return (bayesian_icp::estimatePosterior(
-        points,
-        bayesian_icp::KdTree(
-            bayesian_icp_detail::pointMatrix(*target_).template cast<float>(),
-            options.chains.num_threads),
-        start,
-        options,
-        progress_callback_));
+        points, *target_tree_.get(), start, options, progress_callback_));
+  }
   return (bayesian_icp::estimatePosterior(points,
                                           *this->makeCorrespondenceSearch(source),
                                           start,

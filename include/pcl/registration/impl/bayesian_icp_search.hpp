@@ -34,14 +34,15 @@ canBeQueried(const Eigen::MatrixBase<Derived>& coordinates)
 }
 
 /** The coordinates of a cloud, 3 x n [m]. */
-template <typename PointT>
-Eigen::Matrix3Xd
+template <typename Coordinate = double, typename PointT>
+Eigen::Matrix<Coordinate, 3, Eigen::Dynamic>
 pointMatrix(const PointCloud<PointT>& cloud)
 {
-  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(cloud.size()));
+  Eigen::Matrix<Coordinate, 3, Eigen::Dynamic> points(
+      3, static_cast<Eigen::Index>(cloud.size()));
   for (std::size_t i = 0; i < cloud.size(); ++i)
     points.col(static_cast<Eigen::Index>(i)) =
-        cloud[i].getVector3fMap().template cast<double>();
+        cloud[i].getVector3fMap().template cast<Coordinate>();
   return (points);
 }
 

@@ -1,0 +1,250 @@
+#include "surface_builder.h"
+
+#include "median.h"
+#include "patch_fit.h"
+
+#include <bayesian_icp/random.h>
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Matrix3Xf;
+using Eigen::Vector3d;
+
+namespace {
+
+/** Patches over which the noise is pooled. */
+constexpr std::size_t num_pooled = 12;
+/** How far a point may be off the surface that it takes over, in the donor's noise. */
+constexpr double max_takeover_residual = 2.5;
+/** Smallest sigma of a patch: in units of the median, and of the spacing for targets
+ * without noise. */
+constexpr double min_sigma_to_median = 0.3;
+constexpr double min_sigma_to_spacing = 1e-4;
+
+/** Columns that get a patch: all, or \p max_patches chosen at random, ascending. */
+std::vector<Index>
+chosenColumns(Index num_points, Index max_patches)
+{
+  if (num_points <= max_patches) {
+    std::vector<Index> columns(static_cast<std::size_t>(num_points));
+    std::iota(columns.begin(), columns.end(), Index(0));
+    return columns;
+  }
+  Random random(1, 0);
+  std::vector<Index> columns = randomChoice(num_points, max_patches, random);
+  std::sort(columns.begin(), columns.end());
+  return columns;
+}
+
+} // namespace
+
+SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
+                               const SurfaceModelOptions& options,
+                               int num_threads)
+: options_(options)
+, num_threads_(num_threads > 0 ? num_threads : omp_get_max_threads())
+, points_(points)
+, columns_(chosenColumns(points.cols(), options.max_patches))
+, patch_of_(static_cast<std::size_t>(points.cols()), KdTree::none)
+, patches_(columns_.size())
+, neighbors_(columns_.size())
+, spacings_(columns_.size())
+{
+  for (std::size_t j = 0; j < columns_.size(); ++j)
+    patch_of_[static_cast<std::size_t>(columns_[j])] = static_cast<std::uint32_t>(j);
+}
+
+void
+SurfaceBuilder::fitPatches()
+{
+  const PointNeighbors cloud(points_);
+  const auto order = cloud.alongTree();
+  const auto count = static_cast<std::ptrdiff_t>(order.size());
+#pragma omp parallel num_threads(num_threads_)
+  {
+    PatchFitWorkspace workspace;
+#pragma omp for schedule(dynamic, 64)
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const std::uint32_t point = order[static_cast<std::size_t>(i)];
+      const std::uint32_t patch = patch_of_[point];
+      if (patch == KdTree::none)
+        continue;
+      patches_[patch] =
+          fitPatch(cloud, points_.col(point), options_, workspace, spacings_[patch]);
+      noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
+    }
+  }
+  completeNeighbors();
+}
+
+/** \param[in] points nearest first */
+void
+SurfaceBuilder::noteNeighbors(const std::vector<std::uint32_t>& points,
+                              NearestPatches& nearest) const
+{
+  for (const std::uint32_t point : points) {
+    if (nearest.count == num_donors)
+      return;
+    if (patch_of_[point] != KdTree::none)
+      nearest.patches[nearest.count++] = patch_of_[point];
+  }
+}
+
+/** Whether fewer neighbours are known than will be asked for. */
+bool
+SurfaceBuilder::lacksNeighbors(std::size_t patch) const
+{
+  const std::size_t wanted = patches_[patch].is_usable ? num_pooled : num_donors;
+  return neighbors_[patch].count < std::min(wanted, patches_.size());
+}
+
+/** Searches where a neighbourhood had too few points with a patch. */
+void
+SurfaceBuilder::completeNeighbors()
+{
+  bool is_complete = true;
+  for (std::size_t j = 0; j < patches_.size() && is_complete; ++j)
+    is_complete = !lacksNeighbors(j);
+  if (is_complete)
+    return;
+  Matrix3Xf centre_points(3, static_cast<Index>(columns_.size()));
+  for (std::size_t j = 0; j < columns_.size(); ++j)
+    centre_points.col(static_cast<Index>(j)) = points_.col(columns_[j]);
+  const PointNeighbors centres(centre_points);
+  const auto order = centres.alongTree();
+  const auto count = static_cast<std::ptrdiff_t>(order.size());
+#pragma omp parallel num_threads(num_threads_)
+  {
+    NeighborList nearest;
+#pragma omp for schedule(dynamic, 64)
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+      const std::uint32_t patch = order[static_cast<std::size_t>(i)];
+      if (!lacksNeighbors(patch))
+        continue;
+      centres.find(centre_points.col(patch), num_donors, nearest);
+      neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
+      std::copy(nearest.indices.begin(),
+                nearest.indices.end(),
+                neighbors_[patch].patches.begin());
+    }
+  }
+}
+
+/** Root mean square of the noise of usable patches around one, its own if there is
+ * none. */
+double
+SurfaceBuilder::pooledNoise(std::size_t patch) const
+{
+  const NearestPatches& nearest = neighbors_[patch];
+  const std::size_t count = std::min<std::size_t>(nearest.count, num_pooled);
+  double sum = 0.0;
+  int used = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const SurfacePatch& neighbor = patches_[nearest.patches[k]];
+    if (neighbor.is_usable) {
+      sum += neighbor.sigma * neighbor.sigma;
+      ++used;
+    }
+  }
+  return used > 0 ? std::sqrt(sum / used) : patches_[patch].sigma;
+}
+
+void
+SurfaceBuilder::poolNoise()
+{
+  std::vector<double> pooled(patches_.size());
+  const auto count = static_cast<std::ptrdiff_t>(patches_.size());
+#pragma omp parallel for num_threads(num_threads_) schedule(static)
+  for (std::ptrdiff_t j = 0; j < count; ++j)
+    pooled[static_cast<std::size_t>(j)] = pooledNoise(static_cast<std::size_t>(j));
+  std::vector<double> usable;
+  for (std::size_t j = 0; j < patches_.size(); ++j)
+    if (patches_[j].is_usable)
+      usable.push_back(pooled[j]);
+  median_sigma_ = medianOf(usable.empty() ? pooled : usable);
+  const double least =
+      std::max({min_sigma_to_median * median_sigma_,
+                min_sigma_to_spacing * spacing(),
+                static_cast<double>(std::numeric_limits<float>::min())});
+  for (std::size_t j = 0; j < patches_.size(); ++j)
+    patches_[j].sigma = std::max(pooled[j], least);
+  median_sigma_ = std::max(median_sigma_, least);
+}
+
+void
+SurfaceBuilder::takeOver()
+{
+  std::vector<std::uint32_t> donors(patches_.size(), KdTree::none);
+  const auto count = static_cast<std::ptrdiff_t>(patches_.size());
+#pragma omp parallel for num_threads(num_threads_) schedule(dynamic, 1024)
+  for (std::ptrdiff_t j = 0; j < count; ++j)
+    if (!patches_[static_cast<std::size_t>(j)].is_usable)
+      donors[static_cast<std::size_t>(j)] = donorOf(static_cast<std::size_t>(j));
+  // Donors are usable, so none of them is overwritten.
+  for (std::size_t j = 0; j < patches_.size(); ++j)
+    if (donors[j] != KdTree::none) {
+      const Vector3d centre = patches_[j].centre;
+      patches_[j] = patches_[donors[j]];
+      patches_[j].centre = centre;
+    }
+}
+
+/** The usable patch on whose surface a point lies, or KdTree::none. */
+std::uint32_t
+SurfaceBuilder::donorOf(std::size_t patch) const
+{
+  std::uint32_t best = KdTree::none;
+  double best_rank = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < neighbors_[patch].count; ++k) {
+    const std::uint32_t index = neighbors_[patch].patches[k];
+    const SurfacePatch& donor = patches_[index];
+    if (!donor.is_usable)
+      continue;
+    const SurfaceOffset offset = offsetFrom(donor, patches_[patch].centre);
+    const double residual = std::abs(offset.distance) / donor.sigma;
+    if (residual > max_takeover_residual ||
+        offset.in_plane > options_.takeover_radius * donor.radius)
+      continue;
+    const double rank = offset.in_plane / donor.radius + 0.2 * residual;
+    if (rank < best_rank) {
+      best_rank = rank;
+      best = index;
+    }
+  }
+  return best;
+}
+
+Matrix3Xf
+SurfaceBuilder::projectedPoints() const
+{
+  Matrix3Xf projected(3, static_cast<Index>(patches_.size()));
+  for (std::size_t j = 0; j < patches_.size(); ++j) {
+    const SurfaceOffset offset = offsetFrom(patches_[j], patches_[j].centre);
+    projected.col(static_cast<Index>(j)) =
+        (patches_[j].centre - offset.distance * offset.normal).cast<float>();
+  }
+  return projected;
+}
+
+std::vector<SurfacePatch>
+SurfaceBuilder::takePatches()
+{
+  return std::move(patches_);
+}
+
+double
+SurfaceBuilder::spacing() const
+{
+  return medianOf(spacings_);
+}
+
+} // namespace bayesian_icp
