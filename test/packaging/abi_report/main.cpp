@@ -27,50 +27,94 @@ using Precise =
 using Descent =
     pcl::StochasticGradientDescentIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
 
-#define SIZE(type)                                                                     \
-  std::cout << #type << ": " << sizeof(type) << " bytes, aligned to " << alignof(type) \
-            << '\n';
-#define OFFSET(type, member)                                                           \
-  std::cout << #type "." #member << " at " << offsetof(type, member) << '\n';
+// A size and an alignment, or an offset.
+#define SIZE(type) printNumbers(#type ": size, alignment", sizeof(type), alignof(type))
+#define OFFSET(type, member) printNumbers(#type "." #member, offsetof(type, member))
+
+template <typename... Numbers>
+static void
+printNumbers(const char* what, Numbers... numbers)
+{
+  std::cout << what;
+  for (const std::size_t number : {numbers...})
+    std::cout << ' ' << number;
+  std::cout << '\n';
+}
 
 static void
 reportOptionsLayout()
 {
-  SIZE(LikelihoodOptions)
-  SIZE(PriorOptions)
-  SIZE(MiniBatchOptions) SIZE(SgldOptions) SIZE(ChainOptions) SIZE(ResidualOptions)
-      SIZE(ExactOptions) SIZE(CalibratedOptions) SIZE(Options) SIZE(IcpOptions)
-          SIZE(MonteCarloIcpOptions) SIZE(StochasticGradientIcpOptions)
-              SIZE(ExportOptions) OFFSET(Options, preset) OFFSET(Options, likelihood)
-                  OFFSET(Options, prior) OFFSET(Options, mini_batch)
-                      OFFSET(Options, sgld) OFFSET(Options, chains)
-                          OFFSET(Options, exact) OFFSET(Options, calibrated)
+  SIZE(LikelihoodOptions);
+  SIZE(PriorOptions);
+  SIZE(MiniBatchOptions);
+  SIZE(SgldOptions);
+  SIZE(ChainOptions);
+  SIZE(ResidualOptions);
+  SIZE(ExactOptions);
+  SIZE(CalibratedOptions);
+  SIZE(Options);
+  SIZE(IcpOptions);
+  SIZE(MonteCarloIcpOptions);
+  SIZE(StochasticGradientIcpOptions);
+  SIZE(ExportOptions);
+  OFFSET(Options, preset);
+  OFFSET(Options, likelihood);
+  OFFSET(Options, prior);
+  OFFSET(Options, mini_batch);
+  OFFSET(Options, sgld);
+  OFFSET(Options, chains);
+  OFFSET(Options, exact);
+  OFFSET(Options, calibrated);
 }
 
 static void
 reportResultsLayout()
 {
-  SIZE(Progress)
-  SIZE(Chain)
-  SIZE(ChainMode) SIZE(ChainSet) SIZE(CoordinateSummary) SIZE(Mode) SIZE(DataDirection)
-      SIZE(DataReport) SIZE(Summary) SIZE(PosteriorEstimate) SIZE(Correspondence)
-          SIZE(IcpResult) SIZE(MonteCarloIcpRun) SIZE(StochasticGradientIcpResult)
-              SIZE(PoseEstimate) SIZE(CalibratedEstimate) OFFSET(Summary, status)
-                  OFFSET(Summary, message) OFFSET(Summary, mean)
-                      OFFSET(Summary, coordinates) OFFSET(Summary, modes)
-                          OFFSET(Summary, data) OFFSET(Summary, covariances)
-                              OFFSET(PosteriorEstimate, chains)
-                                  OFFSET(PosteriorEstimate, samples)
+  SIZE(Progress);
+  SIZE(Chain);
+  SIZE(ChainMode);
+  SIZE(ChainSet);
+  SIZE(CoordinateSummary);
+  SIZE(Mode);
+  SIZE(DataDirection);
+  SIZE(DataReport);
+  SIZE(Summary);
+  SIZE(PosteriorEstimate);
+  SIZE(Correspondence);
+  SIZE(IcpResult);
+  SIZE(MonteCarloIcpRun);
+  SIZE(StochasticGradientIcpResult);
+  SIZE(PoseEstimate);
+  SIZE(CalibratedEstimate);
+  OFFSET(Summary, status);
+  OFFSET(Summary, message);
+  OFFSET(Summary, mean);
+  OFFSET(Summary, coordinates);
+  OFFSET(Summary, modes);
+  OFFSET(Summary, data);
+  OFFSET(Summary, covariances);
+  OFFSET(PosteriorEstimate, chains);
+  OFFSET(PosteriorEstimate, samples);
 }
 
 static void
 reportClassesLayout()
 {
-  SIZE(Vector6d)
-  SIZE(Matrix6d)
-  SIZE(PoseMatrix) SIZE(Eigen::Isometry3d) SIZE(Random) SIZE(Prior) SIZE(KdTree)
-      SIZE(TreeSearch) SIZE(CorrespondenceSearch) SIZE(PoseEnergy) SIZE(TMixture)
-          SIZE(SurfaceModel) SIZE(Registration) SIZE(Precise) SIZE(Descent)
+  SIZE(Vector6d);
+  SIZE(Matrix6d);
+  SIZE(PoseMatrix);
+  SIZE(Eigen::Isometry3d);
+  SIZE(Random);
+  SIZE(Prior);
+  SIZE(KdTree);
+  SIZE(TreeSearch);
+  SIZE(CorrespondenceSearch);
+  SIZE(PoseEnergy);
+  SIZE(TMixture);
+  SIZE(SurfaceModel);
+  SIZE(Registration);
+  SIZE(Precise);
+  SIZE(Descent);
 }
 
 // Options are filled here and read there, the last field and a text on its way back.
