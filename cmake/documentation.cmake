@@ -61,7 +61,10 @@ endforeach()
 if(man_pages)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/man)
   add_custom_target(bayesian_icp_man ALL DEPENDS ${man_pages})
-  install(FILES ${man_pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(
+    FILES ${man_pages}
+    DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+    COMPONENT tools)
 endif()
 
 # Bash loads the file that is called as the program.
@@ -69,5 +72,6 @@ foreach(program IN LISTS installed_programs)
   install(
     FILES ${PROJECT_SOURCE_DIR}/scripts/bash_completion
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    COMPONENT tools
     RENAME ${program})
 endforeach()

@@ -7,6 +7,11 @@ export LC_ALL=C
 
 "$help2man" --no-info --version-string="$version" --name="$description" \
   --output="$page.part" "./$*"
+# A page has one name, a word: the dash is between program and command.
+words=$*
+name=${words// /-}
+sed -i -e "s/^\.TH .* \"1\"/.TH ${name^^} \"1\"/" -e "s/^$words \\\\- /${name//-/\\\\-} \\\\- /" \
+  "$page.part"
 # help2man fills examples as if they were prose, so they are taken as they are, from their
 # heading to the end of the help text.
 examples=$("./$@" --help | sed -n '/^Examples\{0,1\}:$/,$p' | sed 1d)

@@ -93,7 +93,9 @@ followStarts(const SurfaceScorer& scorer,
 }
 
 /** Covariance whose principal axes, in the displacement metric, are the first
- * directions: of independent points, but nowhere narrower than the target's noise. */
+ * directions: of independent points, wider by the target's noise. (A noise that is the
+ * least width instead makes all widths the same on most scenes, and then rounding
+ * decides the directions.) */
 Matrix6d
 firstCovariance(const CalibratedEstimate& estimate, double noise)
 {
@@ -102,7 +104,7 @@ firstCovariance(const CalibratedEstimate& estimate, double noise)
   const Matrix6d covariance =
       (weight * estimate.scores.information + estimate.prior.precision).inverse();
   const PrincipalAxes principal(covariance, estimate.displacement_metric);
-  const Vector6d variances = principal.variances.cwiseMax(noise * noise);
+  const Vector6d variances = principal.variances.array() + noise * noise;
   return principal.axes * variances.asDiagonal() * principal.axes.transpose();
 }
 

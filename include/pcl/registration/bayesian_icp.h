@@ -68,8 +68,6 @@ public:
   using Vector6d = bayesian_icp::Vector6d;
   using Matrix6d = bayesian_icp::Matrix6d;
 
-  PCL_MAKE_ALIGNED_OPERATOR_NEW
-
   BayesianIterativeClosestPoint();
 
   /** \name Posterior of the last align(); empty or NaN before it and where it failed.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <pcl/registration/icp.h>
+#include <pcl/registration/impl/aligned_icp.hpp>
 #include <pcl/registration/impl/bayesian_icp_search.hpp>
 
 #include <limits>
@@ -16,7 +17,7 @@ namespace bayesian_icp_detail {
 /** ICP of those points that are finite and selected by indices. */
 template <typename PointSource, typename PointTarget, typename Scalar>
 class CheckedIterativeClosestPoint
-: public IterativeClosestPoint<PointSource, PointTarget, Scalar> {
+: public AlignedIterativeClosestPoint<PointSource, PointTarget, Scalar> {
 public:
   using Base = IterativeClosestPoint<PointSource, PointTarget, Scalar>;
   using Matrix4 = typename Base::Matrix4;

@@ -49,8 +49,6 @@ public:
   using Options = bayesian_icp::StochasticGradientIcpOptions;
   using Result = bayesian_icp::StochasticGradientIcpResult;
 
-  PCL_MAKE_ALIGNED_OPERATOR_NEW
-
   /** \brief With the defaults of Options, the number of iterations and the epsilons
    * among them. */
   StochasticGradientDescentIterativeClosestPoint();

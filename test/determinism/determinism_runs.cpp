@@ -1,0 +1,237 @@
+#include "determinism_runs.h"
+
+#include <bayesian_icp/baselines/monte_carlo_icp.h>
+#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
+#include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
+#include <bayesian_icp/tree_search.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+namespace bayesian_icp {
+namespace test {
+namespace {
+
+/** Two scans of a wavy surface of 1 x 0.6 m, each with its own noise. */
+struct Scans {
+  Eigen::Matrix3Xd source;
+  Eigen::Matrix3Xd target;
+};
+
+/** Sums and products only, which every machine rounds alike; sin() it may not. */
+Eigen::Matrix3Xd
+wavySurface(std::uint64_t seed, Eigen::Index num_points)
+{
+  constexpr double noise = 0.003;
+  Random random(seed, 0);
+  Eigen::Matrix3Xd points(3, num_points);
+  for (Eigen::Index i = 0; i < num_points; ++i) {
+    const double x = random.uniform() - 0.5;
+    const double y = 0.6 * random.uniform() - 0.3;
+    double z = 2.0 * x * (x - 0.3) * (x + 0.4) + 3.0 * y * y * (y + 0.2) + 0.3 * x * y;
+    // A sum of twelve has the variance 1 and nearly a normal density.
+    for (int k = 0; k < 12; ++k)
+      z += noise * (random.uniform() - 0.5);
+    points.col(i) << x, y, z;
+  }
+  return points;
+}
+
+Scans
+makeScans(bool is_nudged)
+{
+  Scans scans{wavySurface(91, 600), wavySurface(92, 2400)};
+  scans.target.colwise() += Eigen::Vector3d(0.01, -0.02, 0.015);
+  if (!is_nudged)
+    return scans;
+  Random random(93, 0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (double& coordinate : scans.source.reshaped())
+    coordinate =
+        std::nextafter(coordinate, random.uniform() < 0.5 ? infinity : -infinity);
+  return scans;
+}
+
+/** Ten draws of each of four chains. */
+Options
+quickOptions(Preset preset, int num_threads)
+{
+  Options options;
+  options.preset = preset;
+  options.prior.variance.setConstant(0.01);
+  options.chains.num_draws = 40;
+  options.chains.num_threads = num_threads;
+  return options;
+}
+
+RunRecord
+recordOf(const PosteriorEstimate& estimate)
+{
+  RunRecord record;
+  record.outcome = toString(estimate.summary.status);
+  for (std::size_t k = 0; k < 6; ++k)
+    record.unit[static_cast<Eigen::Index>(k)] =
+        estimate.summary.coordinates[k].standard_deviation;
+  record.tables.push_back({"mean", estimate.summary.mean.transpose()});
+  record.tables.push_back({"standard_deviation", record.unit.transpose()});
+  record.tables.push_back({"draws", estimate.samples});
+  return record;
+}
+
+RunRecord
+calibratedRun(const RunSettings& settings)
+{
+  const Scans scans = makeScans(settings.is_nudged);
+  const Options options = quickOptions(Preset::Calibrated, settings.num_threads);
+  return recordOf(
+      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+}
+
+/** At a scale at which \p metropolis or Langevin steps are made. */
+RunRecord
+exactRun(const RunSettings& settings, MetropolisUse metropolis)
+{
+  const Scans scans = makeScans(settings.is_nudged);
+  Options options = quickOptions(Preset::Exact, settings.num_threads);
+  options.likelihood.effective_points = 100.0;
+  options.likelihood.measurement_sigma = 0.02;
+  options.exact.metropolis = metropolis;
+  return recordOf(
+      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+}
+
+/** Six steps of each chain: at the paper's step size every step triples a difference.
+ */
+RunRecord
+paperRun(const RunSettings& settings)
+{
+  const Scans scans = makeScans(settings.is_nudged);
+  Options options = quickOptions(Preset::Paper, settings.num_threads);
+  options.chains.num_draws = 24;
+  return recordOf(
+      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+}
+
+/** The pose after each step. */
+RunRecord
+stochasticGradientRun(const RunSettings& settings)
+{
+  const Scans scans = makeScans(settings.is_nudged);
+  const KdTree tree(scans.target.cast<float>(), settings.num_threads);
+  std::vector<Vector6d> path;
+  const auto result = stochasticGradientIcp(scans.source,
+                                            TreeSearch(tree),
+                                            Vector6d::Zero(),
+                                            StochasticGradientIcpOptions(),
+                                            [&path](int, const Vector6d& pose) {
+                                              path.push_back(pose);
+                                              return true;
+                                            });
+  RunRecord record;
+  record.outcome = toString(result.end);
+  PoseMatrix steps(static_cast<Eigen::Index>(path.size()), 6);
+  for (std::size_t i = 0; i < path.size(); ++i)
+    steps.row(static_cast<Eigen::Index>(i)) = path[i].transpose();
+  record.tables.push_back({"end", result.pose.transpose()});
+  record.tables.push_back({"steps", steps});
+  return record;
+}
+
+/** Where ICP ends from random starts, and after how many iterations. */
+RunRecord
+monteCarloRun(const RunSettings& settings)
+{
+  const Scans scans = makeScans(settings.is_nudged);
+  MonteCarloIcpOptions options;
+  options.half_range.setConstant(0.05);
+  options.num_runs = 20;
+  options.num_threads = settings.num_threads;
+  const KdTree tree(scans.target.cast<float>(), settings.num_threads);
+  const auto runs = monteCarloIcp(scans.source, tree, options);
+  RunRecord record;
+  PoseMatrix ends(static_cast<Eigen::Index>(runs.size()), 6);
+  for (const MonteCarloIcpRun& run : runs) {
+    ends.row(run.index) = run.end.transpose();
+    record.outcome += (record.outcome.empty() ? "" : " ") +
+                      std::to_string(run.num_iterations) +
+                      (run.has_converged ? "" : "?");
+  }
+  record.tables.push_back({"ends", ends});
+  return record;
+}
+
+/** A run by its name. */
+struct Run {
+  const char* name;
+  std::function<RunRecord(const RunSettings&)> make;
+};
+
+std::vector<Run>
+allRuns()
+{
+  return {
+      {"calibrated", calibratedRun},
+      {"exact_langevin",
+       [](const RunSettings& s) { return exactRun(s, MetropolisUse::Never); }},
+      {"exact_metropolis",
+       [](const RunSettings& s) { return exactRun(s, MetropolisUse::Always); }},
+      {"paper", paperRun},
+      {"sgd_icp", stochasticGradientRun},
+      {"monte_carlo_icp", monteCarloRun},
+  };
+}
+
+} // namespace
+
+double
+difference(const RunRecord& a, const RunRecord& b)
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (a.outcome != b.outcome || a.tables.size() != b.tables.size())
+    return infinity;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.tables.size(); ++i) {
+    const PoseMatrix &rows = a.tables[i].rows, &others = b.tables[i].rows;
+    if (a.tables[i].name != b.tables[i].name || rows.rows() != others.rows())
+      return infinity;
+    for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+      const double here = (rows.row(row) - others.row(row))
+                              .cwiseQuotient(a.unit.transpose())
+                              .cwiseAbs()
+                              .maxCoeff<Eigen::PropagateNaN>();
+      largest = std::max(largest, std::isnan(here) ? infinity : here);
+    }
+  }
+  return largest;
+}
+
+bool
+areIdentical(const RunRecord& a, const RunRecord& b)
+{
+  return difference(a, b) == 0.0 && a.unit == b.unit;
+}
+
+std::vector<std::string>
+runNames()
+{
+  std::vector<std::string> names;
+  for (const Run& run : allRuns())
+    names.push_back(run.name);
+  return names;
+}
+
+RunRecord
+makeRun(const std::string& name, const RunSettings& settings)
+{
+  for (const Run& run : allRuns())
+    if (run.name == name)
+      return run.make(settings);
+  throw std::invalid_argument("no run is called " + name);
+}
+
+} // namespace test
+} // namespace bayesian_icp

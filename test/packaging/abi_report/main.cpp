@@ -1,0 +1,174 @@
+// Prints what has to be the same on both sides of the library's border: the layout of
+// what is passed over it (--layout), or results. Whoever compiles it, and how, the text
+// is one.
+#include "report.h"
+
+#include <bayesian_icp/baselines/closed_form_covariance.h>
+#include <bayesian_icp/baselines/monte_carlo_icp.h>
+#include <bayesian_icp/calibration/calibrated_draws.h>
+#include <bayesian_icp/exports.h>
+#include <bayesian_icp/metropolis.h>
+#include <bayesian_icp/pose_energy.h>
+#include <bayesian_icp/t_mixture.h>
+#include <bayesian_icp/tree_search.h>
+
+#include <pcl/registration/bayesian_icp.h>
+#include <pcl/registration/stochastic_gradient_icp.h>
+#include <pcl/point_types.h>
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+
+using namespace bayesian_icp;
+using Registration = pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
+using Precise =
+    pcl::BayesianIterativeClosestPoint<pcl::PointNormal, pcl::PointNormal, double>;
+using Descent =
+    pcl::StochasticGradientDescentIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
+
+// A size and an alignment, or an offset.
+#define SIZE(type) printNumbers(#type ": size, alignment", sizeof(type), alignof(type))
+#define OFFSET(type, member) printNumbers(#type "." #member, offsetof(type, member))
+
+template <typename... Numbers>
+static void
+printNumbers(const char* what, Numbers... numbers)
+{
+  std::cout << what;
+  for (const std::size_t number : {numbers...})
+    std::cout << ' ' << number;
+  std::cout << '\n';
+}
+
+static void
+reportOptionsLayout()
+{
+  SIZE(LikelihoodOptions);
+  SIZE(PriorOptions);
+  SIZE(MiniBatchOptions);
+  SIZE(SgldOptions);
+  SIZE(ChainOptions);
+  SIZE(ResidualOptions);
+  SIZE(ExactOptions);
+  SIZE(CalibratedOptions);
+  SIZE(Options);
+  SIZE(IcpOptions);
+  SIZE(MonteCarloIcpOptions);
+  SIZE(StochasticGradientIcpOptions);
+  SIZE(ExportOptions);
+  OFFSET(Options, preset);
+  OFFSET(Options, likelihood);
+  OFFSET(Options, prior);
+  OFFSET(Options, mini_batch);
+  OFFSET(Options, sgld);
+  OFFSET(Options, chains);
+  OFFSET(Options, exact);
+  OFFSET(Options, calibrated);
+}
+
+static void
+reportResultsLayout()
+{
+  SIZE(Progress);
+  SIZE(Chain);
+  SIZE(ChainMode);
+  SIZE(ChainSet);
+  SIZE(CoordinateSummary);
+  SIZE(Mode);
+  SIZE(DataDirection);
+  SIZE(DataReport);
+  SIZE(Summary);
+  SIZE(PosteriorEstimate);
+  SIZE(Correspondence);
+  SIZE(IcpResult);
+  SIZE(MonteCarloIcpRun);
+  SIZE(StochasticGradientIcpResult);
+  SIZE(PoseEstimate);
+  SIZE(CalibratedEstimate);
+  OFFSET(Summary, status);
+  OFFSET(Summary, message);
+  OFFSET(Summary, mean);
+  OFFSET(Summary, coordinates);
+  OFFSET(Summary, modes);
+  OFFSET(Summary, data);
+  OFFSET(Summary, covariances);
+  OFFSET(PosteriorEstimate, chains);
+  OFFSET(PosteriorEstimate, samples);
+}
+
+static void
+reportClassesLayout()
+{
+  SIZE(Vector6d);
+  SIZE(Matrix6d);
+  SIZE(PoseMatrix);
+  SIZE(Eigen::Isometry3d);
+  SIZE(Random);
+  SIZE(Prior);
+  SIZE(KdTree);
+  SIZE(TreeSearch);
+  SIZE(CorrespondenceSearch);
+  SIZE(PoseEnergy);
+  SIZE(TMixture);
+  SIZE(SurfaceModel);
+  SIZE(Registration);
+  SIZE(Precise);
+  SIZE(Descent);
+}
+
+// Options are filled here and read there, the last field and a text on its way back.
+static void
+reportComplaints()
+{
+  Options options;
+  options.calibrated.num_mode_points = 7;
+  std::cout << "complaint: " << options.validate() << '\n';
+  options = Options();
+  options.chains.initial_spread[5] = -0.25;
+  std::cout << "complaint: " << options.validate() << '\n';
+}
+
+static void
+reportPointXYZ()
+{
+  const auto source = scan<pcl::PointXYZ>(1, 300);
+  const auto target = scan<pcl::PointXYZ>(2, 1200);
+  Registration registration;
+  registration.setInputSource(source);
+  registration.setInputTarget(target);
+  pcl::PointCloud<pcl::PointXYZ> output;
+  for (const auto preset : {Preset::Calibrated, Preset::Exact, Preset::Paper}) {
+    registration.setOptions(reportOptions(preset));
+    registration.align(output);
+    print("icp", registration.getFinalTransformation());
+    printPosterior(toString(preset), registration);
+  }
+}
+
+// What is made here is deleted by a destructor of the library's.
+static void
+reportDeletion()
+{
+  using Icp = pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
+  const std::unique_ptr<Icp> icps[] = {std::unique_ptr<Icp>(new Registration),
+                                       std::unique_ptr<Icp>(new Descent)};
+  for (const auto& icp : icps)
+    std::cout << "on the heap: " << icp->getClassName() << '\n';
+}
+
+int
+main(int argc, char** argv)
+{
+  if (argc == 2 && std::strcmp(argv[1], "--layout") == 0) {
+    reportOptionsLayout();
+    reportResultsLayout();
+    reportClassesLayout();
+    return 0;
+  }
+  reportComplaints();
+  reportDeletion();
+  reportPointXYZ();
+  reportOwnPointType();
+  return 0;
+}

@@ -1,0 +1,34 @@
+// The part of the report that is computed by the user's code: an own point type.
+#define PCL_NO_PRECOMPILE
+
+#include "report.h"
+
+#include <pcl/registration/bayesian_icp.h>
+#include <pcl/pcl_macros.h>
+#include <pcl/register_point_struct.h>
+
+struct EchoPoint {
+  PCL_ADD_POINT4D;
+  std::uint16_t echo;
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+POINT_CLOUD_REGISTER_POINT_STRUCT(
+    EchoPoint, (float, x, x)(float, y, y)(float, z, z)(std::uint16_t, echo, echo))
+
+void
+reportOwnPointType()
+{
+  const auto source = scan<EchoPoint>(1, 300), target = scan<EchoPoint>(2, 1200);
+  source->back().echo = 7;
+  pcl::BayesianIterativeClosestPoint<EchoPoint, EchoPoint, double> registration;
+  registration.setInputSource(source);
+  registration.setInputTarget(target);
+  pcl::PointCloud<EchoPoint> output;
+  for (const auto preset : {bayesian_icp::Preset::Exact, bayesian_icp::Preset::Paper}) {
+    registration.setOptions(reportOptions(preset));
+    registration.align(output);
+    std::cout << "echo " << output.back().echo << '\n';
+    printPosterior(preset == bayesian_icp::Preset::Exact ? "own exact" : "own paper",
+                   registration);
+  }
+}

@@ -1,0 +1,50 @@
+# Compiles abi_report against the installed library in several ways, and fails unless each
+# prints what the project's own build of it prints, and the layout is the committed one.
+# Arguments: prefix, folder of the sources, own build of the report, committed layout, work
+# folder, then ways: compiler:standard:flags, with commas between flags.
+set -euo pipefail
+prefix=$1 sources=$2 own=$3 layout=$4 work=$5
+shift 5
+rm -rf "$work"
+mkdir -p "$work"
+libdir=$(dirname "$(find "$prefix" -name libpcl_bayesian_icp.so)")
+export PKG_CONFIG_PATH=$libdir/pkgconfig
+read -ra includes < <(pkg-config --cflags pcl_bayesian_icp)
+read -ra libraries < <(pkg-config --libs pcl_bayesian_icp)
+launcher=()
+if command -v ccache >/dev/null; then
+  launcher=(ccache)
+fi
+
+# compare <name> <expected> <found>
+compare() {
+  if ! diff "$2" "$3" >"$work/difference"; then
+    cut -c1-120 "$work/difference"
+    echo "$1 is not the one of $2"
+    return 1
+  fi
+}
+
+"$own" >"$work/expected" 2>"$work/messages"
+"$own" --layout >"$work/layout"
+if [[ $(uname -m) == x86_64 ]] && ! compare "the layout" "$layout" "$work/layout"; then
+  echo "Programs that were compiled before do not work any more: the minor version has to"
+  echo "be raised after a release. If that is on purpose:"
+  echo "  build/bin/abi_report --layout >test/packaging/abi/layout.txt"
+  exit 1
+fi
+for way in "$@"; do
+  IFS=: read -r compiler standard flags <<<"$way"
+  IFS=, read -ra flags <<<"$flags"
+  for part in main own_point_type; do
+    "${launcher[@]}" "$compiler" "-std=$standard" "${flags[@]}" "${includes[@]}" \
+      -c "$sources/$part.cpp" -o "$work/$part.o"
+  done
+  "$compiler" "$work/main.o" "$work/own_point_type.o" -o "$work/report" "${libraries[@]}" \
+    -llz4 "-Wl,-rpath,$libdir"
+  "$work/report" --layout >"$work/found_layout"
+  compare "$way: the layout" "$work/layout" "$work/found_layout"
+  "$work/report" >"$work/found" 2>"$work/messages"
+  compare "$way: the report" "$work/expected" "$work/found"
+  echo "$way: $(grep -c . "$work/found") lines as the library's own"
+done

@@ -1,0 +1,52 @@
+"""Fails unless package.xml names everything that scripts/bootstrap installs."""
+
+import pathlib
+import re
+import sys
+import xml.etree.ElementTree as ElementTree
+
+# Debian's packages whose key in rosdep is another name; None: comes with every ROS.
+KEYS = {
+    "chromium": "chromium-browser",
+    "clang-format-14": "clang-format",
+    "clang-tidy-14": "clang-tidy",
+    "colcon": "python3-colcon-common-extensions",
+    "g++": None,
+    "gnuplot-nox": "gnuplot",
+    "libeigen3-dev": "eigen",
+    "libgtest-dev": "gtest",
+    "libomp-14-dev": "libomp-dev",
+    "libopenmpi-dev": "mpi",
+    "libpcl-dev": "libpcl-all-dev",
+    "nlohmann-json3-dev": "nlohmann-json-dev",
+    "openmpi-bin": "mpi",
+    "python3-colcon-cmake": "python3-colcon-common-extensions",
+    "python3-colcon-recursive-crawl": "python3-colcon-common-extensions",
+    "python3-colcon-ros": "python3-colcon-common-extensions",
+}
+
+
+def installed_packages(script):
+    """The first words of the lines of the tables in scripts/bootstrap."""
+    tables = re.findall(r"^\w+_packages='\n(.*?)^'", script, re.MULTILINE | re.DOTALL)
+    return [line.split()[0] for table in tables for line in table.splitlines()]
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    packages = installed_packages((root / "scripts/bootstrap").read_text())
+    if not packages:
+        sys.exit("no packages found in scripts/bootstrap")
+    named = {
+        element.text
+        for element in ElementTree.parse(root / "package.xml").getroot()
+        if element.tag.endswith("depend")
+    }
+    keys = {package: KEYS.get(package, package) for package in packages}
+    missing = [f"{p} (key {k})" for p, k in keys.items() if k and k not in named]
+    if missing:
+        sys.exit("package.xml does not name what scripts/bootstrap installs: " + ", ".join(missing))
+    print(f"{len(packages)} packages, all in package.xml")
+
+
+main()
