@@ -1,11 +1,12 @@
 #include "exact_pipeline.h"
 
 #include "chain_pose_energy.h"
+#include "plain_text.h"
 
 #include <bayesian_icp/preconditioned_sampler.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 
 namespace bayesian_icp {
 
@@ -25,6 +26,10 @@ startSpread(const Options& options, const Prior& prior)
 /** Least share of Tukey's kernel that the points together make use of: a tenth of them
  * on the target's surface would. */
 constexpr double min_used_by_kernel = 0.1;
+
+/** Root mean square of the residuals from which the stated sigma is not that of the
+ * clouds: even with noise of sigma along all three axes it would be 1.7 sigmas. */
+constexpr double max_distance_in_sigmas = 2.0;
 
 /** Source points on which the energies of modes are compared. */
 constexpr std::size_t fixed_batch_size = 4000;
@@ -95,25 +100,32 @@ sampleExact(const PoseEnergy& energy,
 }
 
 std::vector<std::string>
-doubtsAbout(const PoseEnergy& energy, const Vector6d& mean)
+doubtsAbout(const PoseEnergy& energy, const Vector6d& mean, double measurement_sigma)
 {
-  const ResidualOptions& residual = energy.residual();
-  if (residual.kernel != RobustKernel::Tukey || !mean.allFinite())
+  if (!mean.allFinite())
     return {};
+  const ResidualOptions& residual = energy.residual();
+  std::vector<std::string> doubts;
+  const double mean_energy =
+      (energy.energy(mean) - energy.prior().energy(mean)) / energy.weight();
+  const double distance = std::sqrt(2.0 * mean_energy);
+  if (distance > max_distance_in_sigmas * measurement_sigma)
+    doubts.push_back(
+        formatted("at the mean pose the source points are %.2g m from the target (root "
+                  "mean square), %.1f times measurement_sigma: they do not fit as well "
+                  "as was stated",
+                  distance,
+                  distance / measurement_sigma));
+  if (residual.kernel != RobustKernel::Tukey)
+    return doubts;
   // The energy of a point beyond the kernel is largest, and the same for all.
   const double plateau =
       robustEnergy(residual, residual.kernel_width * residual.kernel_width);
-  const double likelihood = energy.energy(mean) - energy.prior().energy(mean);
-  const double used = 1.0 - likelihood / (energy.weight() * plateau);
-  if (used >= min_used_by_kernel)
-    return {};
-  char text[120];
-  std::snprintf(text,
-                sizeof(text),
-                "the kernel of width %g m leaves out nearly all source points at the "
-                "mean pose",
-                residual.kernel_width);
-  return {text};
+  if (1.0 - mean_energy / plateau < min_used_by_kernel)
+    doubts.push_back(formatted(
+        "the kernel of width %g m leaves out nearly all source points at the mean pose",
+        residual.kernel_width));
+  return doubts;
 }
 
 } // namespace bayesian_icp

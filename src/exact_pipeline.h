@@ -26,10 +26,13 @@ sampleExact(const PoseEnergy& energy,
             const std::function<bool(const Vector6d&)>& has_diverged,
             const ProgressCallback& progress);
 
-/** \brief What calls for caution about a mean pose: a kernel of Tukey's that leaves out
- * nearly all points there. On that plateau the prior alone rules, and chains agree.
- * \param[in] mean pose [m, rad]; nothing is said of one that is not finite */
+/** \brief What calls for caution about a mean pose: residuals that are much larger than
+ * was stated, since the target is another one, or elsewhere; a kernel of Tukey's that
+ * leaves out nearly all points there. On that plateau the prior alone rules, and chains
+ * agree.
+ * \param[in] mean pose [m, rad]; nothing is said of one that is not finite
+ * \param[in] measurement_sigma as stated [m] */
 std::vector<std::string>
-doubtsAbout(const PoseEnergy& energy, const Vector6d& mean);
+doubtsAbout(const PoseEnergy& energy, const Vector6d& mean, double measurement_sigma);
 
 } // namespace bayesian_icp

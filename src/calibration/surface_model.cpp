@@ -2,6 +2,7 @@
 #include "patch_fit.h"
 
 #include <bayesian_icp/calibration/surface_model.h>
+#include <bayesian_icp/first_exception.h>
 #include <bayesian_icp/random.h>
 
 #include <omp.h>
@@ -80,12 +81,17 @@ public:
     {
       PatchFitWorkspace workspace;
 #pragma omp for schedule(dynamic, 64)
-      for (std::ptrdiff_t j = 0; j < count; ++j) {
-        const auto patch = static_cast<std::size_t>(j);
-        patches_[patch] = fitPatch(
-            cloud, points_.col(columns_[patch]), options_, workspace, spacings_[patch]);
-      }
+      for (std::ptrdiff_t j = 0; j < count; ++j)
+        failure_.guard([&] {
+          const auto patch = static_cast<std::size_t>(j);
+          patches_[patch] = fitPatch(cloud,
+                                     points_.col(columns_[patch]),
+                                     options_,
+                                     workspace,
+                                     spacings_[patch]);
+        });
     }
+    failure_.rethrow();
   }
 
   /** Noise of a patch: root mean square over the usable ones around it. */
@@ -98,22 +104,24 @@ public:
     {
       PatchFitWorkspace workspace;
 #pragma omp for schedule(dynamic, 64)
-      for (std::ptrdiff_t j = 0; j < count; ++j) {
-        centres.find(centres.points().col(j),
-                     num_pooled,
-                     workspace.indices,
-                     workspace.squared_distances);
-        double sum = 0.0;
-        int used = 0;
-        for (const auto index : workspace.indices)
-          if (patches_[index].is_usable) {
-            sum += patches_[index].sigma * patches_[index].sigma;
-            ++used;
-          }
-        const auto patch = static_cast<std::size_t>(j);
-        pooled[patch] = used > 0 ? std::sqrt(sum / used) : patches_[patch].sigma;
-      }
+      for (std::ptrdiff_t j = 0; j < count; ++j)
+        failure_.guard([&] {
+          centres.find(centres.points().col(j),
+                       num_pooled,
+                       workspace.indices,
+                       workspace.squared_distances);
+          double sum = 0.0;
+          int used = 0;
+          for (const auto index : workspace.indices)
+            if (patches_[index].is_usable) {
+              sum += patches_[index].sigma * patches_[index].sigma;
+              ++used;
+            }
+          const auto patch = static_cast<std::size_t>(j);
+          pooled[patch] = used > 0 ? std::sqrt(sum / used) : patches_[patch].sigma;
+        });
     }
+    failure_.rethrow();
     std::vector<double> usable;
     for (std::size_t j = 0; j < patches_.size(); ++j)
       if (patches_[j].is_usable)
@@ -140,9 +148,12 @@ public:
 #pragma omp for schedule(dynamic, 64)
       for (std::ptrdiff_t j = 0; j < count; ++j)
         if (!patches_[static_cast<std::size_t>(j)].is_usable)
-          donors[static_cast<std::size_t>(j)] =
-              donorOf(patches_[static_cast<std::size_t>(j)].centre, centres, workspace);
+          failure_.guard([&] {
+            donors[static_cast<std::size_t>(j)] = donorOf(
+                patches_[static_cast<std::size_t>(j)].centre, centres, workspace);
+          });
     }
+    failure_.rethrow();
     // Donors are usable, so none of them is overwritten.
     for (std::size_t j = 0; j < patches_.size(); ++j)
       if (donors[j] != KdTree::none) {
@@ -228,6 +239,7 @@ private:
   std::vector<Index> columns_;
   std::vector<SurfacePatch> patches_;
   std::vector<double> spacings_;
+  FirstException failure_;
   double median_sigma_ = 0.0;
 };
 
