@@ -5,6 +5,8 @@
 
 #include <bayesian_icp/preconditioned_sampler.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 
@@ -99,8 +101,24 @@ sampleExact(const PoseEnergy& energy,
       target, samplerOptions(options), options.chains, progress);
 }
 
+double
+thicknessOf(const Eigen::Matrix3Xd& points)
+{
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Matrix3d covariance =
+      centred * centred.transpose() / static_cast<double>(points.cols());
+  const double least_variance =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+          .eigenvalues()
+          .minCoeff();
+  return std::sqrt(std::max(least_variance, 0.0));
+}
+
 std::vector<std::string>
-doubtsAbout(const PoseEnergy& energy, const Vector6d& mean, double measurement_sigma)
+doubtsAbout(const PoseEnergy& energy,
+            const Vector6d& mean,
+            double thickness,
+            double measurement_sigma)
 {
   if (!mean.allFinite())
     return {};
@@ -116,6 +134,14 @@ doubtsAbout(const PoseEnergy& energy, const Vector6d& mean, double measurement_s
                   "as was stated",
                   distance,
                   distance / measurement_sigma));
+  if (thickness < distance && residual.residual == Residual::PointToPoint)
+    doubts.push_back(formatted(
+        "the source is a plane or a line to within %.2g m, less than the %.2g m "
+        "between "
+        "its points and the target's: how far it slides along is not to be seen from "
+        "distances between points",
+        thickness,
+        distance));
   if (residual.kernel != RobustKernel::Tukey)
     return doubts;
   // The energy of a point beyond the kernel is largest, and the same for all.

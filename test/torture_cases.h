@@ -54,6 +54,11 @@ constexpr std::array<Preset, 3> torture_presets = {
 Options
 tortureOptions(Preset preset);
 
+/** \brief The cases of odd clouds. */
+std::vector<TortureCase>
+tortureCasesOfClouds();
+
+/** \brief All cases, in the order of the table. */
 std::vector<TortureCase>
 tortureCases();
 

@@ -9,6 +9,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -130,6 +131,20 @@ INSTANTIATE_TEST_SUITE_P(,
                          Torture,
                          ::testing::ValuesIn(tortureCases()),
                          [](const auto& of_case) { return of_case.param.id; });
+
+TEST(TorturePlane, ThreeOfSixMotionsAreThePriorsAlone)
+{
+  const PosteriorEstimate estimate = estimateOf<float>(
+      flattenedPair(2, usual_noise), tortureOptions(Preset::Calibrated));
+  const auto& directions = estimate.summary.data.directions;
+  ASSERT_EQ(directions.size(), 6u);
+  EXPECT_EQ(std::count_if(directions.begin(),
+                          directions.end(),
+                          [](const DataDirection& direction) {
+                            return direction.observability == Observability::PriorOnly;
+                          }),
+            3);
+}
 
 std::string
 cellOf(const Expectation& expected)
