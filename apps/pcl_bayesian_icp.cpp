@@ -1,12 +1,12 @@
 /** \file
  * \brief pcl_bayesian_icp: registers a cloud to another and tells how sure that is.
  */
+#include "io/interrupt.h"
 #include "io/numbers.h"
 #include "io/program.h"
 #include "plot/gnuplot.h"
 #include "register/command_line.h"
 #include "register/export_files.h"
-#include "register/interrupt.h"
 #include "register/output_files.h"
 #include "register/posterior_json.h"
 #include "register/progress_bar.h"
@@ -23,7 +23,7 @@ namespace bayesian_icp::app {
 namespace {
 
 /** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NoPosterior = 1, Interrupted = 130 };
+enum ExitCode { Good = 0, NoPosterior = 1, Interrupted = io::interrupted_exit_code };
 
 void
 tell(const std::string& message)
@@ -56,11 +56,11 @@ runRegistration(const Request& request)
     warnOfLostDigits(run.target);
   }
   ProgressBar bar(!request.is_quiet);
-  catchInterrupt();
+  io::catchInterrupt();
   registerClouds(
       [&bar](const Progress& progress) {
         bar.update(progress);
-        return !wasInterrupted();
+        return !io::wasInterrupted();
       },
       run);
   return run;
@@ -161,7 +161,7 @@ registerAsAsked(const Request& request)
   else if (folder)
     tell("there are no draws, so no files are written");
   is_exported &= report(request, run);
-  if (wasInterrupted())
+  if (io::wasInterrupted())
     return Interrupted;
   const bool is_good = run.result.summary.status == Status::Ok && is_exported;
   return is_good ? Good : NoPosterior;
@@ -193,10 +193,5 @@ int
 main(int argc, char** argv)
 {
   using namespace bayesian_icp;
-  try {
-    return app::runTool(argc, argv);
-  }
-  catch (...) {
-    return io::explainFailure("pcl_bayesian_icp");
-  }
+  return io::runProgram("pcl_bayesian_icp", [&] { return app::runTool(argc, argv); });
 }

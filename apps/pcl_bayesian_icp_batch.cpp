@@ -7,9 +7,9 @@
 #include "batch/batch_run.h"
 #include "batch/ranks.h"
 #include "io/cloud_file.h"
+#include "io/interrupt.h"
 #include "io/numbers.h"
 #include "io/program.h"
-#include "register/interrupt.h"
 
 #include <bayesian_icp/summary.h>
 
@@ -20,7 +20,7 @@ namespace bayesian_icp::app {
 namespace {
 
 /** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = 130 };
+enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
 
 void
 tell(const std::string& message)
@@ -65,7 +65,7 @@ private:
 int
 exitCodeOf(bool are_all_ok)
 {
-  return wasInterrupted() ? Interrupted : are_all_ok ? Good : NotAllOk;
+  return io::wasInterrupted() ? Interrupted : are_all_ok ? Good : NotAllOk;
 }
 
 BatchRunOptions
@@ -162,7 +162,7 @@ runTool(int argc, char** argv, const Ranks& ranks)
   io::silencePcl();
   const auto pairs = readManifest(
       request.manifest_file, request.settings, request.use_suggested_prior);
-  catchInterrupt();
+  io::catchInterrupt();
   return request.results_file.empty() ? runToStandardOutput(request, ranks, pairs)
                                       : runToFile(request, ranks, pairs);
 }
@@ -175,6 +175,7 @@ main(int argc, char** argv)
 {
   using namespace bayesian_icp::app;
   const Ranks ranks;
+  bayesian_icp::io::takeSizeLimitAsFullDisk();
   try {
     return runTool(argc, argv, ranks);
   }

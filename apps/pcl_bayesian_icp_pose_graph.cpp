@@ -2,10 +2,10 @@
  * \brief pcl_bayesian_icp_pose_graph: consecutive scans in, a pose graph for g2o out.
  */
 #include "io/cloud_file.h"
+#include "io/interrupt.h"
 #include "io/output_folder.h"
 #include "io/program.h"
 #include "pose_graph/graph_command.h"
-#include "register/interrupt.h"
 
 #include <filesystem>
 #include <iostream>
@@ -14,7 +14,7 @@ namespace bayesian_icp::app {
 namespace {
 
 /** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = 130 };
+enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
 
 void
 tell(const std::string& message)
@@ -34,9 +34,9 @@ makeGraph(const GraphCommand& command)
     if (!is_ok || !command.is_quiet)
       tell(line);
   });
-  catchInterrupt();
+  io::catchInterrupt();
   graph.registerScans();
-  if (wasInterrupted())
+  if (io::wasInterrupted())
     return Interrupted;
   folder.add(path.filename().string(),
              [&](std::ostream& stream) { stream << graph.g2oText(); });
@@ -68,10 +68,6 @@ int
 main(int argc, char** argv)
 {
   using namespace bayesian_icp;
-  try {
-    return app::runTool(argc, argv);
-  }
-  catch (...) {
-    return io::explainFailure("pcl_bayesian_icp_pose_graph");
-  }
+  return io::runProgram("pcl_bayesian_icp_pose_graph",
+                        [&] { return app::runTool(argc, argv); });
 }

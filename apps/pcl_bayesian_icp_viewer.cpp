@@ -1,9 +1,9 @@
 /** \file
  * \brief pcl_bayesian_icp_viewer: shows a registration and how sure it is.
  */
+#include "io/interrupt.h"
 #include "io/output_folder.h"
 #include "io/program.h"
-#include "register/interrupt.h"
 #include "register/progress_bar.h"
 #include "viewer/command_line.h"
 #include "viewer/display.h"
@@ -20,7 +20,7 @@ namespace bayesian_icp::viewer {
 namespace {
 
 /** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NotToBeTrusted = 1, Interrupted = 130 };
+enum ExitCode { Good = 0, NotToBeTrusted = 1, Interrupted = io::interrupted_exit_code };
 
 void
 tell(const std::string& message)
@@ -46,7 +46,7 @@ registerWithoutWindow(bool is_quiet, app::Run& run)
   app::registerClouds(
       [&bar](const Progress& progress) {
         bar.update(progress);
-        return !app::wasInterrupted();
+        return !io::wasInterrupted();
       },
       run);
 }
@@ -55,14 +55,14 @@ void
 letUserLook(Window& window)
 {
   handleKeys(window);
-  while (!window.isClosed() && !app::wasInterrupted())
+  while (!window.isClosed() && !io::wasInterrupted())
     window.spinOnce(50);
 }
 
 int
 exitCodeFor(const Scene& scene)
 {
-  if (app::wasInterrupted())
+  if (io::wasInterrupted())
     return Interrupted;
   return scene.status == toString(Status::Ok) ? Good : NotToBeTrusted;
 }
@@ -109,10 +109,10 @@ show(const Request& request)
   std::optional<Screenshot> screenshot;
   if (request.view.isOffScreen())
     screenshot.emplace(request.view.screenshot_file);
-  app::catchInterrupt();
+  io::catchInterrupt();
   std::optional<Window> window;
   const Scene scene = prepareScene(request, window);
-  if (app::wasInterrupted() || (window && window->isClosed()))
+  if (io::wasInterrupted() || (window && window->isClosed()))
     return exitCodeFor(scene);
   if (!window)
     openWindow(request, {scene.source_file, scene.target_file}, window);
@@ -154,10 +154,6 @@ int
 main(int argc, char** argv)
 {
   using namespace bayesian_icp;
-  try {
-    return viewer::runTool(argc, argv);
-  }
-  catch (...) {
-    return io::explainFailure("pcl_bayesian_icp_viewer");
-  }
+  return io::runProgram("pcl_bayesian_icp_viewer",
+                        [&] { return viewer::runTool(argc, argv); });
 }

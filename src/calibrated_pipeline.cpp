@@ -1,5 +1,6 @@
 #include "calibrated_pipeline.h"
 
+#include "calibration/distinct_points.h"
 #include "pipeline_parts.h"
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
@@ -125,8 +126,14 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
     return checked;
   if (isCancelled(progress))
     return failure(Status::Cancelled, "cancelled before the first draw");
+  const Eigen::Matrix3Xd distinct_points = distinctPoints(target_points);
+  if (distinct_points.cols() < min_calibrated_points)
+    return failure(Status::TooFewCorrespondences,
+                   "the target has no surface: only " +
+                       std::to_string(distinct_points.cols()) +
+                       " of its points differ");
   const SurfaceModel model(
-      target_points, SurfaceModelOptions(), options.chains.num_threads);
+      distinct_points, SurfaceModelOptions(), options.chains.num_threads);
   const std::string no_surface = complaintAbout(model);
   if (!no_surface.empty())
     return failure(Status::TooFewCorrespondences, no_surface);

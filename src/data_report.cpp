@@ -1,10 +1,11 @@
+#include "plain_text.h"
+
 #include <bayesian_icp/data_report.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace bayesian_icp {
 
@@ -15,15 +16,6 @@ namespace {
 constexpr double min_translation_share = 0.95;
 /** Share of the motion along the axis from which a rotation is a screw. */
 constexpr double min_screw_share = 0.05;
-
-template <typename... Values>
-std::string
-formatted(const char* format, Values... values)
-{
-  char text[256];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
 
 /** Without a sign where it would show as -0.00. */
 double

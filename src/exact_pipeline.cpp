@@ -1,11 +1,14 @@
 #include "exact_pipeline.h"
 
 #include "chain_pose_energy.h"
+#include "plain_text.h"
 
 #include <bayesian_icp/preconditioned_sampler.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 
 namespace bayesian_icp {
 
@@ -25,6 +28,10 @@ startSpread(const Options& options, const Prior& prior)
 /** Least share of Tukey's kernel that the points together make use of: a tenth of them
  * on the target's surface would. */
 constexpr double min_used_by_kernel = 0.1;
+
+/** Root mean square of the residuals from which the stated sigma is not that of the
+ * clouds: even with noise of sigma along all three axes it would be 1.7 sigmas. */
+constexpr double max_distance_in_sigmas = 2.0;
 
 /** Source points on which the energies of modes are compared. */
 constexpr std::size_t fixed_batch_size = 4000;
@@ -94,26 +101,57 @@ sampleExact(const PoseEnergy& energy,
       target, samplerOptions(options), options.chains, progress);
 }
 
-std::vector<std::string>
-doubtsAbout(const PoseEnergy& energy, const Vector6d& mean)
+double
+thicknessOf(const Eigen::Matrix3Xd& points)
 {
-  const ResidualOptions& residual = energy.residual();
-  if (residual.kernel != RobustKernel::Tukey || !mean.allFinite())
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Matrix3d covariance =
+      centred * centred.transpose() / static_cast<double>(points.cols());
+  const double least_variance =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+          .eigenvalues()
+          .minCoeff();
+  return std::sqrt(std::max(least_variance, 0.0));
+}
+
+std::vector<std::string>
+doubtsAbout(const PoseEnergy& energy,
+            const Vector6d& mean,
+            double thickness,
+            double measurement_sigma)
+{
+  if (!mean.allFinite())
     return {};
+  const ResidualOptions& residual = energy.residual();
+  std::vector<std::string> doubts;
+  const double mean_energy =
+      (energy.energy(mean) - energy.prior().energy(mean)) / energy.weight();
+  const double distance = std::sqrt(2.0 * mean_energy);
+  if (distance > max_distance_in_sigmas * measurement_sigma)
+    doubts.push_back(
+        formatted("at the mean pose the source points are %.2g m from the target (root "
+                  "mean square), %.1f times measurement_sigma: they do not fit as well "
+                  "as was stated",
+                  distance,
+                  distance / measurement_sigma));
+  if (thickness < distance && residual.residual == Residual::PointToPoint)
+    doubts.push_back(formatted(
+        "the source is a plane or a line to within %.2g m, less than the %.2g m "
+        "between "
+        "its points and the target's: how far it slides along is not to be seen from "
+        "distances between points",
+        thickness,
+        distance));
+  if (residual.kernel != RobustKernel::Tukey)
+    return doubts;
   // The energy of a point beyond the kernel is largest, and the same for all.
   const double plateau =
       robustEnergy(residual, residual.kernel_width * residual.kernel_width);
-  const double likelihood = energy.energy(mean) - energy.prior().energy(mean);
-  const double used = 1.0 - likelihood / (energy.weight() * plateau);
-  if (used >= min_used_by_kernel)
-    return {};
-  char text[120];
-  std::snprintf(text,
-                sizeof(text),
-                "the kernel of width %g m leaves out nearly all source points at the "
-                "mean pose",
-                residual.kernel_width);
-  return {text};
+  if (1.0 - mean_energy / plateau < min_used_by_kernel)
+    doubts.push_back(formatted(
+        "the kernel of width %g m leaves out nearly all source points at the mean pose",
+        residual.kernel_width));
+  return doubts;
 }
 
 } // namespace bayesian_icp

@@ -26,10 +26,22 @@ sampleExact(const PoseEnergy& energy,
             const std::function<bool(const Vector6d&)>& has_diverged,
             const ProgressCallback& progress);
 
-/** \brief What calls for caution about a mean pose: a kernel of Tukey's that leaves out
- * nearly all points there. On that plateau the prior alone rules, and chains agree.
- * \param[in] mean pose [m, rad]; nothing is said of one that is not finite */
+/** \brief Root mean square distance of points from the plane that fits them best [m].
+ */
+double
+thicknessOf(const Eigen::Matrix3Xd& points);
+
+/** \brief What calls for caution about a mean pose: residuals that are much larger than
+ * was stated, since the target is another one, or elsewhere; a source without shape, of
+ * which the nearest points of the target say nothing along it; a kernel of Tukey's that
+ * leaves out nearly all points: on that plateau the prior alone rules, and chains
+ * agree. \param[in] mean pose [m, rad]; nothing is said of one that is not finite
+ * \param[in] thickness thicknessOf() the source [m]
+ * \param[in] measurement_sigma as stated [m] */
 std::vector<std::string>
-doubtsAbout(const PoseEnergy& energy, const Vector6d& mean);
+doubtsAbout(const PoseEnergy& energy,
+            const Vector6d& mean,
+            double thickness,
+            double measurement_sigma);
 
 } // namespace bayesian_icp

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <locale>
 #include <sstream>
 #include <string>
 
@@ -19,6 +20,7 @@ public:
     if (is_good || !complaint_.empty())
       return;
     std::ostringstream text;
+    text.imbue(std::locale::classic());
     text << field << " is " << value << ", but must be " << allowed;
     complaint_ = text.str();
   }

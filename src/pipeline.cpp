@@ -117,7 +117,11 @@ estimate(const Eigen::Matrix3Xd& source_points,
                             options.exact.residual);
     PosteriorEstimate result =
         estimateOf(sampleExact(energy, initial_pose, options, has_diverged, progress));
-    addDoubts(doubtsAbout(energy, result.summary.mean), result.summary);
+    addDoubts(doubtsAbout(energy,
+                          result.summary.mean,
+                          thicknessOf(sampled_points),
+                          options.likelihood.measurement_sigma),
+              result.summary);
     return result;
   }
   return estimateOf(samplePaper(

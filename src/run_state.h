@@ -5,12 +5,12 @@
 #pragma once
 
 #include <bayesian_icp/chains.h>
+#include <bayesian_icp/first_exception.h>
 
 #include <omp.h>
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
 #include <mutex>
 
 namespace bayesian_icp {
@@ -48,22 +48,14 @@ public:
   void
   guard(const Work& work)
   {
-    try {
-      work();
-    }
-    catch (...) {
+    if (!first_exception_.guard(work))
       stopped_ = true;
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (!exception_)
-        exception_ = std::current_exception();
-    }
   }
 
   void
   rethrow() const
   {
-    if (exception_)
-      std::rethrow_exception(exception_);
+    first_exception_.rethrow();
   }
 
   /** \brief Counts a step of \p chain and tells the callback.
@@ -99,7 +91,7 @@ private:
   long steps_ = 0;
   std::atomic<bool> stopped_{false};
   std::atomic<bool> cancelled_{false};
-  std::exception_ptr exception_;
+  FirstException first_exception_;
   std::mutex mutex_;
 };
 

@@ -1,3 +1,4 @@
+#include "plain_text.h"
 #include "summary_modes.h"
 
 #include <bayesian_icp/diagnostics.h>
@@ -5,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace bayesian_icp {
 
@@ -101,36 +101,26 @@ statusOf(const Summary& summary, bool cancelled, const WorstDiagnostics& worst)
 std::string
 messageOf(const Summary& summary, const WorstDiagnostics& worst)
 {
-  char text[320];
   switch (summary.status) {
   case Status::SeveralModes:
     return modesMessage(summary);
   case Status::Diverged:
-    std::snprintf(
-        text,
-        sizeof(text),
+    return formatted(
         "%d of %d chains diverged (ran away from the prior, jumped about or became "
         "non-finite) and are left out; a smaller step size or a larger maximum "
         "correspondence distance may help",
         summary.num_diverged_chains,
         summary.num_chains);
-    break;
   case Status::Cancelled:
-    std::snprintf(text, sizeof(text), "cancelled after %ld draws", summary.num_draws);
-    break;
+    return formatted("cancelled after %ld draws", summary.num_draws);
   case Status::Ok:
-    std::snprintf(
-        text,
-        sizeof(text),
+    return formatted(
         "the chains mixed: largest R-hat %.4f, smallest effective sample size "
         "%.0f",
         worst.rhat,
         worst.ess);
-    break;
   default:
-    std::snprintf(
-        text,
-        sizeof(text),
+    return formatted(
         "the chains did not mix: largest R-hat %.3f (at most %.2f is good), "
         "smallest effective sample size %.0f (at least %.0f is good); mean and "
         "covariance describe these draws, not reliably the posterior",
@@ -139,7 +129,6 @@ messageOf(const Summary& summary, const WorstDiagnostics& worst)
         worst.ess,
         min_ess);
   }
-  return text;
 }
 
 } // namespace

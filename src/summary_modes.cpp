@@ -1,8 +1,9 @@
 #include "summary_modes.h"
 
+#include "plain_text.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace bayesian_icp {
 
@@ -40,11 +41,8 @@ modesMessage(const Summary& summary)
 {
   std::string text =
       "the chains found " + std::to_string(summary.modes.size()) + " modes, of weight";
-  for (const auto& mode : summary.modes) {
-    char weight[32];
-    std::snprintf(weight, sizeof(weight), " %.3f", mode.weight);
-    text += weight;
-  }
+  for (const auto& mode : summary.modes)
+    text += formatted(" %.3f", mode.weight);
   return text + "; mean and covariance mix them";
 }
 
@@ -53,15 +51,11 @@ movedMessage(const ChainSet& chain_set)
 {
   if (chain_set.num_moved_chains == 0)
     return "";
-  char text[160];
-  std::snprintf(text,
-                sizeof(text),
-                "; %d of %d chains had ended in a mode at least %.0f nats worse and "
-                "were moved to the best one",
-                chain_set.num_moved_chains,
-                static_cast<int>(chain_set.chains.size()),
-                chain_set.moved_by_nats);
-  return text;
+  return formatted("; %d of %d chains had ended in a mode at least %.0f nats worse and "
+                   "were moved to the best one",
+                   chain_set.num_moved_chains,
+                   static_cast<int>(chain_set.chains.size()),
+                   chain_set.moved_by_nats);
 }
 
 } // namespace bayesian_icp

@@ -112,7 +112,7 @@ batchHelpText()
          "  1    that of some is not\n"
          "  2    wrong usage\n"
          "  3    the manifest cannot be used, or a result cannot be written\n"
-         "  130  interrupted (Ctrl-C); pairs under way were given up\n"
+         "  130  interrupted (Ctrl-C or SIGTERM); pairs under way were given up\n"
          "\nExample:\n"
          "  pcl_bayesian_icp_batch manifest.json --results results.jsonl \\\n"
          "      --preset calibrated --prior-frame source-centroid\n";

@@ -1,7 +1,7 @@
 #include "batch/batch_run.h"
 
+#include "io/interrupt.h"
 #include "io/motion.h"
-#include "register/interrupt.h"
 #include "register/output_files.h"
 
 #include <omp.h>
@@ -14,6 +14,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 namespace bayesian_icp::app {
@@ -63,7 +64,7 @@ private:
   bool
   isStopped() const
   {
-    return has_failed_ || wasInterrupted();
+    return has_failed_ || io::wasInterrupted();
   }
 
   Run
@@ -141,19 +142,29 @@ runBatch(const std::vector<BatchPair>& pairs,
 {
   const int num_threads =
       options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
+  if (pairs.empty())
+    return;
   const int num_workers =
       static_cast<int>(std::min(pairs.size(), static_cast<std::size_t>(num_threads)));
   Batch batch(pairs, options, take);
-  std::vector<std::thread> workers;
-  workers.reserve(static_cast<std::size_t>(num_workers));
-  for (int i = 0; i < num_workers; ++i)
-    workers.emplace_back([&batch, i, num_threads, num_workers] {
-      omp_set_num_threads(num_threads / num_workers +
-                          (i < num_threads % num_workers ? 1 : 0));
-      batch.work();
-    });
-  for (std::thread& worker : workers)
-    worker.join();
+  const auto workAs = [&batch, num_threads, num_workers](int worker) {
+    omp_set_num_threads(num_threads / num_workers +
+                        (worker < num_threads % num_workers ? 1 : 0));
+    batch.work();
+  };
+  std::vector<std::thread> others;
+  try {
+    for (int i = 1; i < num_workers; ++i)
+      others.emplace_back(workAs, i);
+  }
+  catch (const std::system_error&) {
+    // The system has no more threads: those that there are do it all.
+  }
+  const int usual_num_threads = omp_get_max_threads();
+  workAs(0);
+  omp_set_num_threads(usual_num_threads);
+  for (std::thread& other : others)
+    other.join();
   batch.rethrow();
 }
 

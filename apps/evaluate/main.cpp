@@ -9,23 +9,24 @@
 
 #include <boost/program_options/errors.hpp>
 
-#include <io/errors.h>
+#include <io/program.h>
 
-#include <exception>
 #include <functional>
 #include <iostream>
 #include <string>
 #include <vector>
 
+namespace io = bayesian_icp::io;
+
 namespace {
 
-enum ExitCode { Good = 0, NotReached = 1, BadUsage = 2, BadFile = 3 };
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, BadUsage = 2 };
 
 struct SubCommand {
   std::string name;
   std::string summary;
-  /** The exit code Good, NotReached or BadFile; throws for the others and for BadFile.
-   */
+  /** \return 0, or 1 if a result is not to be relied on */
   std::function<int(int argc, const char* const* argv)> run;
 };
 
@@ -69,35 +70,18 @@ printHelp(std::ostream& stream)
 }
 
 int
-fail(ExitCode code, const std::exception& error)
-{
-  std::cerr << "pcl_bayesian_icp_evaluate: " << error.what() << '\n';
-  if (code == BadUsage)
-    std::cerr << "Try pcl_bayesian_icp_evaluate --help\n";
-  return code;
-}
-
-int
 run(const SubCommand& command, int argc, const char* const* argv)
 {
   try {
     return command.run(argc, argv);
   }
-  catch (const bayesian_icp::io::UsageError& error) {
-    return fail(BadUsage, error);
-  }
   catch (const boost::program_options::error& error) {
-    return fail(BadUsage, error);
-  }
-  catch (const std::exception& error) {
-    return fail(BadFile, error);
+    throw io::UsageError(error.what());
   }
 }
 
-} // namespace
-
 int
-main(int argc, char** argv)
+runTool(int argc, const char* const* argv)
 {
   const std::string name = argc > 1 ? argv[1] : "";
   if (name == "--help") {
@@ -109,4 +93,16 @@ main(int argc, char** argv)
       return run(command, argc - 1, argv + 1);
   printHelp(std::cerr);
   return BadUsage;
+}
+
+} // namespace
+
+int
+main(int argc, char** argv)
+{
+  return io::runProgram("pcl_bayesian_icp_evaluate", [&] {
+    const int exit_code = runTool(argc, argv);
+    io::print(""); // what was printed must have arrived
+    return exit_code;
+  });
 }

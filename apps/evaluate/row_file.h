@@ -4,18 +4,21 @@
  */
 #pragma once
 
+#include "io/line_file.h"
+
 #include <functional>
 #include <string>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief Rows of text below a header. */
+/** \brief Rows of text below a header, written by one process at a time. */
 class RowFile {
 public:
-  /** \brief Read what is there; a last line that was cut off is dropped.
+  /** \brief Read what is there, or write the header; a last line that was cut off is
+   * removed.
    * \param[in] read_row gets each row; throws any std::exception if it is not one
    * \throws io::FileError if the file exists and has another header or a bad row, or
-   *         cannot be written */
+   *         cannot be written, or is in use by another process */
   RowFile(const std::string& name,
           const std::string& header,
           const std::function<void(const std::string& row)>& read_row);
@@ -26,11 +29,7 @@ public:
   add(const std::string& row) const;
 
 private:
-  /** Replace the whole file, completely or not at all. */
-  void
-  rewrite(const std::string& text) const;
-
-  std::string file_;
+  io::LineFile file_;
 };
 
 } // namespace bayesian_icp::evaluate

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <filesystem>
+#include <new>
 #include <stdexcept>
 
 namespace bayesian_icp::io {
@@ -29,6 +31,7 @@ readBlob(const std::string& name, CloudFormat format, Blob& blob, CloudFile& clo
   int result = -1;
   int version = 0;
   Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
+  errno = 0;
   try {
     if (format == CloudFormat::Pcd)
       result =
@@ -37,9 +40,14 @@ readBlob(const std::string& name, CloudFormat format, Blob& blob, CloudFile& clo
       result =
           pcl::PLYReader().read(name, blob, cloud.sensor_origin, orientation, version);
   }
+  catch (const std::bad_alloc&) {
+    throw;
+  }
   catch (const std::exception& error) {
     throw FileError(name, std::string("PCL cannot read it: ") + error.what());
   }
+  if (result < 0 && errno == ENOMEM)
+    throw std::bad_alloc();
   if (result < 0)
     throw FileError(name, "PCL cannot read it");
   cloud.sensor_orientation = {

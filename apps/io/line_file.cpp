@@ -80,6 +80,9 @@ LineFile::LineFile(const std::string& name,
     complete_size += static_cast<long>(line.size()) + 1;
     read_line(line);
   }
+  is_new_ = complete_size == 0;
+  if (is_new_ && !line.empty())
+    throw FileError(name, "has no complete line: it is not a file of results");
   cutTo(complete_size);
   file.release();
 }

@@ -15,14 +15,21 @@ public:
   /** \brief Open \p name, or make it and its folder, keep other processes from it, and
    * read what is there. A last line that was cut off is removed.
    * \param[in] read_line gets each complete line, without its line break
-   * \throws FileError if the file cannot be written or is in use by another process,
-   *         and what \p read_line throws */
+   * \throws FileError if the file cannot be written, is in use by another process or
+   *         has text but no complete line, and what \p read_line throws */
   LineFile(const std::string& name,
            const std::function<void(const std::string& line)>& read_line);
   ~LineFile();
   LineFile(const LineFile&) = delete;
   LineFile&
   operator=(const LineFile&) = delete;
+
+  /** \brief Whether there was no line when the file was opened. */
+  bool
+  isNew() const
+  {
+    return is_new_;
+  }
 
   /** \brief Append a line, at once and completely.
    * \throws FileError if that fails, for example because the disk is full; the file is
@@ -37,6 +44,7 @@ private:
 
   std::string name_;
   int descriptor_ = -1;
+  bool is_new_ = false;
 };
 
 } // namespace bayesian_icp::io

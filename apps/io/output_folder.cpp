@@ -2,12 +2,15 @@
 
 #include "io/errors.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <system_error>
 
 namespace bayesian_icp::io {
@@ -37,6 +40,29 @@ makeTemporaryFile(const std::string& name)
   close(descriptor);
   return temporary_name;
 }
+
+/** Keeps other processes out of commit() to the same folder, as far as its file system
+ * has locks. */
+class FolderLock {
+public:
+  explicit FolderLock(const std::string& folder)
+  : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+  {
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0 && errno == EINTR)
+      ;
+  }
+  ~FolderLock()
+  {
+    if (descriptor_ >= 0)
+      close(descriptor_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock&
+  operator=(const FolderLock&) = delete;
+
+private:
+  int descriptor_;
+};
 
 } // namespace
 
@@ -73,6 +99,9 @@ OutputFolder::addByName(const std::string& name,
   catch (const FileError&) {
     throw;
   }
+  catch (const std::bad_alloc&) {
+    throw;
+  }
   catch (const std::exception& error) {
     throw FileError(path, std::string("cannot be written: ") + error.what());
   }
@@ -101,6 +130,7 @@ OutputFolder::leaveOut(const std::string& name)
 void
 OutputFolder::commit()
 {
+  const FolderLock lock(folder_);
   while (!files_.empty()) {
     std::error_code error;
     fs::rename(files_.back().temporary_name, files_.back().name, error);

@@ -38,7 +38,8 @@ public:
   void
   leaveOut(const std::string& name);
 
-  /** \brief Rename what was added, replacing older files of these names.
+  /** \brief Rename what was added, replacing older files of these names. Of several
+   * processes one does so after the other: the files of a run stay together.
    * \throws FileError if that fails */
   void
   commit();

@@ -6,7 +6,9 @@
 
 #include "io/errors.h"
 
+#include <csignal>
 #include <iostream>
+#include <new>
 #include <string>
 
 namespace bayesian_icp::io {
@@ -19,6 +21,14 @@ print(const std::string& text)
   std::cout << text << std::flush;
   if (!std::cout)
     throw FileError("standard output", "cannot be written");
+}
+
+/** \brief From now on a file that would grow beyond the limit on the size of files
+ * (`ulimit -f`) is an error as on a full disk, not a signal that kills. */
+inline void
+takeSizeLimitAsFullDisk()
+{
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 /** \brief Say on standard error why \p program ends. To be called in a `catch (...)`.
@@ -40,9 +50,28 @@ explainFailure(const std::string& program)
     tell(error.what());
     return 3;
   }
+  catch (const std::bad_alloc&) {
+    tell("out of memory");
+    return 1;
+  }
   catch (const std::exception& error) {
     tell(std::string("failed: ") + error.what());
     return 1;
+  }
+}
+
+/** \brief What `main` does: run \p work.
+ * \return its exit code, or that of its failure, which is explained */
+template <typename Work>
+int
+runProgram(const std::string& program, const Work& work)
+{
+  takeSizeLimitAsFullDisk();
+  try {
+    return work();
+  }
+  catch (...) {
+    return explainFailure(program);
   }
 }
 

@@ -1,11 +1,8 @@
 #include "plot/gnuplot.h"
 
-#include "plot/temporary_folder.h"
+#include "plot/child_program.h"
 
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -13,37 +10,11 @@ namespace bayesian_icp::plot {
 
 namespace {
 
-/** \p command, with \p script on its standard input.
- * \return whether it ended well */
-bool
-pipeInto(const std::string& command, const std::string& script)
-{
-  // A gnuplot that ends early must not end us.
-  const auto handler = std::signal(SIGPIPE, SIG_IGN);
-  FILE* pipe = popen(command.c_str(), "w");
-  bool is_good = pipe != nullptr;
-  if (is_good) {
-    is_good = std::fwrite(script.data(), 1, script.size(), pipe) == script.size();
-    is_good = pclose(pipe) == 0 && is_good;
-  }
-  std::signal(SIGPIPE, handler);
-  return is_good;
-}
-
-std::string
-contentOf(const std::string& file)
-{
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return content.str();
-}
-
 /** The first line of gnuplot's complaints that says something. */
 std::string
-firstComplaint(const std::string& file)
+firstComplaint(const std::string& errors)
 {
-  std::istringstream lines(contentOf(file));
+  std::istringstream lines(errors);
   std::string line;
   while (std::getline(lines, line))
     if (line.find_first_not_of(" ^\t") != std::string::npos &&
@@ -53,18 +24,27 @@ firstComplaint(const std::string& file)
 }
 
 std::string
-svgName(const TemporaryFolder& folder, std::size_t i)
-{
-  return folder.path() + '/' + std::to_string(i) + ".svg";
-}
-
-std::string
-scriptOf(const Drawing& drawing, const std::string& file)
+scriptOf(const Drawing& drawing)
 {
   return "reset session\nset encoding utf8\nset terminal svg noenhanced rounded size " +
          std::to_string(drawing.width) + ", " + std::to_string(drawing.height) +
-         " font 'sans-serif," + std::to_string(drawing.font_size) + "'\nset output " +
-         quotedForGnuplot(file) + '\n' + drawing.script + "\nunset output\n";
+         " font 'sans-serif," + std::to_string(drawing.font_size) + "'\nset output\n" +
+         drawing.script + '\n';
+}
+
+/** The SVG documents that follow each other in \p text. */
+std::vector<std::string>
+documentsOf(const std::string& text)
+{
+  const std::string last_tag = "</svg>";
+  std::vector<std::string> documents;
+  std::size_t begin = 0, end = 0;
+  while ((end = text.find(last_tag, begin)) != std::string::npos) {
+    end += last_tag.size();
+    documents.push_back(text.substr(begin, end - begin));
+    begin = end;
+  }
+  return documents;
 }
 
 } // namespace
@@ -72,7 +52,7 @@ scriptOf(const Drawing& drawing, const std::string& file)
 bool
 hasGnuplot()
 {
-  return std::system("gnuplot --version > /dev/null 2>&1") == 0;
+  return runChildProgram({"gnuplot", "--version"}, "").is_good;
 }
 
 void
@@ -132,29 +112,25 @@ pictures(const std::string& file, const std::string& size, const std::string& pl
 void
 runGnuplot(const std::string& script, const std::string& folder)
 {
-  if (!pipeInto("gnuplot", script))
-    throw io::FileError(folder, "gnuplot could not draw the plots");
+  const ProgramResult run = runChildProgram({"gnuplot"}, script);
+  if (!run.is_good)
+    throw io::FileError(
+        folder, "gnuplot could not draw the plots" + firstComplaint(run.errors));
 }
 
 std::vector<std::string>
 drawSvgs(const std::vector<Drawing>& drawings)
 {
-  const TemporaryFolder folder;
   std::string script;
-  for (std::size_t i = 0; i < drawings.size(); ++i)
-    script += scriptOf(drawings[i], svgName(folder, i));
-  const std::string complaints = folder.path() + "/complaints";
+  for (const Drawing& drawing : drawings)
+    script += scriptOf(drawing);
   // Users' own settings of gnuplot are not for these pictures.
-  const bool is_good =
-      pipeInto("gnuplot --default-settings 2> '" + complaints + '\'', script);
-  if (!is_good)
-    throw GnuplotError("could not draw the figures" + firstComplaint(complaints));
-  std::vector<std::string> svgs;
-  for (std::size_t i = 0; i < drawings.size(); ++i) {
-    svgs.push_back(contentOf(svgName(folder, i)));
-    if (svgs.back().find("</svg>") == std::string::npos)
-      throw GnuplotError("has not drawn all figures");
-  }
+  const ProgramResult run = runChildProgram({"gnuplot", "--default-settings"}, script);
+  if (!run.is_good)
+    throw GnuplotError("could not draw the figures" + firstComplaint(run.errors));
+  std::vector<std::string> svgs = documentsOf(run.output);
+  if (svgs.size() != drawings.size())
+    throw GnuplotError("has not drawn all figures");
   return svgs;
 }
 

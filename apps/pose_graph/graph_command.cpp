@@ -130,7 +130,7 @@ graphHelpText()
           "  1    some are not; the graph has been written\n"
           "  2    wrong usage\n"
           "  3    a file cannot be used or written\n"
-          "  130  interrupted (Ctrl-C); nothing has been written\n"
+          "  130  interrupted (Ctrl-C or SIGTERM); nothing has been written\n"
           "\nExample:\n"
           "  pcl_bayesian_icp_pose_graph scans -o graph.g2o --loop 0,3 \\\n"
           "      --guess 0.5,0,0,0,0,0 --prior-variance "

@@ -1,8 +1,8 @@
 #include "sgd_icp/run.h"
 
+#include "io/interrupt.h"
 #include "io/output_folder.h"
 #include "io/program.h"
-#include "register/interrupt.h"
 #include "register/progress_bar.h"
 
 #include <bayesian_icp/likelihood.h>
@@ -52,7 +52,7 @@ registerFiles(const SgdRequest& request)
   run.reading_seconds = secondsSince(start);
 
   ProgressBar bar(!request.is_quiet, "descending");
-  catchInterrupt();
+  io::catchInterrupt();
   start = Clock::now();
   const Eigen::Matrix3Xd source = io::finitePoints(run.source).cast<double>();
   const KdTree tree(run.target.points);
@@ -64,7 +64,7 @@ registerFiles(const SgdRequest& request)
       [&](int iteration, const Vector6d&) {
         const long steps = iteration;
         bar.update({0, steps, steps, request.options.max_iterations});
-        return !wasInterrupted();
+        return !io::wasInterrupted();
       });
   run.registration_seconds = secondsSince(start);
   run.mean_squared_distance = meanSquaredDistance(source, tree, run.result.pose);
@@ -101,9 +101,8 @@ runSgdIcp(int argc, const char* const* argv)
   // The table has the status already.
   if (!run.result.has_converged && (request.is_json || request.is_quiet))
     std::cerr << "pcl_bayesian_icp: " << endText(run) << '\n';
-  constexpr int interrupted = 130;
-  if (wasInterrupted())
-    return interrupted;
+  if (io::wasInterrupted())
+    return io::interrupted_exit_code;
   return run.result.has_converged ? 0 : 1;
 }
 

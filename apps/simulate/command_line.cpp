@@ -188,7 +188,8 @@ helpText()
           "Scans a made-up scene twice and writes source.pcd, target.pcd,\n"
           "T_target_source.txt (maps source points into the target frame) and\n"
           "scene.json (every option, so that the pair can be made again).\n"
-          "Exit codes: 0 good, 2 usage, 3 cannot write.\n"
+          "Exit codes: 0 good, 1 out of memory, 2 usage, 3 cannot write, 130 "
+          "interrupted.\n"
        << allOptions();
   return help.str();
 }

@@ -3,39 +3,57 @@
  * clouds with the transform between them.
  */
 #include "command_line.h"
+#include "io/interrupt.h"
+#include "io/program.h"
 #include "output.h"
 
-#include <exception>
-#include <iostream>
+#include <stdexcept>
 
+namespace io = bayesian_icp::io;
 namespace simulator = bayesian_icp::simulator;
 
 namespace {
 
-enum ExitCode { Good = 0, Usage = 2, CannotWrite = 3 };
-
-int
-fail(ExitCode code, const std::exception& error)
+simulator::Request
+requestOf(int argc, const char* const* argv)
 {
-  std::cerr << "pcl_bayesian_icp_simulate: " << error.what() << '\n';
-  if (code == Usage)
-    std::cerr << "Try pcl_bayesian_icp_simulate --help\n";
-  return code;
+  try {
+    return simulator::parseCommandLine(argc, argv);
+  }
+  catch (const std::logic_error& error) {
+    throw io::UsageError(error.what());
+  }
+}
+
+/** Options may fit each other and yet see nothing. */
+simulator::ScanPair
+pairOf(const simulator::SimulationOptions& options)
+{
+  try {
+    return simulator::simulate(options);
+  }
+  catch (const std::invalid_argument& error) {
+    throw io::UsageError(error.what());
+  }
 }
 
 int
-write(const simulator::Request& request, const simulator::ScanPair& pair)
+runTool(int argc, const char* const* argv)
 {
-  try {
-    simulator::writePair(request.output_folder, request.options, pair);
+  const simulator::Request request = requestOf(argc, argv);
+  if (request.kind != simulator::Request::Kind::Simulate) {
+    io::print(request.kind == simulator::Request::Kind::ShowHelp
+                  ? simulator::helpText()
+                  : simulator::sceneList());
+    return 0;
   }
-  catch (const std::exception& error) {
-    return fail(CannotWrite, error);
-  }
-  std::cout << request.output_folder << ": " << request.options.scene << ", source "
-            << pair.source.cols() << " points, target " << pair.target.cols()
-            << " points\n";
-  return Good;
+  const simulator::ScanPair pair = pairOf(request.options);
+  io::catchInterrupt(); // from here on all files or none
+  simulator::writePair(request.output_folder, request.options, pair);
+  io::print(request.output_folder + ": " + request.options.scene + ", source " +
+            std::to_string(pair.source.cols()) + " points, target " +
+            std::to_string(pair.target.cols()) + " points\n");
+  return io::wasInterrupted() ? io::interrupted_exit_code : 0;
 }
 
 } // namespace
@@ -43,25 +61,6 @@ write(const simulator::Request& request, const simulator::ScanPair& pair)
 int
 main(int argc, char** argv)
 {
-  simulator::Request request;
-  simulator::ScanPair pair;
-  try {
-    request = simulator::parseCommandLine(argc, argv);
-    if (request.kind == simulator::Request::Kind::Simulate)
-      pair = simulator::simulate(request.options);
-  }
-  catch (const std::exception& error) {
-    return fail(Usage, error);
-  }
-  switch (request.kind) {
-  case simulator::Request::Kind::ShowHelp:
-    std::cout << simulator::helpText();
-    return Good;
-  case simulator::Request::Kind::ListScenes:
-    std::cout << simulator::sceneList();
-    return Good;
-  case simulator::Request::Kind::Simulate:
-    break;
-  }
-  return write(request, pair);
+  return io::runProgram("pcl_bayesian_icp_simulate",
+                        [&] { return runTool(argc, argv); });
 }

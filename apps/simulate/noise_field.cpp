@@ -1,5 +1,6 @@
 #include "noise_field.h"
 
+#include <bayesian_icp/first_exception.h>
 #include <bayesian_icp/random.h>
 
 #include <cmath>
@@ -53,12 +54,16 @@ NoiseField::NoiseField(const SensorOptions& options,
   const int num_rows = numRows(options);
   const int num_columns = raysPerRow(options);
   Eigen::ArrayXXd rows(num_columns, num_rows + kernel.size() - 1);
+  FirstException failure;
 #pragma omp parallel for schedule(static)
   for (Eigen::Index row = 0; row < rows.cols(); ++row)
-    rows.col(row) =
-        blurredRow(num_columns,
-                   kernel,
-                   Random(seed, first_stream + static_cast<std::uint64_t>(row)));
+    failure.guard([&] {
+      rows.col(row) =
+          blurredRow(num_columns,
+                     kernel,
+                     Random(seed, first_stream + static_cast<std::uint64_t>(row)));
+    });
+  failure.rethrow();
   field_ = Eigen::ArrayXXd::Zero(num_columns, num_rows);
 #pragma omp parallel for schedule(static)
   for (int row = 0; row < num_rows; ++row)

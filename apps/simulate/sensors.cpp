@@ -3,6 +3,7 @@
 #include "beams.h"
 #include "noise_field.h"
 
+#include <bayesian_icp/first_exception.h>
 #include <bayesian_icp/random.h>
 
 namespace bayesian_icp {
@@ -48,20 +49,23 @@ scanScene(const Scene& scene,
   const Beams beams(scene, options, T_world_sensor);
   const NoiseField noise_field(options, seed, scan_number);
   std::vector<ScanRow> rows(static_cast<std::size_t>(numRows(options)));
+  FirstException failure;
 #pragma omp parallel for schedule(dynamic)
-  for (int row = 0; row < numRows(options); ++row) {
-    // A stream of random numbers per row: the same for any number of threads.
-    Random random(seed, (std::uint64_t{scan_number} << 32) + row);
-    for (int column = 0; column < rays_per_row; ++column) {
-      RayDraws draws(random);
-      draws.reading = noise_field.mixed(draws.reading, row, column);
-      const auto point = beams.measure(row, column, draws);
-      if (!point)
-        continue;
-      rows[row].points.push_back(*point);
-      rows[row].columns.push_back(column);
-    }
-  }
+  for (int row = 0; row < numRows(options); ++row)
+    failure.guard([&] {
+      // A stream of random numbers per row: the same for any number of threads.
+      Random random(seed, (std::uint64_t{scan_number} << 32) + row);
+      for (int column = 0; column < rays_per_row; ++column) {
+        RayDraws draws(random);
+        draws.reading = noise_field.mixed(draws.reading, row, column);
+        const auto point = beams.measure(row, column, draws);
+        if (!point)
+          continue;
+        rows[row].points.push_back(*point);
+        rows[row].columns.push_back(column);
+      }
+    });
+  failure.rethrow();
   return joinRows(rows, rays_per_row);
 }
 

@@ -2,6 +2,7 @@
  * \brief pcl_bayesian_icp_transform: moves a cloud by a pose that was found.
  */
 #include "io/cloud_file.h"
+#include "io/interrupt.h"
 #include "io/motion.h"
 #include "io/output_folder.h"
 #include "io/posterior_file.h"
@@ -46,6 +47,7 @@ transformCloud(const Request& request)
   const fs::path output(request.output_file);
   io::OutputFolder folder(output.has_parent_path() ? output.parent_path().string()
                                                    : ".");
+  io::catchInterrupt(); // from here on a whole file or none
   folder.addByName(output.filename().string(), [&](const std::string& path) {
     const Eigen::Affine3d applied = request.is_inverse ? motion.inverse() : motion;
     io::writeCloud(io::movedCloud(cloud, applied.matrix()), format, path);
@@ -69,7 +71,7 @@ runTool(int argc, char** argv)
     transformCloud(request);
     break;
   }
-  return 0;
+  return io::wasInterrupted() ? io::interrupted_exit_code : 0;
 }
 
 } // namespace
@@ -79,10 +81,6 @@ int
 main(int argc, char** argv)
 {
   using namespace bayesian_icp;
-  try {
-    return transform::runTool(argc, argv);
-  }
-  catch (...) {
-    return io::explainFailure("pcl_bayesian_icp_transform");
-  }
+  return io::runProgram("pcl_bayesian_icp_transform",
+                        [&] { return transform::runTool(argc, argv); });
 }

@@ -1,6 +1,6 @@
 #include "viewer/live_view.h"
 
-#include "register/interrupt.h"
+#include "io/interrupt.h"
 #include "viewer/annotations.h"
 #include "viewer/drawing.h"
 
@@ -138,7 +138,7 @@ registerLive(const Scene& scene,
   auto registration = std::async(std::launch::async, [&state, &run] {
     app::registerClouds(
         [&state](const Progress& progress) {
-          return state.moveChain(progress) && !app::wasInterrupted();
+          return state.moveChain(progress) && !io::wasInterrupted();
         },
         run,
         [&state](const Eigen::Matrix4d& matrix) { state.moveIcp(matrix); });

@@ -139,7 +139,7 @@ helpText()
          "       shown, for example without an X display (xvfb-run gives one)\n"
          "  2    wrong usage\n"
          "  3    a file cannot be read, used or written\n"
-         "  130  interrupted (Ctrl-C)\n"
+         "  130  interrupted (Ctrl-C or SIGTERM)\n"
          "\nExample:\n"
          "  pcl_bayesian_icp_viewer source.pcd target.pcd --preset calibrated --live "
          "\\\n"

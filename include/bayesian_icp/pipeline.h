@@ -66,4 +66,14 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());
 
+/** \brief Where the clouds were in 32 bits: whether that was too coarse for the noise.
+ * If so the message says it, and Ok becomes Doubtful.
+ * \param[in] coordinate a usual |x|, |y| or |z| of the clouds, the largest of the three
+ *            axes [m]
+ * \param[in] options those of the estimate; their measurement_sigma is the noise where
+ *            \p summary has none
+ * \param[in,out] summary of an estimate; one that was not sampled stays as it is */
+BAYESIAN_ICP_EXPORT void
+doubtRounding(double coordinate, const Options& options, Summary& summary);
+
 } // namespace bayesian_icp

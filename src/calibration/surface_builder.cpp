@@ -3,6 +3,7 @@
 #include "median.h"
 #include "patch_fit.h"
 
+#include <bayesian_icp/first_exception.h>
 #include <bayesian_icp/random.h>
 
 #include <omp.h>
@@ -69,20 +70,23 @@ SurfaceBuilder::fitPatches()
   const PointNeighbors cloud(points_);
   const auto order = cloud.alongTree();
   const auto count = static_cast<std::ptrdiff_t>(order.size());
+  FirstException failure;
 #pragma omp parallel num_threads(num_threads_)
   {
     PatchFitWorkspace workspace;
 #pragma omp for schedule(dynamic, 64)
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const std::uint32_t point = order[static_cast<std::size_t>(i)];
-      const std::uint32_t patch = patch_of_[point];
-      if (patch == KdTree::none)
-        continue;
-      patches_[patch] =
-          fitPatch(cloud, points_.col(point), options_, workspace, spacings_[patch]);
-      noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
-    }
+    for (std::ptrdiff_t i = 0; i < count; ++i)
+      failure.guard([&] {
+        const std::uint32_t point = order[static_cast<std::size_t>(i)];
+        const std::uint32_t patch = patch_of_[point];
+        if (patch == KdTree::none)
+          return;
+        patches_[patch] =
+            fitPatch(cloud, points_.col(point), options_, workspace, spacings_[patch]);
+        noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
+      });
   }
+  failure.rethrow();
   completeNeighbors();
 }
 
@@ -122,21 +126,24 @@ SurfaceBuilder::completeNeighbors()
   const PointNeighbors centres(centre_points);
   const auto order = centres.alongTree();
   const auto count = static_cast<std::ptrdiff_t>(order.size());
+  FirstException failure;
 #pragma omp parallel num_threads(num_threads_)
   {
     NeighborList nearest;
 #pragma omp for schedule(dynamic, 64)
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-      const std::uint32_t patch = order[static_cast<std::size_t>(i)];
-      if (!lacksNeighbors(patch))
-        continue;
-      centres.find(centre_points.col(patch), num_donors, nearest);
-      neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
-      std::copy(nearest.indices.begin(),
-                nearest.indices.end(),
-                neighbors_[patch].patches.begin());
-    }
+    for (std::ptrdiff_t i = 0; i < count; ++i)
+      failure.guard([&] {
+        const std::uint32_t patch = order[static_cast<std::size_t>(i)];
+        if (!lacksNeighbors(patch))
+          return;
+        centres.find(centre_points.col(patch), num_donors, nearest);
+        neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
+        std::copy(nearest.indices.begin(),
+                  nearest.indices.end(),
+                  neighbors_[patch].patches.begin());
+      });
   }
+  failure.rethrow();
 }
 
 /** Root mean square of the noise of usable patches around one, its own if there is

@@ -8,10 +8,8 @@ import subprocess
 import time
 import unittest
 
-from cli_tool import DATA, FAST, TOOL, ToolTest, run, strict_json
-
-# Minutes of work, of which each chain keeps a draw about every 50 ms.
-ENDLESS = ["--preset", "paper", "--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
+from cli_tool import DATA, FAST, TOOL, ToolTest, run
+from faults import ENDLESS
 
 
 class UnwritableOutput(ToolTest):
@@ -57,27 +55,6 @@ class UnwritableOutput(ToolTest):
                 result = run(*words, stdout=full)
                 self.assertEqual(result.returncode, 3)
                 self.assertIn("standard output: cannot be written", result.stderr)
-
-
-class Interrupted(ToolTest):
-    def test_what_was_drawn_is_written(self):
-        output = self.folder / "output"
-        command = [TOOL, *self.small_pair(), *ENDLESS, "-o", output, "--json"]
-        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-        with subprocess.Popen(command, **pipes) as process:
-            time.sleep(3)
-            process.send_signal(signal.SIGINT)
-            text, errors = process.communicate(timeout=30)
-        self.assertRegex(errors, r"^pcl_bayesian_icp: cancelled: .*\n$")
-        self.assertEqual(process.returncode, 130)
-        document = strict_json(text)
-        self.assertEqual(document["status"]["name"], "cancelled")
-        num_draws = document["posterior"]["draws"]
-        self.assertIn(num_draws, range(1, 4000))
-        samples = (output / "samples.csv").read_text()
-        self.assertEqual(len(samples.splitlines()), num_draws + 1)
-        self.assertEqual(strict_json((output / "posterior.json").read_text()), document)
-        self.assertIn("Interrupted: do not trust the ±", (output / "report.html").read_text())
 
 
 class Progress(ToolTest):

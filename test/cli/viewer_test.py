@@ -232,9 +232,9 @@ class Pictures(ScreenTest):
 
 
 class WindowOnScreen(ScreenTest):
-    """The window itself, until Ctrl-C."""
+    """The window itself, until Ctrl-C or `kill`."""
 
-    def interrupt(self, *arguments):
+    def interrupt(self, *arguments, by=signal.SIGINT):
         process = subprocess.Popen(
             [VIEWER, *map(str, arguments)],
             stdout=subprocess.PIPE,
@@ -244,7 +244,7 @@ class WindowOnScreen(ScreenTest):
         )
         self.addCleanup(process.kill)
         self.assertIn("press h", process.stdout.readline())
-        process.send_signal(signal.SIGINT)
+        process.send_signal(by)
         _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         return errors
@@ -254,7 +254,7 @@ class WindowOnScreen(ScreenTest):
 
     def test_live(self):
         endless = ["--samples", "1000000", "--live"]
-        self.interrupt(*scans("mug"), *CALIBRATED, *endless)
+        self.interrupt(*scans("mug"), *CALIBRATED, *endless, by=signal.SIGTERM)
 
 
 class ViewerUsage(ViewerTest):

@@ -1,0 +1,194 @@
+"""Full disks, folders that cannot be written, and two runs that write to one folder."""
+
+import fcntl
+import os
+import pathlib
+import resource
+import shutil
+import subprocess
+import unittest
+
+from cli_tool import FAST, TOOL, strict_json
+from faults import (
+    BATCH,
+    EVALUATE,
+    POSE_GRAPH,
+    SIMULATE,
+    TRANSFORM,
+    VIEWER,
+    FaultTest,
+    call,
+    limited,
+    lock,
+    start,
+    wait_for,
+    waits_for_a_lock,
+)
+
+PROGRAMS = [TOOL, BATCH, EVALUATE, POSE_GRAPH, SIMULATE, TRANSFORM] + ([VIEWER] if VIEWER else [])
+
+
+def name_of(program):
+    return pathlib.Path(program).name
+
+
+class FullDisk(FaultTest):
+    def check(self, tool, output, **options):
+        """A tool has no room for its files in \\p output, where there is an old one."""
+        (output / "old.txt").write_text("old")
+        command, _ = self.invocations(output)[tool]
+        result = call(*command, **options)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        reason = self.last_words(name_of(command[0]), result.stderr)
+        self.assertIn(str(output), reason)
+        self.assertIn("cannot be written", reason)
+        # A batch keeps the lines that were whole.
+        self.assertTrue(self.names_in(output) <= {"old.txt", "results.jsonl"})
+        self.assertEqual((output / "old.txt").read_text(), "old")
+
+    def test_limit_on_the_size_of_files(self):
+        """Its signal would kill a program that does not expect it."""
+        for tool in self.invocations(self.folder):
+            with self.subTest(tool=tool):
+                # The graph of two scans is small.
+                size = 100 if tool == "pose graph" else 1000
+                self.check(
+                    tool, self.new_folder(), preexec_fn=limited(resource.RLIMIT_FSIZE, size)
+                )
+
+    def test_disk_without_room(self):
+        """A file system in memory of three pages, two of which hold something."""
+        for tool in self.invocations(self.folder):
+            with self.subTest(tool=tool):
+                output = self.new_folder()
+                mount = ["mount", "-t", "tmpfs", "-o", "size=12k", "tmpfs", str(output)]
+                if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode:
+                    self.skipTest("only root can make a small disk")
+                try:
+                    (output / "filler").write_bytes(bytes(8192))
+                    self.check_small_disk(tool, output)
+                finally:
+                    subprocess.run(["umount", str(output)], check=True)
+
+    def check_small_disk(self, tool, output):
+        command, _ = self.invocations(output)[tool]
+        with open(output / "more", "wb", buffering=0) as more:
+            try:
+                while more.write(bytes(512)):
+                    pass
+            except OSError:
+                pass
+        result = call(*command)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("cannot be written", self.last_words(name_of(command[0]), result.stderr))
+        self.assertTrue(self.names_in(output) <= {"filler", "more", "results.jsonl"})
+
+    def test_standard_output(self):
+        for program in PROGRAMS:
+            with self.subTest(program=name_of(program)):
+                with open("/dev/full", "w", encoding="ascii") as full:
+                    result = subprocess.run(
+                        [program, "--help"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+                    )
+                self.assertEqual(result.returncode, 3)
+                self.assertIn("standard output: cannot be written", result.stderr)
+
+
+class Unwritable(FaultTest):
+    def test_places_that_are_no_folders(self):
+        obstacle = self.file("obstacle", "")
+        for place in (obstacle, pathlib.Path("/proc/no_such")):
+            for tool, (command, _) in self.invocations(place).items():
+                with self.subTest(tool=tool, place=place):
+                    result = call(*command)
+                    self.assertEqual(result.returncode, 3, result.stderr)
+                    reason = self.last_words(name_of(command[0]), result.stderr)
+                    self.assertIn(str(place), reason)
+        self.assertEqual(obstacle.read_bytes(), b"")
+
+    def test_folder_that_may_not_be_written(self):
+        """Root may do everything, unless that right is taken away."""
+        rights = []
+        if os.geteuid() == 0:
+            rights = ["setpriv", "--bounding-set=-dac_override", "--inh-caps=-all", "--"]
+            if not shutil.which(rights[0]) or call(*rights, "true").returncode != 0:
+                self.skipTest("the rights of root cannot be taken away here")
+        for tool in self.invocations(self.folder):
+            with self.subTest(tool=tool):
+                output = self.new_folder()
+                command, _ = self.invocations(output)[tool]
+                output.chmod(0o555)
+                result = call(*rights, *command)
+                self.assertEqual(result.returncode, 3, result.stderr)
+                reason = self.last_words(name_of(command[0]), result.stderr)
+                self.assertIn("Permission denied", reason)
+                self.assertEqual(self.names_in(output), set())
+
+    def test_read_only_inputs(self):
+        """Nothing is written but the output: folder and files of the inputs are read-only,
+        and it is there that the tools run."""
+        pair = self.small_pair()
+        inputs = self.new_folder()
+        moved = [shutil.move(path, inputs / path.name) for path in pair]
+        for path in [*moved, inputs]:
+            path.chmod(0o555)
+        for tool in self.invocations(self.folder, pair):
+            with self.subTest(tool=tool):
+                output = self.new_folder()
+                if tool == "batch":
+                    continue  # its manifest is beside the clouds
+                command, names = self.invocations(output, tuple(moved))[tool]
+                result = call(*command, cwd=inputs)
+                self.assertIn(result.returncode, (0, 1), result.stderr)
+                self.assertEqual(self.names_in(output), names)
+        self.assertEqual(self.names_in(inputs), {path.name for path in pair})
+        inputs.chmod(0o755)
+
+
+class OneFolderForTwo(FaultTest):
+    def test_files_wait_for_another_run_to_put_its_own(self):
+        """A run that another one keeps from the folder has nothing there yet, and then all."""
+        pair = self.small_pair()
+        output = self.new_folder()
+        taken = lock(output)
+        process = start(TOOL, *pair, *FAST, "--quiet", "-o", output)
+        self.addCleanup(process.kill)
+        wait_for(lambda: waits_for_a_lock(process), process)
+        self.assertFalse({"posterior.json", "samples.csv"} & {p.name for p in output.iterdir()})
+        os.close(taken)
+        _, errors = process.communicate(timeout=60)
+        self.assertIn(process.returncode, (0, 1), errors)
+        self.assertIn("posterior.json", self.names_in(output))
+
+    def test_the_files_are_of_one_run(self):
+        pair = self.small_pair()
+        draws = {}
+        for seed in range(1, 5):
+            alone = self.new_folder()
+            call(TOOL, *pair, *FAST, "--quiet", "--no-report", "--seed", seed, "-o", alone)
+            draws[seed] = (alone / "samples.csv").read_text()
+        self.assertEqual(len(set(draws.values())), len(draws))
+        output = self.new_folder()
+        words = [TOOL, *pair, *FAST, "--quiet", "--no-report", "-o", output, "--seed"]
+        processes = [start(*words, seed) for seed in draws]
+        for process in processes:
+            process.communicate(timeout=120)
+            self.assertIn(process.returncode, (0, 1))
+        document = strict_json((output / "posterior.json").read_text())
+        seed = document["options"]["chains"]["seed"]
+        self.assertEqual((output / "samples.csv").read_text(), draws[seed])
+        self.assertEqual(self.names_in(output), {"aligned.pcd", "posterior.json", "samples.csv"})
+
+    def test_a_file_of_results_is_for_one_study_at_a_time(self):
+        """As that of a batch: the second one is refused."""
+        results = self.file("results.csv", "")
+        with open(results, "r+", encoding="ascii") as taken:
+            fcntl.flock(taken, fcntl.LOCK_EX)
+            result = call(EVALUATE, "sbc", "--runs", 1, "--output", results)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("in use by another process", result.stderr)
+        self.assertEqual(results.read_text(), "")
+
+
+if __name__ == "__main__":
+    unittest.main()

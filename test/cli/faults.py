@@ -1,0 +1,142 @@
+"""What the tests of faults share: every tool, ways to hurt it, and what must stay whole."""
+
+import fcntl
+import os
+import pathlib
+import re
+import resource
+import subprocess
+import tempfile
+import time
+
+import cloud_files
+from cli_tool import FAST, TOOL, ToolTest
+
+BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
+EVALUATE = os.environ["PCL_BAYESIAN_ICP_EVALUATE"]
+POSE_GRAPH = os.environ["PCL_BAYESIAN_ICP_POSE_GRAPH"]
+SIMULATE = os.environ["PCL_BAYESIAN_ICP_SIMULATE"]
+TRANSFORM = os.environ["PCL_BAYESIAN_ICP_TRANSFORM"]
+VIEWER = os.environ["PCL_BAYESIAN_ICP_VIEWER"]  # empty where it is not built
+
+MOTION = "0.1,-0.2,0.3,0.02,-0.01,0.5"
+REGISTERED = {"aligned.pcd", "posterior.json", "report.html", "samples.csv"}
+SIMULATED = {"T_target_source.txt", "scene.json", "source.pcd", "target.pcd"}
+# A temporary file of an output on its way.
+TEMPORARY = re.compile(r"\.[A-Za-z0-9]{6}$")
+# Minutes of work, of which each chain keeps a draw about every 50 ms.
+ENDLESS = ["--preset", "paper", "--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
+
+
+def call(*words, **options):
+    options.setdefault("timeout", 120)
+    return subprocess.run(
+        list(map(str, words)), capture_output=True, text=True, check=False, **options
+    )
+
+
+def start(*words):
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(list(map(str, words)), **pipes)
+
+
+def catches(process, signal_number):
+    """Whether the program has taken charge of a signal."""
+    for line in pathlib.Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("SigCgt:"):
+            return bool(int(line.split()[1], 16) >> (signal_number - 1) & 1)
+    return False
+
+
+def processor_seconds(process):
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def lock(folder):
+    """A descriptor that keeps others from putting files into the folder until it is
+    closed."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    fcntl.flock(descriptor, fcntl.LOCK_EX)
+    return descriptor
+
+
+def waits_for_a_lock(process):
+    locks = pathlib.Path("/proc/locks").read_text().splitlines()
+    return any("->" in line and f" {process.pid} " in line for line in locks)
+
+
+def wait_for(condition, process):
+    """Until it holds; how long that takes is the machine's affair."""
+    while not condition():
+        if process.poll() is not None:
+            raise AssertionError(f"ended early: {process.communicate()}")
+        time.sleep(0.01)
+
+
+class FaultTest(ToolTest):
+    def invocations(self, output, pair=None):
+        """{name: (command line, names that it writes)} of the tools that register or write
+        clouds, each with its output in the folder \\p output."""
+        source, target = pair or self.small_pair()
+        manifest = self.file(
+            "manifest.json",
+            f'[{{"name": "pair", "source": "{source.name}", "target": "{target.name}"}}]',
+        )
+        return {
+            "register": (
+                [TOOL, source, target, *FAST, "--quiet", "-o", output],
+                REGISTERED,
+            ),
+            "simulate": (
+                [SIMULATE, "--scene", "can", "--width", "64", "--height", "48", "-o", output],
+                SIMULATED,
+            ),
+            "transform": (
+                [TRANSFORM, source, output / "moved.pcd", "--pose", MOTION],
+                {"moved.pcd"},
+            ),
+            "transform to PLY": (
+                [TRANSFORM, source, output / "moved.ply", "--pose", MOTION],
+                {"moved.ply"},
+            ),
+            "batch": (
+                [BATCH, manifest, *FAST, "--quiet", "--results", output / "results.jsonl"],
+                {"results.jsonl"},
+            ),
+            "pose graph": (
+                [POSE_GRAPH, source, target, *FAST, "--weak-edges", "--quiet", "-o", output / "g.g2o"],
+                {"g.g2o"},
+            ),
+        }
+
+    def big_pair(self, num_points):
+        """Two large boxes: numbers in memory, where small_pair() has none to speak of."""
+        return tuple(
+            self.file(f"big{seed}.pcd", cloud_files.pcd_bytes(cloud_files.box_surface(num_points, seed)))
+            for seed in (1, 2)
+        )
+
+    def new_folder(self):
+        return pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+
+    def names_in(self, folder):
+        names = {path.name for path in folder.iterdir()}
+        self.assertFalse([name for name in names if TEMPORARY.search(name)], names)
+        return names
+
+    def last_words(self, program, errors):
+        """What the program itself said last."""
+        last = errors.splitlines()[-1]
+        self.assertTrue(last.startswith(f"{program}: "), errors)
+        return last
+
+
+def limited(kind, size):
+    """For preexec_fn: no more than so many bytes, and no core file."""
+
+    def limit():
+        resource.setrlimit(kind, (size, size))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+    return limit

@@ -1,0 +1,105 @@
+"""Too little memory, and clouds that need much: a reason and an exit code, never a signal,
+never half a file."""
+
+import array
+import os
+import random
+import resource
+import subprocess
+import unittest
+
+import cloud_files
+from faults import TOOL, TRANSFORM, MOTION, FaultTest, call, limited
+
+MEBIBYTE = 1 << 20
+# From what the libraries alone need to more than enough.
+LIMITS = [size * MEBIBYTE for size in (66, 72, 80, 90, 100, 110, 120, 140, 300)]
+# Measured, and a third more: of each point of both clouds, and of one cloud.
+MOST_BYTES_A_POINT = {"register": 250, "transform": 160}
+# The loader's, for a program whose libraries do not fit.
+NOT_LOADED = 127
+
+
+class OutOfMemory(FaultTest):
+    def setUp(self):
+        super().setUp()
+        limit = limited(resource.RLIMIT_AS, LIMITS[-1])
+        if call(TOOL, "--version", preexec_fn=limit).returncode != 0:
+            self.skipTest("a sanitizer needs more address space than is left")
+
+    def ran_out(self, tool, pair, limit):
+        """Whether a tool that has so much address space [bytes] said that it is too little."""
+        output = self.new_folder()
+        command, names = self.invocations(output, pair)[tool]
+        result = call(*command, preexec_fn=limited(resource.RLIMIT_AS, limit))
+        found = self.names_in(output)
+        if result.returncode == NOT_LOADED:
+            self.assertEqual(found, set())
+            return False
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        # A batch tells in its file what became of a pair, a pose graph goes on without one.
+        told = {"g.g2o", "results.jsonl"}
+        text = result.stderr
+        if "results.jsonl" in found:
+            text += (output / "results.jsonl").read_text()
+        if "out of memory" in text or "libgomp" in text:
+            self.assertEqual(result.returncode, 1)
+            self.assertTrue(found <= told, found)
+            return True
+        self.assertEqual(found, names, text)
+        return False
+
+    def test_every_tool(self):
+        pair = self.big_pair(20000)
+        bigger = [self.folder / "bigger.pcd"] * 2
+        bigger[0].write_bytes(cloud_files.pcd_bytes(cloud_files.box_surface(20000, 3) * 15))
+        for tool in self.invocations(self.folder):
+            its_pair = bigger if tool.startswith("transform") else pair
+            with self.subTest(tool=tool):
+                ran_out = [self.ran_out(tool, its_pair, limit) for limit in LIMITS]
+                self.assertIn(True, ran_out)
+                self.assertFalse(ran_out[-1])
+
+
+class LargeClouds(FaultTest):
+    """Ten million points; minutes, and gigabytes on the disk."""
+
+    NUM_POINTS = 10_000_000
+
+    def large_cloud(self, seed):
+        """A wavy floor of 100 x 100 m."""
+        random.seed(seed)
+        points = array.array("f", bytes(12 * self.NUM_POINTS))
+        for axis, size in ((0, 100.0), (1, 100.0)):
+            points[axis::3] = array.array(
+                "f", (size * random.random() for _ in range(self.NUM_POINTS))
+            )
+        points[2::3] = array.array(
+            "f", (((x * y) % 1.7) + random.random() * 0.01 for x, y in zip(points[0::3], points[1::3]))
+        )
+        head = cloud_files.pcd_header(cloud_files.XYZ, self.NUM_POINTS, "binary")
+        return self.file(f"large{seed}.pcd", head + points.tobytes())
+
+    def peak_of(self, *words):
+        """Largest resident memory [bytes] of a run that ends well or with exit code 1."""
+        with subprocess.Popen([str(word) for word in words], stdout=subprocess.DEVNULL) as process:
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertIn(process.returncode, (0, 1))
+        return usage.ru_maxrss * 1024
+
+    def test_memory_is_bounded(self):
+        source, target = self.large_cloud(1), self.large_cloud(2)
+        per_point = {}
+        words = [TOOL, source, target, "-i", "1", "--no-report", "--quiet", "-o", self.folder / "o"]
+        per_point["register"] = self.peak_of(*words) / (2 * self.NUM_POINTS)
+        self.assertTrue((self.folder / "o" / "posterior.json").exists())
+        words = [TRANSFORM, source, self.folder / "moved.pcd", "--pose", MOTION]
+        per_point["transform"] = self.peak_of(*words) / self.NUM_POINTS
+        print({tool: round(size) for tool, size in per_point.items()}, "bytes a point")
+        for tool, size in per_point.items():
+            self.assertLess(size, MOST_BYTES_A_POINT[tool])
+
+
+if __name__ == "__main__":
+    unittest.main()
