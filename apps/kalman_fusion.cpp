@@ -92,6 +92,7 @@ main(int argc, char** argv)
   prior.variance.setConstant(0.1 * 0.1);
   icp.setPreset(Preset::Calibrated);
   icp.setPrior(prior.mean, prior.variance);
+  icp.setPriorFrame(PriorFrame::Origin); // that of the Prior below
   icp.setInputSource(source);
   icp.setInputTarget(target);
   Cloud aligned;

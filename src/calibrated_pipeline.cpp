@@ -144,7 +144,7 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                                  options.calibrated.max_source_points,
                                  random)),
       model);
-  const Prior prior = makePrior(options.prior, initial_pose, source_points);
+  const Prior prior = makePrior(options, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }
 

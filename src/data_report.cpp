@@ -103,6 +103,7 @@ flagsOf(const DataReport& report)
                   [](const DataDirection& direction) {
                     return direction.observability == Observability::PriorOnly;
                   });
+  flags.prior_conflict = !(report.prior_probability >= min_prior_probability);
   return flags;
 }
 
@@ -160,6 +161,13 @@ describeFlags(const DataReport& report)
         "%.1f %% of the prior (at most %.0f %% for one of them)",
         100.0 * leastShareOfPrior(report),
         100.0 * max_share_of_prior));
+  if (report.flags.prior_conflict)
+    texts.push_back(
+        formatted("the clouds contradict the prior: it has a pose as far from "
+                  "its mean as this one with a probability of %.1g (at "
+                  "least %.3f)",
+                  report.prior_probability,
+                  min_prior_probability));
   return texts;
 }
 

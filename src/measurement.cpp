@@ -95,14 +95,15 @@ estimateOf(const Prior& prior)
 }
 
 Prior
-priorOf(const PriorOptions& options,
+priorOf(const Options& options,
         const Vector6d& initial_pose,
         const Eigen::Vector3d& source_centroid)
 {
-  const Vector6d& mean = options.mean.allFinite() ? options.mean : initial_pose;
-  if (options.frame == PriorFrame::Origin)
-    return Prior(mean, options.variance);
-  return Prior(mean, options.variance, source_centroid);
+  const PriorOptions& prior = options.prior;
+  const Vector6d& mean = prior.mean.allFinite() ? prior.mean : initial_pose;
+  if (priorFrameOf(options) == PriorFrame::Origin)
+    return Prior(mean, prior.variance);
+  return Prior(mean, prior.variance, source_centroid);
 }
 
 } // namespace bayesian_icp

@@ -128,6 +128,15 @@ toString(MetropolisUse use)
   return "unknown";
 }
 
+PriorFrame
+priorFrameOf(const Options& options)
+{
+  if (options.prior.frame != PriorFrame::Automatic)
+    return options.prior.frame;
+  return options.preset == Preset::Calibrated ? PriorFrame::SourceCentroid
+                                              : PriorFrame::Origin;
+}
+
 std::string
 Options::validate() const
 {

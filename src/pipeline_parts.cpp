@@ -115,7 +115,7 @@ checkArguments(const Eigen::Matrix3Xd& source_points,
 }
 
 Prior
-makePrior(const PriorOptions& options,
+makePrior(const Options& options,
           const Vector6d& initial_pose,
           const Eigen::Matrix3Xd& source_points)
 {

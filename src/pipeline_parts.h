@@ -32,7 +32,7 @@ checkArguments(const Eigen::Matrix3Xd& source_points,
 
 /** \brief The prior about \p initial_pose, or its own mean if it has one. */
 Prior
-makePrior(const PriorOptions& options,
+makePrior(const Options& options,
           const Vector6d& initial_pose,
           const Eigen::Matrix3Xd& source_points);
 

@@ -7,7 +7,15 @@ namespace bayesian_icp {
 const char*
 toString(PriorFrame frame)
 {
-  return frame == PriorFrame::Origin ? "origin" : "source-centroid";
+  switch (frame) {
+  case PriorFrame::Origin:
+    return "origin";
+  case PriorFrame::SourceCentroid:
+    return "source-centroid";
+  case PriorFrame::Automatic:
+    return "automatic";
+  }
+  return "unknown";
 }
 
 Prior::Prior(const Vector6d& mean,

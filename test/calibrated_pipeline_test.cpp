@@ -95,6 +95,21 @@ TEST(Calibrated, TheSameDrawsForEveryNumberOfThreads)
   EXPECT_NE(estimateFrom(scans, options).samples, draws);
 }
 
+TEST(Calibrated, ThePriorIsAboutTheCentroidUnlessSet)
+{
+  Scans scans;
+  scans.source.row(0).array() += 2.0; // so that the frames differ
+  scans.target.row(0).array() += 2.0;
+  Options options = calibratedOptions();
+  const PosteriorEstimate centroid = estimateFrom(scans, options);
+  options.prior.frame = PriorFrame::Origin;
+  const PosteriorEstimate origin = estimateFrom(scans, options);
+  options.prior.frame = PriorFrame::Automatic;
+  const PosteriorEstimate automatic = estimateFrom(scans, options);
+  EXPECT_EQ(automatic.samples, centroid.samples);
+  EXPECT_NE(automatic.samples, origin.samples);
+}
+
 TEST(Calibrated, ATreeGivesItsPoints)
 {
   Scans scans;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/chi_squared.hpp>
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -158,6 +160,40 @@ TEST(Report, DirectionsAreIndependentInPosteriorAndPrior)
   EXPECT_EQ(num_free, 2);
 }
 
+TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
+{
+  // The prior's deviation is 0.5; the fourth direction is held by it only.
+  CalibratedEstimate estimate = diagonalEstimate();
+  estimate.prior.deviation << 0.5, 0.0, 0.0, 1e3, 1.0, 0.5;
+  estimate.mean << 0.0, 0.0, 0.0, 0.0, 0.5, 0.0;
+  const double squared_distance = 1.0 + 9.0 + 1.0;
+  const auto tail = [](int degrees, double x) {
+    return cdf(complement(boost::math::chi_squared(degrees), x));
+  };
+  EXPECT_NEAR(dataReportOf(estimate, 100, target()).prior_probability,
+              tail(5, squared_distance),
+              1e-12);
+  // Held by five, four, ... directions.
+  for (int k = 0; k < 6; ++k) {
+    if (k == 3)
+      continue;
+    estimate.information(k, k) = 0.0;
+    estimate.prior.deviation[k] = 0.0;
+    estimate.mean[k] = 0.0;
+    double distance = 0.0;
+    int num_held = 0;
+    for (int i = k + 1; i < 6; ++i)
+      if (i != 3) {
+        ++num_held;
+        distance += std::pow(2.0 * (estimate.prior.deviation + estimate.mean)[i], 2);
+      }
+    EXPECT_NEAR(dataReportOf(estimate, 100, target()).prior_probability,
+                num_held > 0 ? tail(num_held, distance) : 1.0,
+                1e-12)
+        << k;
+  }
+}
+
 TEST(Report, StartsMayDifferFreelyWherePriorOnlyHolds)
 {
   CalibratedEstimate estimate = diagonalEstimate();
@@ -204,15 +240,19 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
   EXPECT_FALSE(flagsAfter([](E& e) { e.residual_scale = 1.99; }).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.residual_scale = 2.01; }).misfit);
   EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
+  // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2647)^2.
+  EXPECT_FALSE(flagsAfter([](E& e) { e.prior.deviation[0] = 2.264; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.prior.deviation[0] = 2.265; }).prior_conflict);
 }
 
 TEST(Report, WhatIsNotANumberIsFlagged)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const DataFlags flags = flagsAfter([nan](CalibratedEstimate& e) {
-    e.residual_scale = e.kappa_inf = e.other_end[0] = nan;
+    e.residual_scale = e.kappa_inf = e.other_end[0] = e.prior.deviation[0] = nan;
   });
-  EXPECT_TRUE(flags.wrong_basin && flags.few_patches && flags.misfit);
+  EXPECT_TRUE(flags.wrong_basin && flags.few_patches && flags.misfit &&
+              flags.prior_conflict);
 }
 
 } // namespace

@@ -125,6 +125,31 @@ TEST(NoiseDebit, InformationIsTheSandwichAlongWhatIsKept)
   }
 }
 
+TEST(NoiseDebit, TurnsAFreeStepAlongWhatLeavesTheScoreAsItIs)
+{
+  // A curvature that knows nothing of one motion, and a step that is a little off it.
+  Random random(94, 0);
+  const Matrix6d V = randomSquare(random);
+  const Matrix6d to_V = V.inverse();
+  Vector6d known = Vector6d::Constant(100.0);
+  known[5] = 0.0;
+  Secants secants;
+  secants.curvature = to_V.transpose() * known.asDiagonal() * to_V;
+  secants.steps = V;
+  secants.steps.col(5) += V.leftCols<5>() * random.normal6().head<5>();
+  secants.differences = secants.curvature * secants.steps;
+  secants.noise.fill(Matrix6d::Zero());
+  secants.noise[5] = 1e9 * Matrix6d::Identity();
+  const DebitedInformation debited =
+      debitedInformation(secants, Matrix6d::Identity(), Matrix6d::Identity(), 0.0);
+  ASSERT_EQ(debited.keep[5], 0.0);
+  EXPECT_EQ(debited.steps.leftCols<5>(), secants.steps.leftCols<5>());
+  const Vector6d free = debited.steps.col(5);
+  EXPECT_LT((free - V.col(5)).norm(), 1e-9 * free.norm());
+  EXPECT_LT((debited.information * V.col(5)).norm(),
+            1e-9 * debited.information.norm() * V.col(5).norm());
+}
+
 TEST(NoiseDebit, LeavesWhatThePriorKnowsBetterToThePrior)
 {
   Vector6d curvature = Vector6d::Ones();

@@ -45,7 +45,7 @@ TEST(OptionsValidation, DefaultsAreCalibratedAndElseThePapers)
   EXPECT_EQ(options.likelihood.effective_points, 6000.0);
   EXPECT_EQ(options.likelihood.measurement_sigma, 1.0);
   EXPECT_EQ(options.prior.variance, Vector6d(Vector6d::Constant(0.125)));
-  EXPECT_EQ(options.prior.frame, PriorFrame::Origin);
+  EXPECT_EQ(options.prior.frame, PriorFrame::Automatic);
   EXPECT_EQ(options.mini_batch.batch_size, 160);
   EXPECT_EQ(options.sgld.step_size, 1e-4);
   EXPECT_EQ(options.sgld.decay_rate, 0.9);
@@ -54,6 +54,22 @@ TEST(OptionsValidation, DefaultsAreCalibratedAndElseThePapers)
   EXPECT_EQ(options.chains.num_draws, 2000);
   EXPECT_EQ(options.chains.num_burn_in, 0);
   EXPECT_EQ(options.chains.thinning, 1);
+}
+
+TEST(OptionsValidation, TheAutomaticFrameIsThatOfThePreset)
+{
+  Options options;
+  EXPECT_EQ(priorFrameOf(options), PriorFrame::SourceCentroid);
+  options.preset = Preset::Paper;
+  EXPECT_EQ(priorFrameOf(options), PriorFrame::Origin);
+  options.preset = Preset::Exact;
+  EXPECT_EQ(priorFrameOf(options), PriorFrame::Origin);
+  for (const PriorFrame frame : {PriorFrame::Origin, PriorFrame::SourceCentroid})
+    for (const Preset preset : {Preset::Paper, Preset::Calibrated}) {
+      options.preset = preset;
+      options.prior.frame = frame;
+      EXPECT_EQ(priorFrameOf(options), frame);
+    }
 }
 
 /** One bad value, and what the complaint has to name. */

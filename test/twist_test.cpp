@@ -141,6 +141,24 @@ TEST(TwistPrior, PrecisionIsTheHessianAtThePriorsMean)
   }
 }
 
+TEST(TwistPrior, DeviationIsTheTwistFromThePriorsMean)
+{
+  // To first order in the angles: an error of the size of their squares.
+  Random random(65, 0);
+  constexpr double size = 1e-4;
+  const Vector3d reference(0.3, -0.2, 0.1), centre(0.4, 0.5, -0.6);
+  const Vector6d mean = test::randomPose(random, 0.8);
+  Vector6d turned = mean; // by a whole turn, which is none
+  turned[5] += 6.283185307179586;
+  const Prior prior(turned, Vector6d::Ones(), reference);
+  for (int i = 0; i < 5; ++i) {
+    const Vector6d xi = size * randomTwist(random);
+    const Isometry3d pose = movedBy(xi, centre, isometryOf(mean));
+    EXPECT_LT((twistPrior(prior, pose, centre).deviation - xi).norm(),
+              100.0 * size * size);
+  }
+}
+
 TEST(TwistPrior, PrecisionAwayFromTheMeanFollowsTheDeviation)
 {
   Random random(56, 0);

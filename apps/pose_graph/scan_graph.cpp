@@ -25,7 +25,7 @@ priorOf(const Run& run)
   for (Eigen::Index i = 0; i < run.source.points.cols(); ++i)
     if (run.source.points.col(i).allFinite())
       sum += run.source.points.col(i).cast<double>();
-  return bayesian_icp::priorOf(run.settings.options.prior,
+  return bayesian_icp::priorOf(run.settings.options,
                                poseOf(run.settings.guess),
                                sum / static_cast<double>(run.source.num_finite));
 }

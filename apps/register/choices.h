@@ -17,10 +17,10 @@ choicesOf(Preset)
   return {Preset::Paper, Preset::Exact, Preset::Calibrated};
 }
 
-inline std::array<PriorFrame, 2>
+inline std::array<PriorFrame, 3>
 choicesOf(PriorFrame)
 {
-  return {PriorFrame::Origin, PriorFrame::SourceCentroid};
+  return {PriorFrame::Origin, PriorFrame::SourceCentroid, PriorFrame::Automatic};
 }
 
 inline std::array<MiniBatchSampling, 2>

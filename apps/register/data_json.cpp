@@ -30,7 +30,8 @@ flagsJson(const DataFlags& flags)
           {"low_support", flags.low_support},
           {"few_patches", flags.few_patches},
           {"misfit", flags.misfit},
-          {"no_information", flags.no_information}};
+          {"no_information", flags.no_information},
+          {"prior_conflict", flags.prior_conflict}};
 }
 
 } // namespace
@@ -49,6 +50,7 @@ dataJson(const DataReport& report)
       {"active_fraction", jsonOf(report.active_fraction)},
       {"basin_distance_in_standard_deviations", jsonOf(report.basin_distance)},
       {"other_start_cost_ratio", jsonOf(report.other_cost_ratio)},
+      {"prior_probability", jsonOf(report.prior_probability)},
       {"flags", flagsJson(report.flags)},
       {"flag_messages", describeFlags(report)},
       {"centre_m", jsonOf(report.centre)},

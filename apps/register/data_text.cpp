@@ -42,6 +42,7 @@ flagNames(const DataFlags& flags)
   add(flags.few_patches, "few patches");
   add(flags.misfit, "misfit");
   add(flags.no_information, "no information");
+  add(flags.prior_conflict, "prior conflict");
   return names;
 }
 

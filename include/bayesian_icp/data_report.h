@@ -38,6 +38,7 @@ constexpr double max_other_cost_ratio = 1.2;
 constexpr double min_active_fraction = 0.55;
 constexpr double min_effective_patches = 30.0;
 constexpr double max_residual_scale = 2.0;
+constexpr double min_prior_probability = 0.001;
 
 /** \brief Short name: "observed", "weak", "prior_only". */
 BAYESIAN_ICP_EXPORT const char*
@@ -77,11 +78,15 @@ struct DataFlags {
   bool misfit = false;
   /** All six directions are held by the prior only. */
   bool no_information = false;
+  /** The clouds put the pose where the prior has it with a probability below
+   * min_prior_probability: one of the two is wrong. */
+  bool prior_conflict = false;
 
   bool
   any() const
   {
-    return wrong_basin || low_support || few_patches || misfit || no_information;
+    return wrong_basin || low_support || few_patches || misfit || no_information ||
+           prior_conflict;
   }
 };
 
@@ -112,6 +117,10 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   /** Mean capped residual at the worse of the two ends, in units of the better one's.
    */
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
+  /** Probability that a pose drawn from the prior is further from the prior's mean than
+   * the posterior's mean is, along the directions that are not held by the prior only:
+   * uniform in [0, 1] if the prior is right. */
+  double prior_probability = std::numeric_limits<double>::quiet_NaN();
   /** Centre of the twists: the moved source's centroid, target frame [m]. */
   Eigen::Vector3d centre =
       Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());

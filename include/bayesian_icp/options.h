@@ -104,4 +104,9 @@ struct Options {
   validate() const;
 };
 
+/** \brief The frame of the prior that a run with \p options has: prior.frame, or what
+ * it stands for if it is automatic. */
+BAYESIAN_ICP_EXPORT PriorFrame
+priorFrameOf(const Options& options);
+
 } // namespace bayesian_icp

@@ -16,10 +16,13 @@ enum class PriorFrame {
   Origin,
   /** The centroid of the source points: the natural one for objects away from the
    * sensor, where a rotation about the origin would move the object far. */
-  SourceCentroid
+  SourceCentroid,
+  /** SourceCentroid for preset `calibrated`, Origin for the others: see priorFrameOf().
+   */
+  Automatic
 };
 
-/** \brief Short name: "origin" or "source-centroid". */
+/** \brief Short name: "origin", "source-centroid" or "automatic". */
 BAYESIAN_ICP_EXPORT const char*
 toString(PriorFrame frame);
 
@@ -32,7 +35,7 @@ struct PriorOptions {
    * Positive; infinity means no prior on that coordinate. */
   Vector6d variance = Vector6d::Constant(0.125);
   /** The point whose translation x, y, z of the prior describe. */
-  PriorFrame frame = PriorFrame::Origin;
+  PriorFrame frame = PriorFrame::Automatic;
 };
 
 /** \brief Energy -log p(theta) of the prior, up to a constant, and its gradient.

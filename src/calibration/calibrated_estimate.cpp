@@ -39,6 +39,14 @@ constexpr double min_step_to_noise = 0.7;
  * only. */
 constexpr double min_relative_information = 0.02;
 
+/** Along a free motion the score is as unknown as the axis is, with the square of the
+ * way; but no more than of so many squared steps, as new patches are met. */
+constexpr double max_unheld_steps = 2.0;
+
+/** The axis of a free motion may be far off after the usual rounds; so many more are
+ * of such motions alone. */
+constexpr int max_rounds_of_free_axes = 3;
+
 /** As uncertain as the information is: J comes from 12 to 96 clusters, H from noisy
  * secants. Chosen on simulated scans, docs/calibration.md. */
 constexpr int information_degrees_of_freedom = 20;
@@ -113,15 +121,16 @@ firstCovariance(const CalibratedEstimate& estimate, double noise)
 Matrix6d
 withUnheldNoise(const Matrix6d& score_covariance,
                 const Secants& secants,
-                const Vector6d& keep,
+                const DebitedInformation& debited,
                 const Matrix6d& covariance)
 {
-  const Matrix6d to_steps = secants.steps.inverse();
+  const Matrix6d to_steps = debited.steps.inverse();
   const Matrix6d in_steps = to_steps * covariance * to_steps.transpose();
   Matrix6d J = score_covariance;
   for (int k = 0; k < 6; ++k)
-    if (keep[k] <= 0.0)
-      J += std::min(1.0, in_steps(k, k)) * secants.noise[static_cast<std::size_t>(k)];
+    if (debited.keep[k] <= 0.0)
+      J += std::min(max_unheld_steps, in_steps(k, k)) *
+           secants.noise[static_cast<std::size_t>(k)];
   return J;
 }
 
@@ -134,7 +143,7 @@ finish(const Secants& secants, const DebitedInformation& debited, CalibratedEsti
   e.information = debited.information;
   e.keep = debited.keep;
   for (int k = 0; k < 6; ++k) {
-    const Vector6d step = secants.steps.col(k);
+    const Vector6d step = debited.steps.col(k);
     e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
   }
   e.covariance = (e.information + e.prior.precision).inverse();
@@ -177,9 +186,40 @@ debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
         secants, e.score_covariance, e.prior.precision, min_relative_information);
     e.covariance = (debited.information + e.prior.precision).inverse();
     if (pass == 0)
-      e.score_covariance = withUnheldNoise(J, secants, debited.keep, e.covariance);
+      e.score_covariance = withUnheldNoise(J, secants, debited, e.covariance);
   }
   return debited;
+}
+
+/** Rounds of secants, each along the axes that the last one has found.
+ * \return evaluations of all points */
+int
+measureCurvature(const SurfaceScorer& scorer,
+                 const Matrix6d& J,
+                 const EstimateOptions& options,
+                 CalibratedEstimate& e)
+{
+  const double noise = scorer.model().medianSigma();
+  e.covariance = firstCovariance(e, noise);
+  int num_evaluations = 0;
+  Secants secants;
+  DebitedInformation debited;
+  for (int round = 0; round < options.num_rounds + max_rounds_of_free_axes; ++round) {
+    const bool is_extra = round >= options.num_rounds;
+    const SecantPlan plan = {e.covariance,
+                             e.displacement_metric,
+                             e.prior.precision,
+                             min_step_to_noise * noise,
+                             J,
+                             is_extra};
+    secants = measureSecants(scorer, e.mode, e.scores, e.residual_scale, plan, secants);
+    if (is_extra && secants.num_evaluations == 0)
+      break;
+    num_evaluations += secants.num_evaluations;
+    debited = debit(secants, J, e);
+  }
+  finish(secants, debited, e);
+  return num_evaluations;
 }
 
 } // namespace
@@ -204,22 +244,9 @@ estimateCalibrated(const SurfaceScorer& scorer,
       activeScores(e.scores, scorer.sourcePoints()), tau * tau * e.prior.precision);
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
-  e.covariance = firstCovariance(e, noise);
-  int num_evaluations = mode.num_evaluations + 1;
-  Secants secants;
-  DebitedInformation debited;
-  for (int round = 0; round < options.num_rounds; ++round) {
-    const SecantPlan plan = {e.covariance,
-                             e.displacement_metric,
-                             e.prior.precision,
-                             min_step_to_noise * noise,
-                             J.covariance};
-    secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
-    num_evaluations += secants.num_evaluations;
-    debited = debit(secants, J.covariance, e);
-  }
-  finish(secants, debited, e);
-  e.num_queries = ends.num_queries + num_points * num_evaluations;
+  const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
+  e.num_queries =
+      ends.num_queries + num_points * (mode.num_evaluations + 1 + num_evaluations);
   return e;
 }
 

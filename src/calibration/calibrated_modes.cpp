@@ -1,4 +1,5 @@
 #include "mode_weights.h"
+#include "principal_axes.h"
 
 #include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/product_coordinates.h>
@@ -21,11 +22,13 @@ namespace {
  * source's extent. */
 constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
 
-/** Starts reach this far, in standard deviations. */
-constexpr double reach = 2.5;
+/** Starts reach this far, in standard deviations: further out they are further from
+ * where the truth is likely than the prior's mean is. */
+constexpr double reach = 1.75;
 
-/** A start sees this part of the source's root mean square radius. */
-constexpr double sight = 0.25;
+/** A start is brought near by point-to-point ICP on this part of the points, and then
+ * sees this part of the source's root mean square radius. */
+constexpr double icp_part = 0.5, sight = 0.1;
 
 /** Where starts have ended is of no interest if their cost is above the best one's by
  * more than this part, or if they are within these Mahalanobis distances^2 of a mode:
@@ -149,8 +152,11 @@ followStarts(const SurfaceScorer& subset,
              const ModeSearchOptions& options)
 {
   const double noise = subset.model().medianSigma();
-  const Matrix6d metric = displacementMetric(subset, Isometry3d::Identity());
-  const double radius = std::sqrt(0.5 * metric.bottomRightCorner<3, 3>().trace());
+  const double radius = radiusOf(displacementMetric(subset, Isometry3d::Identity()));
+  const auto num_icp_points =
+      static_cast<Index>(icp_part * static_cast<double>(subset.sourcePoints().cols()));
+  const SurfaceScorer icp_points(subset.sourcePoints().leftCols(num_icp_points),
+                                 subset.model());
   RobustFitOptions fit;
   fit.start_scale =
       std::min(sight * radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
@@ -160,8 +166,13 @@ followStarts(const SurfaceScorer& subset,
   Random random(options.seed, std::numeric_limits<std::uint64_t>::max() / 2);
   const Matrix6Xd starts = startDeviations(wide, prior, options.num_starts, random);
   std::vector<RobustFit> ends;
-  for (Index i = 0; i < starts.cols(); ++i)
-    ends.push_back(fitRobustly(subset, prior, poseAt(starts.col(i), prior), fit));
+  for (Index i = 0; i < starts.cols(); ++i) {
+    const RobustFit icp =
+        fitPointToPoint(icp_points, prior, poseAt(starts.col(i), prior));
+    ends.push_back(fitRobustly(subset, prior, icp.pose, fit));
+    ends.back().num_evaluations +=
+        static_cast<int>(std::ceil(icp_part * icp.num_evaluations));
+  }
   std::stable_sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) {
     return a.cost < b.cost;
   });

@@ -131,6 +131,37 @@ basinDistance(const CalibratedEstimate& estimate, const DataReport& report)
   return squared < 0.0 ? 0.0 : std::sqrt(squared);
 }
 
+/** Probability that a chi-square variate of \p degrees of freedom is above \p x. */
+double
+chiSquareTail(int degrees, double x)
+{
+  double tail = degrees % 2 == 0 ? 0.0 : std::erfc(std::sqrt(0.5 * x));
+  for (int k = degrees % 2; k < degrees; k += 2)
+    tail +=
+        std::pow(0.5 * x, 0.5 * k) * std::exp(-0.5 * x) / std::tgamma(0.5 * k + 1.0);
+  return tail;
+}
+
+/** See DataReport::prior_probability. */
+double
+priorProbability(const CalibratedEstimate& estimate,
+                 const std::vector<DataDirection>& directions)
+{
+  const Vector6d deviation = estimate.prior.deviation + estimate.mean;
+  int num_held = 0;
+  double squared_distance = 0.0;
+  for (const DataDirection& direction : directions) {
+    if (direction.observability == Observability::PriorOnly)
+      continue;
+    // Directions are independent in the prior.
+    const double part = direction.prior_standard_deviation *
+                        direction.twist.dot(estimate.prior.precision * deviation);
+    squared_distance += part * part;
+    ++num_held;
+  }
+  return num_held == 0 ? 1.0 : chiSquareTail(num_held, squared_distance);
+}
+
 } // namespace
 
 DataReport
@@ -152,6 +183,7 @@ dataReportOf(const CalibratedEstimate& estimate,
   report.centre = estimate.centre;
   report.directions = directionsOf(estimate);
   report.basin_distance = basinDistance(estimate, report);
+  report.prior_probability = priorProbability(estimate, report.directions);
   report.flags = flagsOf(report);
   return report;
 }

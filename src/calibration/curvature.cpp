@@ -182,6 +182,17 @@ isNearly(const Vector6d& step, const Vector6d& planned, const Matrix6d& informat
              max_change_of_length * std::min(length, planned_length);
 }
 
+/** Whether a direction was clear and its step has not grown since. */
+bool
+isSettled(const Secants& previous, const SecantPlan& plan, int k, double length)
+{
+  const Vector6d planned = previous.planned.col(k);
+  const double previous_length =
+      std::sqrt(planned.dot(plan.displacement_metric * planned));
+  return previous.unclear_displacement[k] == 0.0 &&
+         length < max_change_of_length * previous_length;
+}
+
 /** The longest secant of steps from \p length down to \p shortest that is clear; the
  * longest of all if none is. */
 Secant
@@ -221,7 +232,8 @@ measureSecants(const SurfaceScorer& scorer,
     const double length =
         lengthOf(axis, std::sqrt(std::max(0.0, principal.variances[k])), plan);
     const Vector6d step = length * axis;
-    if (isNearly(step, previous.planned.col(k), information))
+    if (isNearly(step, previous.planned.col(k), information) ||
+        (plan.only_loosening && isSettled(previous, plan, k, length)))
       continue;
     // Directions are in the order of their spread: those that the data do not hold come
     // last in every round, and what was tried on them need not be tried again.

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace bayesian_icp {
 
 namespace {
+
+using Axes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /** Where the information is so many times the noise threshold, only the noise's mean is
  * debited. */
@@ -23,6 +26,24 @@ noiseDebit(double information, double noise, double threshold)
   const double above =
       (information / noise / threshold - 1.0) / (full_to_threshold - 1.0);
   return noise * (threshold + (1.0 - threshold) * std::clamp(above, 0.0, 1.0));
+}
+
+/** The steps; from those that are not held the part is taken along the held ones that
+ * accounts for their secants. */
+Matrix6d
+alongTheSurface(const Secants& secants, const Vector6d& keep)
+{
+  std::vector<int> held, free;
+  for (int k = 0; k < 6; ++k)
+    (keep[k] > 0.0 ? held : free).push_back(k);
+  Matrix6d steps = secants.steps;
+  if (held.empty() || free.empty())
+    return steps;
+  const Axes V = steps(Eigen::all, held);
+  const Eigen::MatrixXd H = V.transpose() * secants.curvature * V;
+  const Eigen::MatrixXd change = V.transpose() * secants.differences(Eigen::all, free);
+  steps(Eigen::all, free) -= V * H.ldlt().solve(change);
+  return steps;
 }
 
 } // namespace
@@ -67,8 +88,9 @@ debitedInformation(const Secants& secants,
                                                    step.dot(prior_precision * step);
     result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
   }
+  result.steps = alongTheSurface(secants, result.keep);
   result.transfer =
-      secants.steps * result.keep.cwiseSqrt().asDiagonal() * secants.steps.inverse();
+      result.steps * result.keep.cwiseSqrt().asDiagonal() * result.steps.inverse();
   const Matrix6d HT = secants.curvature * result.transfer;
   result.information = HT.transpose() * J.solve(HT);
   result.information =

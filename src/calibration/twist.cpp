@@ -1,5 +1,7 @@
 #include <bayesian_icp/calibration/twist.h>
 
+#include <Eigen/LU>
+
 #include <cmath>
 
 namespace bayesian_icp {
@@ -70,6 +72,10 @@ twistPrior(const Prior& prior,
   result.precision =
       rates.transpose() * prior.variance().cwiseInverse().asDiagonal() * rates;
   result.gradient = rates.transpose() * slope;
+  Vector6d wrapped = deviation;
+  for (int k = 3; k < 6; ++k)
+    wrapped[k] = wrapAngle(deviation[k]);
+  result.deviation = rates.partialPivLu().solve(wrapped);
   return result;
 }
 

@@ -34,7 +34,7 @@ class Usage(ToolTest):
             "effective-points": "6000",
             "sigma": "1",
             "prior-variance": "0.125",
-            "prior-frame": "origin",
+            "prior-frame": "automatic",
             "preset": "calibrated",
             "residual": "point-to-point",
             "kernel": "none",

@@ -50,6 +50,7 @@ notesOf(const DataReport& report)
   flag(report.flags.few_patches, "few_patches");
   flag(report.flags.misfit, "misfit");
   flag(report.flags.no_information, "no_information");
+  flag(report.flags.prior_conflict, "prior_conflict");
   const auto num_free = std::count_if(
       report.directions.begin(), report.directions.end(), [](const auto& direction) {
         return direction.observability == Observability::PriorOnly;
@@ -60,7 +61,8 @@ notesOf(const DataReport& report)
          numberNote("other_cost_ratio", report.other_cost_ratio) +
          numberNote("patches", report.effective_patches) +
          numberNote("residual_scale", report.residual_scale) +
-         numberNote("correlation", report.correlation_factor);
+         numberNote("correlation", report.correlation_factor) +
+         numberNote("prior_probability", report.prior_probability);
 }
 
 MethodResult

@@ -38,7 +38,7 @@ BAYESIAN_ICP_EXPORT bool
 mayHaveSeveralModes(const SurfaceScorer& scorer, const Prior& prior);
 
 /** \brief Look for modes other than \p first. A motion held by the prior only makes no
- * mode of its own. Not more than about 100 000 queries to look, and those of one
+ * mode of its own. Not more than about 150 000 queries to look, and those of one
  * estimate for each mode. */
 BAYESIAN_ICP_EXPORT ModeSearch
 findModes(const SurfaceScorer& scorer,

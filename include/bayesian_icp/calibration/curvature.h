@@ -25,6 +25,9 @@ struct SecantPlan {
   double min_displacement;
   /** J: a step is shortened until its secant is above its noise in this metric. */
   Matrix6d score_covariance;
+  /** Measure only directions that are not clear yet or whose step has grown: those of
+   * which the axis is still being found. */
+  bool only_loosening = false;
 };
 
 /** \brief Central differences of the total score along six steps. */
@@ -76,6 +79,10 @@ struct DebitedInformation {
   Vector6d keep = Vector6d::Zero();
   /** info_k: information of the data along each step before the debit. */
   Vector6d raw = Vector6d::Zero();
+  /** V: the steps. Those that keep nothing are turned towards the others such that the
+   * score stays as it is, by the secants: a prior may let the pose go far along them,
+   * where a small tilt of an axis is a large distance from the surface. */
+  Matrix6d steps = Matrix6d::Identity();
   /** T = V diag(sqrt(keep)) V^-1. */
   Matrix6d transfer = Matrix6d::Zero();
   /** Lambda = T^T H J^-1 H T. */

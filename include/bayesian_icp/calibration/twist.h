@@ -35,9 +35,11 @@ isometryOf(const Vector6d& pose);
 /** \brief The prior near a pose, in twists about a centre. */
 struct TwistPrior {
   /** Positive semidefinite [1/m^2, 1/rad^2]. */
-  Matrix6d precision;
+  Matrix6d precision = Matrix6d::Zero();
   /** Of the energy -log prior, exact at the pose. */
-  Vector6d gradient;
+  Vector6d gradient = Vector6d::Zero();
+  /** Twist from the prior's mean to the pose, to first order in the angles. */
+  Vector6d deviation = Vector6d::Zero();
 };
 
 /** \brief \p prior at \p T_target_source: the precision is the Hessian at the prior's

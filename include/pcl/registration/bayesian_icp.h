@@ -202,7 +202,8 @@ public:
     options_.prior.variance = variance;
   }
 
-  /** \brief The point whose translation the prior speaks of. */
+  /** \brief The point whose translation the prior speaks of: automatic, that is the
+   * source's centroid for preset `calibrated` and the origin for the others. */
   void
   setPriorFrame(bayesian_icp::PriorFrame frame)
   {
