@@ -89,12 +89,15 @@ class BrokenClouds(ToolTest):
             (b"VIEWPOINT 0 0", b"VIEWPOINT nan 0", "VIEWPOINT nan"),
             (b"VIEWPOINT 0 0", b"VIEWPOINT 0", "VIEWPOINT 0 0 1"),
             (b"FIELDS x y z", b"FIELDS x y\vz", "2 FIELDS"),
-            (b"TYPE F F F", b"TYPE F F I", "does not fit into the integer 'z'"),
             (b"COUNT 1 1 1", b"COUNT 4294967295 1 1", "3 values in place of 4294967297"),
         ):
             with self.subTest(new=new):
                 self.assertIn(old, content)
                 self.refuse("other.pcd", content.replace(old, new), reason)
+        whole = content.replace(b"TYPE F F F", b"TYPE F F I")
+        for value in (b"nan", b"2147483648", b"-1e10"):
+            bad = whole.replace(b"DATA ascii\n", b"DATA ascii\n1 2 " + value + b"\n")
+            self.refuse("whole.pcd", bad, "does not fit into the integer 'z'")
         body = content[content.index(b"DATA ascii\n") + len("DATA ascii\n") :]
         self.refuse("tab.pcd", content.replace(body, body.replace(b" ", b"\v")), "1 values")
 

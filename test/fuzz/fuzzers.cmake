@@ -41,9 +41,9 @@ foreach(name IN LISTS fuzzers)
   add_dependencies(fuzzers fuzz_${name})
 endforeach()
 
-# The class from its headers, and PCL's ICP and search tree as well.
+# The class from its headers, and PCL's ICP and search tree as well; FLANN's need lz4.
 target_sources(fuzz_registration PRIVATE registration_input.cpp)
 target_compile_definitions(fuzz_registration PRIVATE PCL_NO_PRECOMPILE)
 target_include_directories(fuzz_registration PRIVATE ${PROJECT_SOURCE_DIR}/include)
 target_link_libraries(fuzz_registration PRIVATE pcl_common pcl_kdtree pcl_search
-                                                pcl_registration)
+                                                pcl_registration lz4)

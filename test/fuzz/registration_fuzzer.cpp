@@ -16,9 +16,11 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
 /** Cancels a run that takes too many steps. */
 ProgressCallback
-limitSteps()
+limitSteps(const fuzz::RegistrationInput& input)
 {
-  return [steps = 0](const Progress&) mutable { return ++steps < fuzz::max_num_steps; };
+  return [num_left = input.max_num_steps](const Progress&) mutable {
+    return --num_left > 0;
+  };
 }
 
 /** What holds of every estimate, whatever its input was. */
@@ -47,7 +49,7 @@ registerByCore(const fuzz::RegistrationInput& input)
                                                        input.target.cast<double>(),
                                                        input.guess,
                                                        input.options,
-                                                       limitSteps());
+                                                       limitSteps(input));
   checkEstimate(estimate.summary, estimate.samples);
 }
 
@@ -71,7 +73,7 @@ registerByClass(const fuzz::RegistrationInput& input)
   icp.setUseReciprocalCorrespondences(input.is_reciprocal);
   icp.setUseMeanAsFinalTransformation(input.use_mean);
   icp.setOptions(input.options);
-  icp.setProgressCallback(limitSteps());
+  icp.setProgressCallback(limitSteps(input));
   Cloud output;
   icp.align(output, matrixOf(input.guess).cast<float>());
   if (input.source.cols() == 0 || input.target.cols() == 0)

@@ -14,7 +14,6 @@ namespace {
 
 using Bytes = FuzzedDataProvider;
 
-constexpr int max_num_points = 80;
 constexpr int max_num_odd_points = 12;
 
 /** A number that has broken something before, or any. */
@@ -97,7 +96,7 @@ pointOfShape(int shape, Random& random)
 }
 
 Eigen::Matrix3Xf
-cloudOf(Bytes& bytes)
+cloudOf(Bytes& bytes, int max_num_points)
 {
   const int num_points = bytes.ConsumeIntegralInRange(0, max_num_points);
   const int shape = bytes.ConsumeIntegralInRange(0, 6);
@@ -221,8 +220,10 @@ registrationInputOf(const std::uint8_t* data, std::size_t size)
     input.gate = oddNumber(bytes);
   if (bytes.ConsumeBool())
     input.guess = oddVector(bytes);
-  input.target = cloudOf(bytes);
-  input.source = bytes.ConsumeBool() ? input.target : cloudOf(bytes);
+  input.max_num_steps = bytes.PickValueInArray({50, 200, 1000});
+  const int max_num_points = input.options.preset == Preset::Calibrated ? 80 : 40;
+  input.target = cloudOf(bytes, max_num_points);
+  input.source = bytes.ConsumeBool() ? input.target : cloudOf(bytes, max_num_points);
   return input;
 }
 

@@ -11,6 +11,7 @@ shift 2
 found=$(mktemp -d)
 trap 'rm -rf "$found"' EXIT
 export TMPDIR=$found
+export ASAN_OPTIONS=quarantine_size_mb=32
 mkdir "$found/corpus"
 limits=(-timeout=20 -rss_limit_mb=1024 -malloc_limit_mb=256 -max_len=4096)
 "$fuzzer" "${limits[@]}" -runs=0 "$corpus"
