@@ -56,7 +56,7 @@ registerByCore(const fuzz::RegistrationInput& input)
 Cloud::Ptr
 pclCloudOf(const Eigen::Matrix3Xf& points)
 {
-  const Cloud::Ptr cloud(new Cloud);
+  Cloud::Ptr cloud(new Cloud);
   for (const Eigen::Vector3f point : points.colwise())
     cloud->push_back({point[0], point[1], point[2]});
   return cloud;

@@ -14,5 +14,7 @@ export TMPDIR=$found
 export ASAN_OPTIONS=quarantine_size_mb=32
 mkdir "$found/corpus"
 limits=(-timeout=20 -rss_limit_mb=1024 -malloc_limit_mb=256 -max_len=4096)
+dictionary=${corpus%/*}/../${corpus##*/}.dict
+[[ ! -f $dictionary ]] || limits+=("-dict=$dictionary")
 "$fuzzer" "${limits[@]}" -runs=0 "$corpus"
 "$fuzzer" "${limits[@]}" -seed=1 -print_final_stats=1 "$@" "$found/corpus" "$corpus"

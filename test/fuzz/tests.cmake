@@ -18,7 +18,9 @@ add_test(
     -DBAYESIAN_ICP_BUILD_FUZZERS=ON -DBAYESIAN_ICP_BUILD_APPS=OFF
     -DBAYESIAN_ICP_BUILD_TESTS=OFF)
 set_tests_properties(
-  fuzz.build PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers PROCESSORS 2 COST 900 TIMEOUT 1800)
+  fuzz.build
+  PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers PROCESSORS 2 COST 900 TIMEOUT 1800
+             ENVIRONMENT CMAKE_BUILD_PARALLEL_LEVEL=2)
 
 # fuzz_test(<name> <label> <fuzzer> <option of libFuzzer> ...)
 function(fuzz_test name label fuzzer)
@@ -29,7 +31,13 @@ function(fuzz_test name label fuzzer)
                                           TIMEOUT 900)
 endfunction()
 
+# New inputs for each that take about five seconds on a free core.
+set(runs_of_cloud_file 5000)
+set(runs_of_configuration 2000)
+set(runs_of_motion_file 5000)
+set(runs_of_posterior_file 4000)
+set(runs_of_registration 200)
 foreach(fuzzer IN LISTS fuzzers)
-  fuzz_test(fuzz.${fuzzer} fuzz ${fuzzer} -runs=2000)
+  fuzz_test(fuzz.${fuzzer} fuzz ${fuzzer} -runs=${runs_of_${fuzzer}})
   fuzz_test(fuzz.${fuzzer}.long long ${fuzzer} -max_total_time=60)
 endforeach()
