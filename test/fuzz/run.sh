@@ -1,5 +1,5 @@
 # Runs a fuzzer: first over the whole corpus, then over that many inputs more, which it
-# makes of the corpus. Fails on a crash, a finding of a sanitizer, an input that takes 20 s
+# makes of the corpus. Fails on a crash, a finding of a sanitizer, an input that takes 2 min
 # or a GB, and leaves the input that did it in the folder it runs in.
 # Arguments: the fuzzer, its corpus, options of libFuzzer that bound the run.
 set -euo pipefail
@@ -13,7 +13,7 @@ trap 'rm -rf "$found"' EXIT
 export TMPDIR=$found
 export ASAN_OPTIONS=quarantine_size_mb=32
 mkdir "$found/corpus"
-limits=(-timeout=20 -rss_limit_mb=1024 -malloc_limit_mb=256 -max_len=4096)
+limits=(-timeout=120 -rss_limit_mb=1024 -malloc_limit_mb=256 -max_len=4096)
 dictionary=${corpus%/*}/../${corpus##*/}.dict
 [[ ! -f $dictionary ]] || limits+=("-dict=$dictionary")
 "$fuzzer" "${limits[@]}" -runs=0 "$corpus"
