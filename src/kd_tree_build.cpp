@@ -29,11 +29,12 @@ Leaf
 makeLeaf(const Record* first, const Record* last)
 {
   Leaf leaf{};
-  for (std::size_t i = 0; i < leaf_size; ++i, ++first) {
+  for (std::size_t i = 0; i < leaf_size; ++i) {
     const bool is_used = first < last;
     for (int axis = 0; axis < 3; ++axis)
       leaf.coordinates[axis][i] = is_used ? first->coordinates[axis] : infinity;
     leaf.index[i] = is_used ? first->index : std::numeric_limits<std::uint32_t>::max();
+    first += is_used ? 1 : 0;
   }
   return leaf;
 }

@@ -1,15 +1,17 @@
 #include "scan_manifest.h"
 
 #include <io/errors.h>
+#include <io/json_file.h>
+#include <io/motion.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <fstream>
 
 namespace bayesian_icp::evaluate {
 
 namespace {
 
+constexpr std::uint64_t max_manifest_size = 16 << 20;
 constexpr double radians_per_degree = 3.14159265358979323846 / 180.0;
 
 /** \throws nlohmann::json::exception */
@@ -40,12 +42,10 @@ std::vector<ManifestEntry>
 readManifest(const std::string& folder)
 {
   const std::string file = folder + "/" + manifest_name;
-  std::ifstream stream(file);
-  if (!stream)
-    throw io::FileError(file, "cannot be read");
+  const nlohmann::json manifest = io::readJson(file, max_manifest_size);
   std::vector<ManifestEntry> entries;
   try {
-    for (const auto& json : nlohmann::json::parse(stream))
+    for (const auto& json : manifest)
       entries.push_back(entryOf(json));
   }
   catch (const nlohmann::json::exception& error) {
@@ -57,14 +57,7 @@ readManifest(const std::string& folder)
 Eigen::Isometry3d
 readTransform(const std::string& file)
 {
-  std::ifstream stream(file);
-  Eigen::Isometry3d transform;
-  for (Eigen::Index i = 0; i < 16; ++i)
-    if (!(stream >> transform.matrix()(i / 4, i % 4)))
-      throw io::FileError(file, "is not a 4 x 4 matrix");
-  if (!transform.linear().isUnitary(1e-3))
-    throw io::FileError(file, "is not a rigid motion");
-  return transform;
+  return Eigen::Isometry3d(io::readMatrixFile(file));
 }
 
 } // namespace bayesian_icp::evaluate

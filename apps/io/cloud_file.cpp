@@ -77,7 +77,7 @@ orientationOf(const CloudFile& cloud)
   return {q[0], q[1], q[2], q[3]};
 }
 
-/** PCL does not notice a full disk. */
+/** PCL does not notice a full disk, and writes fields that PLY does not have. */
 void
 requireComplete(CloudFormat format, const std::string& path)
 {
@@ -85,8 +85,10 @@ requireComplete(CloudFormat format, const std::string& path)
     InputFile file = openInput(path);
     format == CloudFormat::Pcd ? checkPcd(file) : checkPly(file);
   }
-  catch (const FileError&) {
-    throw std::runtime_error("only a part of it could be written");
+  catch (const FileError& error) {
+    const std::string reason = std::string(error.what()).substr(path.size() + 2);
+    throw std::runtime_error(
+        "what PCL has written is not complete or cannot be read: " + reason);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include <filesystem>
+#include <system_error>
 
 namespace bayesian_icp::io {
 
@@ -17,6 +18,8 @@ namespace {
 /** Matrices printed with four digits are still rotations. */
 constexpr double rotation_tolerance = 1e-3;
 constexpr std::uint64_t max_matrix_file_size = 1 << 16;
+
+} // namespace
 
 Eigen::Matrix4d
 readMatrixFile(const std::string& file)
@@ -36,8 +39,6 @@ readMatrixFile(const std::string& file)
     throw FileError(file, complaint);
   return matrix;
 }
-
-} // namespace
 
 std::string
 complaintAboutMotion(const Eigen::Matrix4d& matrix)
@@ -62,7 +63,8 @@ readMotion(const std::string& option, const std::string& text)
     is_pose = readNumber(items[k], pose[static_cast<Eigen::Index>(k)]);
   if (is_pose)
     return matrixOf(pose);
-  if (items.size() > 1 && !std::filesystem::exists(text))
+  std::error_code ignored;
+  if (items.size() > 1 && !std::filesystem::exists(text, ignored))
     throw UsageError("--" + option + ": " + io::quoted(text) +
                      " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad] nor "
                      "a file");

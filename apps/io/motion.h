@@ -14,8 +14,14 @@ namespace bayesian_icp::io {
 std::string
 complaintAboutMotion(const Eigen::Matrix4d& matrix);
 
-/** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], or of a text file with the 16
- * numbers of the matrix row by row.
+/** \brief The rigid motion in a text file with the 16 numbers of its 4x4 matrix row by
+ * row.
+ * \throws FileError if the file has something else */
+Eigen::Matrix4d
+readMatrixFile(const std::string& file);
+
+/** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], or of a file as
+ * readMatrixFile() takes it.
  * \param[in] option its name in errors, without the dashes
  * \throws UsageError if it is neither, FileError if the file has something else */
 Eigen::Matrix4d

@@ -3,6 +3,10 @@
 #include "io/numbers.h"
 #include "io/pcd_header.h"
 
+#include <cmath>
+#include <string_view>
+#include <vector>
+
 namespace bayesian_icp::io {
 
 namespace {
@@ -17,6 +21,41 @@ cutOff(const PcdHeader& header)
          std::to_string(header.num_points) + " points, ";
 }
 
+/** Whether PCL can store the number in the field: what an integer cannot hold is
+ * undefined there. */
+bool
+fits(double number, const PcdField& field)
+{
+  if (field.type == 'F')
+    return true;
+  const int num_bits = 8 * static_cast<int>(field.size);
+  return field.type == 'U' ? number >= 0.0 && number < std::ldexp(1.0, num_bits)
+                           : number >= -std::ldexp(1.0, num_bits - 1) &&
+                                 number < std::ldexp(1.0, num_bits - 1);
+}
+
+/** \return what is wrong with a point, to be said after its number; empty if nothing is
+ */
+std::string
+complaintAboutPoint(const std::vector<std::string_view>& values,
+                    const PcdHeader& header)
+{
+  if (values.size() != header.numValues())
+    return " has " + std::to_string(values.size()) + " values in place of " +
+           std::to_string(header.numValues());
+  auto value = values.begin();
+  for (const PcdField& field : header.fields)
+    for (std::uint32_t i = 0; i < field.count; ++i, ++value) {
+      double number = 0.0;
+      if (!readNumber(*value, number))
+        return ": " + quoted(*value) + " is not a number";
+      if (!fits(number, field))
+        return ": " + quoted(*value) + " does not fit into the integer " +
+               quoted(field.name);
+    }
+  return "";
+}
+
 /** \throws FileError unless the body has exactly the numbers that the header promises
  */
 void
@@ -25,22 +64,16 @@ checkAsciiBody(InputFile& file, const PcdHeader& header)
   std::uint64_t num_found = 0;
   std::string line;
   while (file.readLine(line)) {
-    const auto values = words(line);
+    const auto values = words(line, pcd_separators);
     if (values.empty())
       continue;
-    const std::string place = "point " + std::to_string(++num_found);
-    if (num_found > header.num_points)
+    if (++num_found > header.num_points)
       throw FileError(file.name,
                       "has more points than the " + std::to_string(header.num_points) +
                           " of its header");
-    if (values.size() != header.numValues())
-      throw FileError(file.name,
-                      place + " has " + std::to_string(values.size()) +
-                          " values in place of " + std::to_string(header.numValues()));
-    double number;
-    for (const auto value : values)
-      if (!readNumber(value, number))
-        throw FileError(file.name, place + ": " + quoted(value) + " is not a number");
+    const std::string complaint = complaintAboutPoint(values, header);
+    if (!complaint.empty())
+      throw FileError(file.name, "point " + std::to_string(num_found) + complaint);
   }
   if (num_found < header.num_points)
     throw FileError(file.name,
@@ -50,7 +83,7 @@ checkAsciiBody(InputFile& file, const PcdHeader& header)
 /** \throws FileError unless the compressed block is complete and of the promised size
  */
 void
-checkCompressedBody(InputFile& file, const PcdHeader& header, std::uint64_t num_bytes)
+checkCompressedBody(InputFile& file, const PcdHeader& header)
 {
   std::uint32_t sizes[2] = {0, 0}; // compressed, uncompressed
   const std::uint64_t num_left = file.numBytesLeft();
@@ -58,7 +91,9 @@ checkCompressedBody(InputFile& file, const PcdHeader& header, std::uint64_t num_
       !file.stream.read(reinterpret_cast<char*>(sizes), sizeof(sizes)) ||
       sizes[0] > num_left - sizeof(sizes))
     throw FileError(file.name, "is cut off: the compressed points are not complete");
-  if (sizes[1] != num_bytes || sizes[1] / max_lzf_expansion > sizes[0])
+  const std::uint64_t size_of_point = header.numBytesPerPoint();
+  if (sizes[1] / size_of_point != header.num_points || sizes[1] % size_of_point != 0 ||
+      sizes[1] / max_lzf_expansion > sizes[0])
     throw FileError(file.name,
                     cutOff(header) + "which its compressed data cannot hold");
 }
@@ -80,7 +115,7 @@ checkPcd(InputFile& file)
                           std::to_string(num_left / num_bytes_per_point));
   }
   else
-    checkCompressedBody(file, header, header.num_points * num_bytes_per_point);
+    checkCompressedBody(file, header);
   return header.num_points;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <string_view>
 
@@ -23,7 +24,9 @@ public:
     while (header_.encoding.empty()) {
       if (!file_.readLine(line_))
         fail(last_key_ < 0 ? "has no PCD header" : "the header is cut off");
-      const auto items = words(line_);
+      const auto items = words(line_, pcd_separators);
+      if (items.empty() && !line_.empty())
+        fail("a line of the header is blank, but not empty");
       if (!items.empty() && items.front().front() != '#')
         take(items);
     }
@@ -74,8 +77,10 @@ private:
   void
   takeValues(const std::string& key, const Words& values)
   {
-    if (key == "VERSION" || key == "VIEWPOINT")
+    if (key == "VERSION")
       return;
+    if (key == "VIEWPOINT")
+      return checkViewpoint(values);
     if (key == "FIELDS")
       takeFields(values);
     else if (key == "SIZE" || key == "TYPE" || key == "COUNT")
@@ -89,6 +94,17 @@ private:
                  : key == "HEIGHT" ? height_
                                    : header_.num_points,
                  values.front());
+  }
+
+  void
+  checkViewpoint(const Words& values) const
+  {
+    bool is_good = values.size() == 7;
+    float number = 0.0F;
+    for (const auto value : values)
+      is_good &= readNumber(value, number) && std::isfinite(number);
+    if (!is_good)
+      failInLine();
   }
 
   void

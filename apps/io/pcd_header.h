@@ -11,6 +11,9 @@
 
 namespace bayesian_icp::io {
 
+/** \brief What separates the words of a line, for PCL. */
+constexpr const char* pcd_separators = " \t\r";
+
 /** \brief One field of every point, as in the lines FIELDS, SIZE, TYPE and COUNT. */
 struct PcdField {
   std::string name;

@@ -11,7 +11,7 @@ namespace bayesian_icp {
 namespace {
 
 /** Fewer pairs do not determine a pose. */
-constexpr std::size_t min_pairs = 3;
+constexpr std::size_t min_batch_pairs = 3;
 /** After so many mini-batches with fewer pairs the descent is given up. */
 constexpr int max_skipped_batches = 100;
 
@@ -78,7 +78,7 @@ public:
       batch_.draw(pose, random_);
       if (is_one_to_one_)
         batch_.makeOneToOne();
-      if (batch_.numMatched() >= min_pairs)
+      if (batch_.numMatched() >= min_batch_pairs)
         return true;
       --num_skips_left_;
     }
@@ -176,7 +176,7 @@ stochasticGradientIcp(const Eigen::Matrix3Xd& source_points,
   StochasticGradientIcpResult result;
   result.pose = initial_pose;
   const auto num_points = static_cast<std::size_t>(source_points.cols());
-  if (!options.validate().empty() || num_points < min_pairs ||
+  if (!options.validate().empty() || num_points < min_batch_pairs ||
       !initial_pose.allFinite())
     return result;
   BatchGradient batch(source_points, search, options);

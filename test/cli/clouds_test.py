@@ -81,6 +81,47 @@ class BrokenClouds(ToolTest):
         vertices = vertices.replace(b"vertex 50", b"vertex 2000000000")
         self.refuse("lie.ply", vertices, "2000000000")
 
+    def test_headers_that_pcl_takes_for_others(self):
+        """It would read other numbers than those of the points, or end the program."""
+        content = pcd_bytes(POINTS, encoding="ascii")
+        for old, new, reason in (
+            (b"POINTS 50\n", b"POINTS 50\n \n", "blank"),
+            (b"VIEWPOINT 0 0", b"VIEWPOINT nan 0", "VIEWPOINT nan"),
+            (b"VIEWPOINT 0 0", b"VIEWPOINT 0", "VIEWPOINT 0 0 1"),
+            (b"FIELDS x y z", b"FIELDS x y\vz", "2 FIELDS"),
+            (b"COUNT 1 1 1", b"COUNT 4294967295 1 1", "3 values in place of 4294967297"),
+        ):
+            with self.subTest(new=new):
+                self.assertIn(old, content)
+                self.refuse("other.pcd", content.replace(old, new), reason)
+        whole = content.replace(b"TYPE F F F", b"TYPE F F I")
+        for value in (b"nan", b"2147483648", b"-1e10"):
+            bad = whole.replace(b"DATA ascii\n", b"DATA ascii\n1 2 " + value + b"\n")
+            self.refuse("whole.pcd", bad, "does not fit into the integer 'z'")
+        body = content[content.index(b"DATA ascii\n") + len("DATA ascii\n") :]
+        self.refuse("tab.pcd", content.replace(body, body.replace(b" ", b"\v")), "1 values")
+
+    def test_ply_headers_that_pcl_takes_for_others(self):
+        """As above: PCL believes obj_info, and stores colours and alpha as one number."""
+        content = ply_bytes(POINTS)
+        x = b"property float x\n"
+        for old, new, reason in (
+            (x, b"obj_info num_cols 1\n" + x, "num_cols times num_rows is 1"),
+            (x, b"obj_info num_rows 400000000\n" + x, "num_cols times num_rows"),
+            (x, b"obj_info num_cols \n" + x, "bad line in the header"),
+            (x, b" obj_info num_cols 50\n" + x, "bad line in the header"),
+            (x, x + x, "two properties are called 'x'"),
+            (x, b"property uchar blue\n", "red, green, blue"),
+            (x, b"property uchar alpha\n", "red, green, blue"),
+            (x, b"property uchar red\n", "red, green, blue"),
+            (x, b"".join(b"property uchar p%d\n" % i for i in range(1000)), "more than 1000"),
+            (b"element face 1\n", b"element range_grid 1\n", "range grid with gaps"),
+            (b"property list uchar int vertex_indices\n", b"", "'face' has no properties"),
+        ):
+            with self.subTest(new=new):
+                self.assertIn(old, content)
+                self.refuse("other.ply", content.replace(old, new), reason)
+
     def test_lying_headers_allocate_nothing(self):
         """With an address space that could not hold a tenth of what the header claims."""
         lie = pcd_bytes(POINTS).replace(b" 50", b" 2000000000")

@@ -195,6 +195,11 @@ class TransformRefusals(TransformTest):
             self.assertEqual((result.returncode, result.stderr), (0, ""))
             self.assertIn("pcl_bayesian_icp_transform", result.stdout)
 
+    def test_pose_that_is_too_long_for_a_name(self):
+        result = transform(self.cloud(), self.folder / "out.pcd", "--pose", "1," * 5000)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("is neither the six numbers", result.stderr)
+
     def test_files(self):
         source, output = self.cloud(), self.folder / "out.pcd"
         result = transform(source, self.folder / "out.xyz", "--pose", WORDS)
@@ -208,6 +213,17 @@ class TransformRefusals(TransformTest):
         scaled = self.file("scaled.txt", "2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1")
         self.assert_refused(3, transform(source, output, "-p", scaled), "is not a rotation")
         self.assertFalse(output.exists())
+
+    def test_fields_that_ply_cannot_have(self):
+        twice = [("x", "f"), ("y", "f"), ("z", "f"), ("x", "f")]
+        source = self.file("twice.pcd", cloud_files.pcd_bytes([(1, 2, 3, 4)] * 3, twice))
+        output = self.folder / "out.ply"
+        result = transform(source, output, "--pose", WORDS)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn(f"{output}: cannot be written", result.stderr)
+        self.assertIn("two properties are called 'x'", result.stderr)
+        self.assertFalse(output.exists())
+        self.assert_done(transform(source, self.folder / "out.pcd", "--pose", WORDS))
 
     def test_full_disk(self):
         """No file may be larger than 500 bytes."""

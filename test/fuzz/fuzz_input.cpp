@@ -1,0 +1,49 @@
+#include "fuzz_input.h"
+
+#include "io/errors.h"
+#include "plot/temporary_folder.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+
+namespace bayesian_icp::fuzz {
+
+std::string
+writeInput(const std::string& name, std::string_view bytes)
+{
+  static const plot::TemporaryFolder folder;
+  std::string path = folder.path() + '/' + name;
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  stream << bytes;
+  stream.close();
+  require(!stream.fail(),
+          "the input cannot be written to the folder for temporary files");
+  return path;
+}
+
+bool
+isAccepted(const std::function<void()>& read)
+{
+  try {
+    read();
+    return true;
+  }
+  catch (const io::FileError&) {
+    return false;
+  }
+  catch (const io::UsageError&) {
+    return false;
+  }
+}
+
+void
+require(bool holds, const char* what)
+{
+  if (holds)
+    return;
+  std::cerr << "violated: " << what << std::endl;
+  std::abort();
+}
+
+} // namespace bayesian_icp::fuzz

@@ -1,0 +1,49 @@
+# The programs fuzz_<name>. Everything of ours in them is instrumented, and so is what
+# PCL, FLANN, Boost and Eigen have in headers.
+find_package(nlohmann_json 3 REQUIRED)
+set(apps ${PROJECT_SOURCE_DIR}/apps)
+
+# What reads files, without the programs around it.
+add_library(
+  fuzz_readers STATIC
+  ${apps}/batch/manifest.cpp
+  ${apps}/evaluate/scan_manifest.cpp
+  ${apps}/io/cloud_file.cpp
+  ${apps}/io/input_file.cpp
+  ${apps}/io/json_file.cpp
+  ${apps}/io/line_file.cpp
+  ${apps}/io/motion.cpp
+  ${apps}/io/pcd_format.cpp
+  ${apps}/io/pcd_header.cpp
+  ${apps}/io/ply_format.cpp
+  ${apps}/io/ply_header.cpp
+  ${apps}/io/posterior_file.cpp
+  ${apps}/register/authors_config.cpp
+  ${apps}/register/config_file.cpp
+  ${apps}/register/settings.cpp
+  ${apps}/register/settings_json.cpp
+  fuzz_input.cpp)
+bayesian_icp_configure(fuzz_readers)
+target_include_directories(fuzz_readers PUBLIC ${apps} ${apps}/evaluate)
+target_compile_definitions(fuzz_readers PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
+target_link_libraries(fuzz_readers PUBLIC bayesian_icp_core nlohmann_json::nlohmann_json
+                                          pcl_io)
+
+# Several files are compiled as one, which takes half the time.
+set_target_properties(bayesian_icp_core PROPERTIES UNITY_BUILD ON)
+
+add_custom_target(fuzzers)
+foreach(name IN LISTS fuzzers)
+  add_executable(fuzz_${name} EXCLUDE_FROM_ALL ${name}_fuzzer.cpp)
+  bayesian_icp_configure(fuzz_${name})
+  target_link_libraries(fuzz_${name} PRIVATE fuzz_readers)
+  target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  add_dependencies(fuzzers fuzz_${name})
+endforeach()
+
+# The class from its headers, and PCL's ICP and search tree as well; FLANN's need lz4.
+target_sources(fuzz_registration PRIVATE registration_input.cpp)
+target_compile_definitions(fuzz_registration PRIVATE PCL_NO_PRECOMPILE)
+target_include_directories(fuzz_registration PRIVATE ${PROJECT_SOURCE_DIR}/include)
+target_link_libraries(fuzz_registration PRIVATE pcl_common pcl_kdtree pcl_search
+                                                pcl_registration lz4)

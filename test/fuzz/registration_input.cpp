@@ -1,0 +1,230 @@
+#include "registration_input.h"
+
+#include <bayesian_icp/random.h>
+
+#include <fuzzer/FuzzedDataProvider.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp::fuzz {
+
+namespace {
+
+using Bytes = FuzzedDataProvider;
+
+constexpr int max_num_odd_points = 12;
+
+/** A number that has broken something before, or any. */
+double
+oddNumber(Bytes& bytes)
+{
+  using Limits = std::numeric_limits<double>;
+  using FloatLimits = std::numeric_limits<float>;
+  static const std::array<double, 22> numbers = {0.0,
+                                                 -0.0,
+                                                 1.0,
+                                                 -1.0,
+                                                 M_PI,
+                                                 -M_PI_2,
+                                                 1e-9,
+                                                 1e6,
+                                                 1e17,
+                                                 1e18,
+                                                 -1e19,
+                                                 1e30,
+                                                 -1e30,
+                                                 FloatLimits::denorm_min(),
+                                                 FloatLimits::max(),
+                                                 Limits::denorm_min(),
+                                                 Limits::min(),
+                                                 Limits::max(),
+                                                 Limits::lowest(),
+                                                 Limits::infinity(),
+                                                 -Limits::infinity(),
+                                                 Limits::quiet_NaN()};
+  const auto choice = bytes.ConsumeIntegral<std::uint8_t>();
+  if (choice < numbers.size())
+    return numbers[choice];
+  if (choice < 128)
+    return bytes.ConsumeIntegral<std::int16_t>() * 1e-3;
+  return bytes.ConsumeFloatingPoint<double>();
+}
+
+/** From \p least to \p most, or far out. */
+int
+oddCount(Bytes& bytes, int least, int most)
+{
+  return bytes.ConsumeIntegral<std::uint8_t>() % 8 > 0
+             ? bytes.ConsumeIntegralInRange(least, most)
+             : bytes.PickValueInArray({-1, 0, std::numeric_limits<int>::max()});
+}
+
+Vector6d
+oddVector(Bytes& bytes)
+{
+  Vector6d vector;
+  for (double& number : vector)
+    number = oddNumber(bytes);
+  return vector;
+}
+
+/** A point of one of a few shapes about as large as 1 m. */
+Eigen::Vector3d
+pointOfShape(int shape, Random& random)
+{
+  Eigen::Vector3d point(random.uniform(), random.uniform(), random.uniform());
+  switch (shape) {
+  case 0: // the faces of a cube
+    point[static_cast<Eigen::Index>(random.index(3))] =
+        random.index(2) == 0 ? 0.0 : 1.0;
+    return point;
+  case 1: // a plane
+    return {point[0], point[1], 0.0};
+  case 2: // a line
+    return point[0] * Eigen::Vector3d(1.0, 1.0, -1.0);
+  case 3: // one point
+    return {1.0, 2.0, 3.0};
+  case 4: // a few points, many times each
+    return (3.0 * point).array().floor();
+  case 5: // a sphere
+    return (point - Eigen::Vector3d::Constant(0.5)).normalized();
+  default: // no surface
+    return point;
+  }
+}
+
+Eigen::Matrix3Xf
+cloudOf(Bytes& bytes, int max_num_points)
+{
+  const int num_points = bytes.ConsumeIntegralInRange(0, max_num_points);
+  const int shape = bytes.ConsumeIntegralInRange(0, 6);
+  Random random(bytes.ConsumeIntegral<std::uint8_t>(), 0);
+  const double noise = bytes.ConsumeBool() ? 0.01 : 0.0;
+  const bool is_odd = bytes.ConsumeBool();
+  const double scale = is_odd ? oddNumber(bytes) : 1.0;
+  const double offset = is_odd ? oddNumber(bytes) : 0.0;
+  Eigen::Matrix3Xf cloud(3, num_points);
+  for (int i = 0; i < num_points; ++i) {
+    const Eigen::Vector3d error(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d point = pointOfShape(shape, random) + noise * error;
+    cloud.col(i) = ((scale * point).array() + offset).cast<float>();
+  }
+  const int num_odd = bytes.ConsumeIntegralInRange(0, max_num_odd_points);
+  for (int i = 0; i < std::min(num_odd, num_points); ++i)
+    for (int k = 0; k < 3; ++k)
+      cloud(k, i) = static_cast<float>(oddNumber(bytes));
+  return cloud;
+}
+
+template <typename Choice>
+Choice
+choiceOf(Bytes& bytes, int num_choices)
+{
+  return static_cast<Choice>(bytes.ConsumeIntegralInRange(0, num_choices - 1));
+}
+
+/** Gives \p change bytes for every field whose bit is set. */
+class FieldChanger {
+public:
+  explicit FieldChanger(Bytes& bytes)
+  : bytes_(bytes)
+  , fields_(bytes.ConsumeIntegral<std::uint32_t>())
+  {}
+
+  void
+  operator()(double& number)
+  {
+    if (isNext())
+      number = oddNumber(bytes_);
+  }
+
+  void
+  operator()(Vector6d& vector)
+  {
+    if (isNext())
+      vector = oddVector(bytes_);
+  }
+
+  void
+  operator()(int& count, int least, int most)
+  {
+    if (isNext())
+      count = oddCount(bytes_, least, most);
+  }
+
+private:
+  bool
+  isNext()
+  {
+    const bool is_set = (fields_ & 1U) != 0;
+    fields_ >>= 1U;
+    return is_set;
+  }
+
+  Bytes& bytes_;
+  std::uint32_t fields_;
+};
+
+Options
+optionsOf(Bytes& bytes)
+{
+  Options options;
+  options.preset = choiceOf<Preset>(bytes, 3);
+  options.prior.frame = choiceOf<PriorFrame>(bytes, 2);
+  options.mini_batch.sampling = choiceOf<MiniBatchSampling>(bytes, 2);
+  options.exact.metropolis = choiceOf<MetropolisUse>(bytes, 3);
+  options.exact.residual.residual = choiceOf<Residual>(bytes, 2);
+  options.exact.residual.kernel = choiceOf<RobustKernel>(bytes, 3);
+  options.chains.num_chains = bytes.ConsumeIntegralInRange(0, 5);
+  options.chains.num_draws = bytes.ConsumeIntegralInRange(0, 60);
+  options.chains.seed = bytes.ConsumeIntegral<std::uint8_t>();
+  options.chains.num_threads = 1;
+  FieldChanger change(bytes);
+  change(options.likelihood.effective_points);
+  change(options.likelihood.measurement_sigma);
+  change(options.prior.mean);
+  change(options.prior.variance);
+  change(options.mini_batch.batch_size, 1, 100);
+  change(options.sgld.step_size);
+  change(options.sgld.decay_rate);
+  change(options.sgld.lambda_rms);
+  change(options.sgld.noise_factor);
+  change(options.sgld.block_decay_factor);
+  change(options.sgld.block_decay_start);
+  change(options.sgld.block_decay_interval, 1, 100);
+  change(options.chains.num_burn_in, 1, 50);
+  change(options.chains.thinning, 1, 20);
+  change(options.chains.initial_spread);
+  change(options.exact.residual.kernel_width);
+  change(options.exact.residual.max_distance);
+  change(options.exact.max_source_points, 1, 100);
+  change(options.calibrated.max_source_points, min_calibrated_points, 100);
+  change(options.calibrated.num_mode_points, min_calibrated_points, 100);
+  return options;
+}
+
+} // namespace
+
+RegistrationInput
+registrationInputOf(const std::uint8_t* data, std::size_t size)
+{
+  Bytes bytes(data, size);
+  RegistrationInput input;
+  input.options = optionsOf(bytes);
+  input.icp_iterations = bytes.ConsumeIntegralInRange(0, 10);
+  input.is_reciprocal = bytes.ConsumeBool();
+  input.use_mean = bytes.ConsumeBool();
+  if (bytes.ConsumeBool())
+    input.gate = oddNumber(bytes);
+  if (bytes.ConsumeBool())
+    input.guess = oddVector(bytes);
+  input.max_num_steps = bytes.PickValueInArray({50, 200, 1000});
+  const int max_num_points = input.options.preset == Preset::Calibrated ? 80 : 40;
+  input.target = cloudOf(bytes, max_num_points);
+  input.source = bytes.ConsumeBool() ? input.target : cloudOf(bytes, max_num_points);
+  return input;
+}
+
+} // namespace bayesian_icp::fuzz

@@ -1,0 +1,43 @@
+# fuzz.build configures and builds the fuzzers in build/fuzz; fuzz.<name> runs one over its
+# corpus and a number of new inputs that takes seconds, fuzz.<name>.long for a minute.
+find_program(CLANGXX NAMES clang++-14 clang++)
+find_program(BASH bash REQUIRED)
+if(NOT CLANGXX)
+  message(WARNING "clang++ is not here (see scripts/bootstrap): nothing is fuzzed")
+  return()
+endif()
+
+set(fuzz_build ${PROJECT_BINARY_DIR}/fuzz)
+add_test(
+  NAME fuzz.build
+  COMMAND
+    ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${fuzz_build}
+    --build-generator ${CMAKE_GENERATOR} --build-target fuzzers --build-options
+    -DCMAKE_CXX_COMPILER=${CLANGXX}
+    -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
+    -DBAYESIAN_ICP_BUILD_FUZZERS=ON -DBAYESIAN_ICP_BUILD_APPS=OFF
+    -DBAYESIAN_ICP_BUILD_TESTS=OFF)
+set_tests_properties(
+  fuzz.build
+  PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers PROCESSORS 2 COST 900 TIMEOUT 1800
+             ENVIRONMENT CMAKE_BUILD_PARALLEL_LEVEL=2)
+
+# fuzz_test(<name> <label> <fuzzer> <option of libFuzzer> ...)
+function(fuzz_test name label fuzzer)
+  add_test(NAME ${name} COMMAND ${BASH} ${CMAKE_CURRENT_SOURCE_DIR}/run.sh
+                                ${fuzz_build}/bin/fuzz_${fuzzer}
+                                ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${fuzzer} ${ARGN})
+  set_tests_properties(${name} PROPERTIES LABELS ${label} FIXTURES_REQUIRED fuzzers
+                                          TIMEOUT 900)
+endfunction()
+
+# New inputs for each that take about five seconds on a free core.
+set(runs_of_cloud_file 5000)
+set(runs_of_configuration 2000)
+set(runs_of_motion_file 5000)
+set(runs_of_posterior_file 4000)
+set(runs_of_registration 200)
+foreach(fuzzer IN LISTS fuzzers)
+  fuzz_test(fuzz.${fuzzer} fuzz ${fuzzer} -runs=${runs_of_${fuzzer}})
+  fuzz_test(fuzz.${fuzzer}.long long ${fuzzer} -max_total_time=60)
+endforeach()
