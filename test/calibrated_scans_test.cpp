@@ -138,5 +138,44 @@ TEST(CalibratedScans, TheDefaultPriorMixes)
   }
 }
 
+/** Squared Mahalanobis distance of the truth. */
+double
+distanceOfTruth(const simulator::ScanPair& scans, const Options& options)
+{
+  const Summary summary = estimatePosterior(scans.source.cast<double>(),
+                                            scans.target.cast<double>(),
+                                            Vector6d::Zero(),
+                                            options)
+                              .summary;
+  const auto convention = CovarianceConvention::R3xSO3;
+  const Vector6d error =
+      poseError(poseOf(scans.T_target_source), summary.mean, convention);
+  return error.dot(summary.covariance(convention).ldlt().solve(error));
+}
+
+TEST(CalibratedScans, ABowlTurnsAboutItsAxisWhicheverOfItsPointsAreUsed)
+{
+  // data/bowl, and a prior that lets it turn by 0.35 rad.
+  simulator::SimulationOptions scan = simulator::defaultOptions("bowl");
+  scan.sensor.dropout_from = 75.0;
+  const simulator::ScanPair scans = simulator::simulate(scan);
+  for (const PriorFrame frame : {PriorFrame::Origin, PriorFrame::SourceCentroid})
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+      Options options;
+      options.prior.frame = frame;
+      options.chains.seed = seed;
+      EXPECT_LT(distanceOfTruth(scans, options), chi_square_999)
+          << toString(frame) << ' ' << seed;
+    }
+}
+
+TEST(CalibratedScans, AreFoundFromAsFarAsThePriorSays)
+{
+  // 1.2 standard deviations of the default prior in each coordinate.
+  simulator::SimulationOptions scan = simulator::defaultOptions("table");
+  scan.offset << 0.42, -0.42, 0.42, -0.42, 0.42, -0.42;
+  EXPECT_LT(distanceOfTruth(simulator::simulate(scan), Options()), chi_square_999);
+}
+
 } // namespace
 } // namespace bayesian_icp

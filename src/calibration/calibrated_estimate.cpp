@@ -199,7 +199,7 @@ measureCurvature(const SurfaceScorer& scorer,
                  const EstimateOptions& options,
                  CalibratedEstimate& e)
 {
-  const double noise = scorer.model().medianSigma();
+  const double noise = scorer.model().medianSigma(), tau = e.residual_scale;
   e.covariance = firstCovariance(e, noise);
   int num_evaluations = 0;
   Secants secants;
@@ -210,9 +210,10 @@ measureCurvature(const SurfaceScorer& scorer,
                              e.displacement_metric,
                              e.prior.precision,
                              min_step_to_noise * noise,
-                             J,
-                             is_extra};
-    secants = measureSecants(scorer, e.mode, e.scores, e.residual_scale, plan, secants);
+                             J};
+    secants = is_extra ? remeasureFreeAxes(
+                             scorer, e.mode, e.scores, tau, plan, secants, debited.keep)
+                       : measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
     if (is_extra && secants.num_evaluations == 0)
       break;
     num_evaluations += secants.num_evaluations;

@@ -182,17 +182,6 @@ isNearly(const Vector6d& step, const Vector6d& planned, const Matrix6d& informat
              max_change_of_length * std::min(length, planned_length);
 }
 
-/** Whether a direction was clear and its step has not grown since. */
-bool
-isSettled(const Secants& previous, const SecantPlan& plan, int k, double length)
-{
-  const Vector6d planned = previous.planned.col(k);
-  const double previous_length =
-      std::sqrt(planned.dot(plan.displacement_metric * planned));
-  return previous.unclear_displacement[k] == 0.0 &&
-         length < max_change_of_length * previous_length;
-}
-
 /** The longest secant of steps from \p length down to \p shortest that is clear; the
  * longest of all if none is. */
 Secant
@@ -211,6 +200,31 @@ clearSecant(SecantMaker& maker,
     secant = maker.along(length * axis, direction);
   }
   return maker.isClear(secant) ? secant : widest;
+}
+
+/** Take \p secant for direction \p k, of which the step was \p planned. */
+void
+replace(int k,
+        const Vector6d& planned,
+        const Secant& secant,
+        double unclear_displacement,
+        Secants& secants)
+{
+  secants.unclear_displacement[k] = unclear_displacement;
+  secants.planned.col(k) = planned;
+  secants.steps.col(k) = secant.step;
+  secants.differences.col(k) = secant.difference;
+  secants.noise[static_cast<std::size_t>(k)] = secant.noise;
+}
+
+/** H of steps and differences, symmetrised. */
+void
+setCurvature(Secants& secants)
+{
+  const Matrix6d products = secants.steps.transpose() * secants.differences;
+  const Matrix6d inverse = secants.steps.inverse();
+  secants.curvature =
+      inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
 }
 
 } // namespace
@@ -232,25 +246,53 @@ measureSecants(const SurfaceScorer& scorer,
     const double length =
         lengthOf(axis, std::sqrt(std::max(0.0, principal.variances[k])), plan);
     const Vector6d step = length * axis;
-    if (isNearly(step, previous.planned.col(k), information) ||
-        (plan.only_loosening && isSettled(previous, plan, k, length)))
+    if (isNearly(step, previous.planned.col(k), information))
       continue;
     // Directions are in the order of their spread: those that the data do not hold come
     // last in every round, and what was tried on them need not be tried again.
     const double shortest = std::max(min_shortened * plan.min_displacement,
                                      previous.unclear_displacement[k]);
     const Secant secant = clearSecant(maker, axis, length, shortest, k);
-    secants.unclear_displacement[k] = maker.isClear(secant) ? 0.0 : length;
-    secants.planned.col(k) = step;
-    secants.steps.col(k) = secant.step;
-    secants.differences.col(k) = secant.difference;
-    secants.noise[static_cast<std::size_t>(k)] = secant.noise;
+    replace(k, step, secant, maker.isClear(secant) ? 0.0 : length, secants);
   }
   secants.num_evaluations = maker.numEvaluations();
-  const Matrix6d products = secants.steps.transpose() * secants.differences;
-  const Matrix6d inverse = secants.steps.inverse();
-  secants.curvature =
-      inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
+  setCurvature(secants);
+  return secants;
+}
+
+Secants
+remeasureFreeAxes(const SurfaceScorer& scorer,
+                  const Isometry3d& mode,
+                  const SurfaceScores& at_mode,
+                  double tau,
+                  const SecantPlan& plan,
+                  const Secants& previous,
+                  const Vector6d& keep)
+{
+  constexpr int loosest = 5;
+  std::array<bool, 6> held;
+  for (int k = 0; k < 6; ++k)
+    held[static_cast<std::size_t>(k)] = k != loosest && keep[k] > 0.0;
+  const Matrix6d turned = alongTheSurface(previous, held);
+  const Matrix6d information = plan.covariance.inverse();
+  SecantMaker maker(scorer, mode, at_mode, tau, plan.score_covariance);
+  Secants secants = previous;
+  for (int k = 0; k < 6; ++k) {
+    if (held[static_cast<std::size_t>(k)])
+      continue;
+    Vector6d axis = turned.col(k);
+    axis /= std::sqrt(axis.dot(plan.displacement_metric * axis));
+    const double length =
+        lengthOf(axis, 1.0 / std::sqrt(axis.dot(information * axis)), plan);
+    const Vector6d step = length * axis;
+    if (isNearly(step, previous.planned.col(k), information))
+      continue;
+    const Secant secant = maker.along(step, k);
+    replace(k, step, secant, maker.isClear(secant) ? 0.0 : length, secants);
+    secants.may_be_held[static_cast<std::size_t>(k)] = keep[k] > 0.0;
+  }
+  secants.num_evaluations = maker.numEvaluations();
+  setCurvature(secants);
   return secants;
 }
 

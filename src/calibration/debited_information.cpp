@@ -28,25 +28,23 @@ noiseDebit(double information, double noise, double threshold)
   return noise * (threshold + (1.0 - threshold) * std::clamp(above, 0.0, 1.0));
 }
 
-/** The steps; from those that are not held the part is taken along the held ones that
- * accounts for their secants. */
+} // namespace
+
 Matrix6d
-alongTheSurface(const Secants& secants, const Vector6d& keep)
+alongTheSurface(const Secants& secants, const std::array<bool, 6>& held)
 {
-  std::vector<int> held, free;
+  std::vector<int> firm, loose;
   for (int k = 0; k < 6; ++k)
-    (keep[k] > 0.0 ? held : free).push_back(k);
+    (held[static_cast<std::size_t>(k)] ? firm : loose).push_back(k);
   Matrix6d steps = secants.steps;
-  if (held.empty() || free.empty())
+  if (firm.empty() || loose.empty())
     return steps;
-  const Axes V = steps(Eigen::all, held);
+  const Axes V = steps(Eigen::all, firm);
   const Eigen::MatrixXd H = V.transpose() * secants.curvature * V;
-  const Eigen::MatrixXd change = V.transpose() * secants.differences(Eigen::all, free);
-  steps(Eigen::all, free) -= V * H.ldlt().solve(change);
+  const Eigen::MatrixXd change = V.transpose() * secants.differences(Eigen::all, loose);
+  steps(Eigen::all, loose) -= V * H.ldlt().solve(change);
   return steps;
 }
-
-} // namespace
 
 double
 noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise)
@@ -74,6 +72,7 @@ debitedInformation(const Secants& secants,
   const Matrix6d HV = secants.curvature * secants.steps;
   DebitedInformation result;
   result.raw = (HV.transpose() * J.solve(HV)).diagonal();
+  std::array<bool, 6> held = {};
   for (int k = 0; k < 6; ++k) {
     const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
     const Vector6d step = secants.steps.col(k);
@@ -84,11 +83,12 @@ debitedInformation(const Secants& secants,
                                           mean_noise,
                                           noiseThreshold(score_covariance, noise))
                              : 0.0);
-    const bool is_held = kept > 0.0 && kept >= min_relative_information *
-                                                   step.dot(prior_precision * step);
+    bool& is_held = held[static_cast<std::size_t>(k)];
+    is_held = secants.may_be_held[static_cast<std::size_t>(k)] && kept > 0.0 &&
+              kept >= min_relative_information * step.dot(prior_precision * step);
     result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
   }
-  result.steps = alongTheSurface(secants, result.keep);
+  result.steps = alongTheSurface(secants, held);
   result.transfer =
       result.steps * result.keep.cwiseSqrt().asDiagonal() * result.steps.inverse();
   const Matrix6d HT = secants.curvature * result.transfer;
