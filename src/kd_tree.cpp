@@ -122,7 +122,9 @@ KdTree::nearestOfAll(const Eigen::Matrix3Xf& queries,
                    {none, std::numeric_limits<float>::infinity(), false});
   if (num_threads <= 0)
     num_threads = omp_get_max_threads();
-#pragma omp parallel num_threads(num_threads) if (num_queries >= min_queries_to_share)
+  if (num_queries < min_queries_to_share || omp_in_parallel() != 0)
+    num_threads = 1;
+#pragma omp parallel num_threads(num_threads)
   {
     std::uint32_t last = none;
 #pragma omp for schedule(dynamic, 512)
