@@ -15,8 +15,9 @@ namespace {
 
 using kd_tree::Search;
 
-/** Fewer are done before another thread has woken up. */
-constexpr std::ptrdiff_t min_queries_to_share = 2048;
+/** Worth some 2 ms with hints. For less, waking a thread may cost more than it saves,
+ * by far if other programs keep the cores busy. */
+constexpr std::ptrdiff_t min_queries_to_share = 32768;
 
 Search
 searchOf(InstructionSet instruction_set)
