@@ -15,8 +15,9 @@ namespace {
 
 using kd_tree::Search;
 
-/** Fewer are done before another thread has woken up. */
-constexpr std::ptrdiff_t min_queries_to_share = 2048;
+/** Worth some 2 ms with hints. For less, waking a thread may cost more than it saves,
+ * by far if other programs keep the cores busy. */
+constexpr std::ptrdiff_t min_queries_to_share = 32768;
 
 Search
 searchOf(InstructionSet instruction_set)
@@ -122,7 +123,9 @@ KdTree::nearestOfAll(const Eigen::Matrix3Xf& queries,
                    {none, std::numeric_limits<float>::infinity(), false});
   if (num_threads <= 0)
     num_threads = omp_get_max_threads();
-#pragma omp parallel num_threads(num_threads) if (num_queries >= min_queries_to_share)
+  if (num_queries < min_queries_to_share || omp_in_parallel() != 0)
+    num_threads = 1;
+#pragma omp parallel num_threads(num_threads)
   {
     std::uint32_t last = none;
 #pragma omp for schedule(dynamic, 512)
