@@ -80,7 +80,7 @@ casesOfOptions()
        "prior variances of 1e-12, far from the truth",
        usual,
        variance(1e-12),
-       {warned(""), warned("m from the target"), as_ever}},
+       {warned("surfaces disagree"), warned("m from the target"), as_ever}},
       {"PriorHuge",
        "prior variances of 1e12",
        usual,

@@ -126,7 +126,7 @@ casesOfShape()
        "a plane without noise",
        [] { return flattenedPair(2, 0.0); },
        unchanged,
-       {warned(""), warned("a plane or a line"), as_ever}},
+       {warned("patches of surface"), warned("a plane or a line"), as_ever}},
       {"Mirrored",
        "the source is mirrored",
        spoilt([](TorturePair& pair) {
@@ -134,7 +134,7 @@ casesOfShape()
          pair.has_truth = false;
        }),
        unchanged,
-       {warned(""), warned("m from the target"), as_ever}},
+       {warned("surfaces disagree"), warned("m from the target"), as_ever}},
       {"Random",
        "two clouds of random points",
        spoilt([](TorturePair& pair) {
@@ -165,7 +165,7 @@ casesOfOverlap()
          return pair;
        },
        unchanged,
-       {warned(""), warned("m from the target"), as_ever}},
+       {warned("surfaces disagree"), warned("m from the target"), as_ever}},
       {"Disjoint",
        "the clouds are 100 m apart",
        spoilt([](TorturePair& pair) {
@@ -173,7 +173,7 @@ casesOfOverlap()
          pair.has_truth = false;
        }),
        unchanged,
-       {refused("usable surface"), warned("m from the target"), as_ever}},
+       {refused("usable surface"), warned("diverged"), as_ever}},
       {"DisjointGate",
        "the clouds are 100 m apart, gate 0.1 m",
        spoilt([](TorturePair& pair) {

@@ -115,6 +115,7 @@ protected:
         (pair.has_truth && estimate.samples.rows() > 1
              ? ", d2 " + std::to_string(squaredDistance(pair, estimate.summary))
              : ""));
+    RecordProperty("message", estimate.summary.message); // for --gtest_output=xml
     expectVerdict(the_case.expected[preset], pair, estimate);
   }
 };
