@@ -67,7 +67,11 @@ measureSecants(const SurfaceScorer& scorer,
 
 /** \brief Measure the axes of free motions again, and that of the loosest motion: each
  * step is turned alongTheSurface() and made as long as the plan allows.
- * \param[in] scorer, mode, at_mode, tau, plan as in measureSecants()
+ * \param[in] scorer of the source against the target's surface
+ * \param[in] mode T_target_source
+ * \param[in] at_mode scores there
+ * \param[in] tau scale of the residuals in Tukey's weight
+ * \param[in] plan directions and lengths of the steps
  * \param[in] previous secants about the same mode
  * \param[in] keep DebitedInformation::keep of \p previous
  * \return \p previous, without any evaluation, if no step would change */
