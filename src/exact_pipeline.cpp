@@ -30,8 +30,9 @@ startSpread(const Options& options, const Prior& prior)
 constexpr double min_used_by_kernel = 0.1;
 
 /** Root mean square of the residuals from which the stated sigma is not that of the
- * clouds: even with noise of sigma along all three axes it would be 1.7 sigmas. */
-constexpr double max_distance_in_sigmas = 2.0;
+ * clouds: noise of sigma along all three axes makes 1.7, the spacing of the target's
+ * points adds to it. */
+constexpr double max_distance_in_sigmas = 3.0;
 
 /** Source points on which the energies of modes are compared. */
 constexpr std::size_t fixed_batch_size = 4000;
@@ -45,6 +46,29 @@ evenlySpread(std::size_t num_points, std::size_t size)
   for (std::size_t i = 0; i < size; ++i)
     indices[i] = i * num_points / size;
   return indices;
+}
+
+/** Mean rho of the points' residuals [m^2]. */
+double
+energyOfPoints(const PoseEnergy& energy, const Vector6d& pose)
+{
+  return (energy.energy(pose) - energy.prior().energy(pose)) / energy.weight();
+}
+
+/** Root mean square of the residuals [m] at the mean, or at one of some draws where it
+ * is smaller: the mean of a curved posterior, or of several modes, is no pose of it. */
+double
+distanceOfBest(const PoseEnergy& energy, const PosteriorEstimate& estimate)
+{
+  constexpr std::size_t num_draws = 16;
+  double least = energyOfPoints(energy, estimate.summary.mean);
+  for (const std::size_t draw :
+       evenlySpread(static_cast<std::size_t>(estimate.samples.rows()), num_draws))
+    least = std::min(
+        least,
+        energyOfPoints(
+            energy, estimate.samples.row(static_cast<Eigen::Index>(draw)).transpose()));
+  return std::sqrt(2.0 * least);
 }
 
 PreconditionedOptions
@@ -116,22 +140,20 @@ thicknessOf(const Eigen::Matrix3Xd& points)
 
 std::vector<std::string>
 doubtsAbout(const PoseEnergy& energy,
-            const Vector6d& mean,
+            const PosteriorEstimate& estimate,
             double thickness,
             double measurement_sigma)
 {
+  const Vector6d& mean = estimate.summary.mean;
   if (!mean.allFinite())
     return {};
   const ResidualOptions& residual = energy.residual();
+  const double distance = distanceOfBest(energy, estimate);
   std::vector<std::string> doubts;
-  const double mean_energy =
-      (energy.energy(mean) - energy.prior().energy(mean)) / energy.weight();
-  const double distance = std::sqrt(2.0 * mean_energy);
   if (distance > max_distance_in_sigmas * measurement_sigma)
     doubts.push_back(
-        formatted("at the mean pose the source points are %.2g m from the target (root "
-                  "mean square), %.1f times measurement_sigma: they do not fit as well "
-                  "as was stated",
+        formatted("the source points stay %.2g m from the target (root mean square), "
+                  "%.1f times measurement_sigma: they do not fit as well as was stated",
                   distance,
                   distance / measurement_sigma));
   if (thickness < distance && residual.residual == Residual::PointToPoint)
@@ -142,12 +164,11 @@ doubtsAbout(const PoseEnergy& energy,
         "distances between points",
         thickness,
         distance));
-  if (residual.kernel != RobustKernel::Tukey)
-    return doubts;
   // The energy of a point beyond the kernel is largest, and the same for all.
   const double plateau =
       robustEnergy(residual, residual.kernel_width * residual.kernel_width);
-  if (1.0 - mean_energy / plateau < min_used_by_kernel)
+  if (residual.kernel == RobustKernel::Tukey &&
+      1.0 - energyOfPoints(energy, mean) / plateau < min_used_by_kernel)
     doubts.push_back(formatted(
         "the kernel of width %g m leaves out nearly all source points at the mean pose",
         residual.kernel_width));

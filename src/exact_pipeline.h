@@ -5,6 +5,7 @@
 
 #include <bayesian_icp/chains.h>
 #include <bayesian_icp/options.h>
+#include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/pose_energy.h>
 
 #include <functional>
@@ -31,16 +32,16 @@ sampleExact(const PoseEnergy& energy,
 double
 thicknessOf(const Eigen::Matrix3Xd& points);
 
-/** \brief What calls for caution about a mean pose: residuals that are much larger than
+/** \brief What calls for caution about an estimate: residuals that are much larger than
  * was stated, since the target is another one, or elsewhere; a source without shape, of
  * which the nearest points of the target say nothing along it; a kernel of Tukey's that
  * leaves out nearly all points: on that plateau the prior alone rules, and chains
- * agree. \param[in] mean pose [m, rad]; nothing is said of one that is not finite
+ * agree. \param[in] estimate of \p energy; nothing is said of one without a finite mean
  * \param[in] thickness thicknessOf() the source [m]
  * \param[in] measurement_sigma as stated [m] */
 std::vector<std::string>
 doubtsAbout(const PoseEnergy& energy,
-            const Vector6d& mean,
+            const PosteriorEstimate& estimate,
             double thickness,
             double measurement_sigma);
 

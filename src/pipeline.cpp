@@ -118,7 +118,7 @@ estimate(const Eigen::Matrix3Xd& source_points,
     PosteriorEstimate result =
         estimateOf(sampleExact(energy, initial_pose, options, has_diverged, progress));
     addDoubts(doubtsAbout(energy,
-                          result.summary.mean,
+                          result,
                           thicknessOf(sampled_points),
                           options.likelihood.measurement_sigma),
               result.summary);

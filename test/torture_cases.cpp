@@ -148,7 +148,7 @@ tortureOptions(Preset preset)
   options.prior.variance.setConstant(0.01);
   options.prior.frame = PriorFrame::SourceCentroid;
   if (preset == Preset::Exact) {
-    options.likelihood.measurement_sigma = 0.006;
+    options.likelihood.measurement_sigma = 0.005;
     options.likelihood.effective_points = 150.0;
     options.exact.max_source_points = 500;
     options.chains.num_draws = 1000;

@@ -93,6 +93,7 @@ OutputFolder::addByName(const std::string& name,
   if (fs::is_directory(path))
     throw FileError(path, "is a directory");
   files_.push_back({makeTemporaryFile(path), path});
+  errno = 0;
   try {
     write(files_.back().temporary_name);
   }
@@ -103,6 +104,8 @@ OutputFolder::addByName(const std::string& name,
     throw;
   }
   catch (const std::exception& error) {
+    if (errno == ENOMEM)
+      throw std::bad_alloc();
     throw FileError(path, std::string("cannot be written: ") + error.what());
   }
 }
