@@ -507,6 +507,27 @@ TEST(BadInput, NaNTargetPointsAreIgnored)
   EXPECT_TRUE(icp.getSamples().allFinite());
 }
 
+TEST(BadInput, TargetPointsThatAreTooFarAreIgnored)
+{
+  Scans<PointXYZ> scans;
+  Eigen::Matrix4f results[2];
+  const float coordinates[2] = {nan_value, std::numeric_limits<float>::max()};
+  for (int i = 0; i < 2; ++i) {
+    (*scans.target)[3].x = coordinates[i];
+    (*scans.target)[4].y = -coordinates[i];
+    BayesianIcp icp;
+    useFewSamples(icp);
+    icp.setInputSource(scans.source);
+    icp.setInputTarget(scans.target);
+    const QuietConsole quiet;
+    Cloud output;
+    icp.align(output);
+    EXPECT_TRUE(icp.getSamples().allFinite());
+    results[i] = icp.getFinalTransformation();
+  }
+  EXPECT_EQ(results[0], results[1]);
+}
+
 TEST(BadInput, AGuessThatIsNotRigidHasNoPosterior)
 {
   const Scans<PointXYZ> scans;

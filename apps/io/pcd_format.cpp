@@ -14,6 +14,28 @@ namespace {
 /** LZF makes at most 264 bytes out of 3. */
 constexpr std::uint64_t max_lzf_expansion = 88;
 
+/** Whether PCL, which reads lines of the header behind DATA as well, finds one at the
+ * beginning of the points. Leaves the reading position where it was. */
+bool
+beginsLikeHeader(InputFile& file)
+{
+  const auto position = file.stream.tellg();
+  std::string line;
+  bool may_go_on = true;
+  bool is_key = false;
+  while (may_go_on) {
+    may_go_on = file.readLine(line) || !line.empty();
+    const auto items = words(line);
+    const bool is_comment = !items.empty() && items.front().front() == '#';
+    const bool is_cut = is_comment && line.size() == max_line_length;
+    is_key = is_cut || (!items.empty() && beginsWithPcdKey(items.front()));
+    may_go_on = may_go_on && !is_key && (line.empty() || is_comment);
+  }
+  file.stream.clear();
+  file.stream.seekg(position);
+  return is_key;
+}
+
 std::string
 cutOff(const PcdHeader& header)
 {
@@ -106,6 +128,8 @@ checkPcd(InputFile& file)
   const PcdHeader header = readPcdHeader(file);
   const std::uint64_t num_bytes_per_point = header.numBytesPerPoint();
   const std::uint64_t num_left = file.numBytesLeft();
+  if (beginsLikeHeader(file))
+    throw FileError(file.name, "the points begin like a line of the header");
   if (header.encoding == "ascii")
     checkAsciiBody(file, header);
   else if (header.encoding == "binary") {

@@ -13,6 +13,17 @@ namespace bayesian_icp::io {
 
 namespace {
 
+constexpr std::array<const char*, 10> keys = {"VERSION",
+                                              "FIELDS",
+                                              "SIZE",
+                                              "TYPE",
+                                              "COUNT",
+                                              "WIDTH",
+                                              "HEIGHT",
+                                              "VIEWPOINT",
+                                              "POINTS",
+                                              "DATA"};
+
 /** Reads the header's lines. PCL needs them in the order of the specification. */
 class PcdHeaderReader {
 public:
@@ -52,16 +63,6 @@ private:
   void
   take(const Words& items)
   {
-    static const std::array<const char*, 10> keys = {"VERSION",
-                                                     "FIELDS",
-                                                     "SIZE",
-                                                     "TYPE",
-                                                     "COUNT",
-                                                     "WIDTH",
-                                                     "HEIGHT",
-                                                     "VIEWPOINT",
-                                                     "POINTS",
-                                                     "DATA"};
     const std::string_view name = items.front() == "COLUMNS" ? "FIELDS" : items.front();
     const auto found = std::find(keys.begin(), keys.end(), name);
     const int key = static_cast<int>(found - keys.begin());
@@ -194,6 +195,13 @@ private:
 };
 
 } // namespace
+
+bool
+beginsWithPcdKey(std::string_view word)
+{
+  const auto begins = [word](std::string_view key) { return word.rfind(key, 0) == 0; };
+  return begins("COLUMNS") || std::any_of(keys.begin(), keys.end(), begins);
+}
 
 PcdHeader
 readPcdHeader(InputFile& file)

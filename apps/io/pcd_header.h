@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bayesian_icp::io {
@@ -49,6 +50,10 @@ struct PcdHeader {
     return sum;
   }
 };
+
+/** \brief Whether PCL takes a line with this first word for one of the header. */
+bool
+beginsWithPcdKey(std::string_view word);
 
 /** \brief Read the header, leaving \p file at the first byte of the points.
  * \return a header with at least one point, every field of a size that PCL knows

@@ -101,6 +101,17 @@ class BrokenClouds(ToolTest):
         body = content[content.index(b"DATA ascii\n") + len("DATA ascii\n") :]
         self.refuse("tab.pcd", content.replace(body, body.replace(b" ", b"\v")), "1 values")
 
+    def test_points_that_pcl_takes_for_a_header(self):
+        """It goes on reading the header behind the line DATA."""
+        content = pcd_bytes(POINTS)
+        start = len(pcd_header(XYZ, 50, "binary"))
+        for line in (b"COLUMNS a\n", b"\n\nWIDTH 9\n", b"#\0\n COUNT 1 1\n", b"VERSION\n"):
+            bad = content[:start] + line + content[start + len(line) :]
+            self.refuse("points.pcd", bad, "the points begin like a line of the header")
+        comment = content[:start] + b"#\n\n" + content[start + 3 :]
+        good = self.file("good.pcd", content)
+        self.assert_ran(run(self.file("comment.pcd", comment), good, *FAST))
+
     def test_ply_headers_that_pcl_takes_for_others(self):
         """As above: PCL believes obj_info, and stores colours and alpha as one number."""
         content = ply_bytes(POINTS)

@@ -31,12 +31,12 @@ function(fuzz_test name label fuzzer)
                                           TIMEOUT 900)
 endfunction()
 
-# New inputs for each that take about five seconds on a free core.
-set(runs_of_cloud_file 5000)
-set(runs_of_configuration 2000)
-set(runs_of_motion_file 5000)
-set(runs_of_posterior_file 4000)
-set(runs_of_registration 200)
+# New inputs for each that take a few seconds on a free core.
+set(runs_of_cloud_file 2000)
+set(runs_of_configuration 1000)
+set(runs_of_motion_file 3000)
+set(runs_of_posterior_file 2000)
+set(runs_of_registration 100)
 foreach(fuzzer IN LISTS fuzzers)
   fuzz_test(fuzz.${fuzzer} fuzz ${fuzzer} -runs=${runs_of_${fuzzer}})
   fuzz_test(fuzz.${fuzzer}.long long ${fuzzer} -max_total_time=60)

@@ -25,10 +25,19 @@ public:
   using PointCloudSourcePtr = typename Base::PointCloudSourcePtr;
   using PointCloudSourceConstPtr = typename Base::PointCloudSourceConstPtr;
   using PointCloudTarget = typename Base::PointCloudTarget;
+  using PointCloudTargetPtr = typename Base::PointCloudTargetPtr;
+  using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
 
   using Base::convergence_criteria_; // public in PCL's class, too
   using Base::getClassName;
   using Base::getFitnessScore;
+
+  /** \brief Set the cloud to register to. Points further out than 1e18 m, on which
+   * PCL's search tree aborts, are left out: the target is then a copy in which they are
+   * NaN.
+   */
+  void
+  setInputTarget(const PointCloudTargetConstPtr& cloud) override;
 
   /** \brief Mean squared distance [m^2] of the transformed source to the target, as
    * PCL's, leaving out non-finite points (PCL 1.13 aborts on them, also where it is

@@ -6,6 +6,8 @@
 #include <pcl/registration/impl/bayesian_icp_selection.hpp>
 #include <pcl/registration/transformation_estimation_svd.h>
 
+#include <algorithm>
+#include <limits>
 #include <typeinfo>
 #include <utility>
 #include <vector>
@@ -50,6 +52,26 @@ isRigid(const Eigen::Matrix4d& transformation)
   const Eigen::Matrix3d R = transformation.topLeftCorner<3, 3>();
   return ((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < tolerance &&
           R.determinant() > 0.0);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setInputTarget(
+    const PointCloudTargetConstPtr& cloud)
+{
+  const auto is_too_far = [](const PointTarget& point) {
+    return (isXYZFinite(point) && !canBeQueried(point.getVector3fMap()));
+  };
+  if (!cloud || std::none_of(cloud->begin(), cloud->end(), is_too_far)) {
+    Base::setInputTarget(cloud);
+    return;
+  }
+  const PointCloudTargetPtr usable(new PointCloudTarget(*cloud));
+  for (auto& point : *usable)
+    if (is_too_far(point))
+      point.getVector3fMap().setConstant(std::numeric_limits<float>::quiet_NaN());
+  usable->is_dense = false;
+  Base::setInputTarget(usable);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
