@@ -132,7 +132,7 @@ readThinned(const std::string& file, std::size_t step)
 {
   Cloud all;
   EXPECT_EQ(io::loadPCDFile(std::string(BAYESIAN_ICP_DATA_DIR) + "/" + file, all), 0);
-  const Cloud::Ptr thinned(new Cloud);
+  Cloud::Ptr thinned(new Cloud);
   for (std::size_t i = 0; i < all.size(); i += step)
     thinned->push_back(all[i]);
   return (thinned);
@@ -142,7 +142,7 @@ readThinned(const std::string& file, std::size_t step)
 Cloud::Ptr
 onLattice(const Cloud& cloud)
 {
-  const Cloud::Ptr rounded(new Cloud(cloud));
+  Cloud::Ptr rounded(new Cloud(cloud));
   for (auto& point : *rounded)
     point.getVector3fMap() =
         (32.0f * point.getVector3fMap().array()).round().matrix() / 32.0f;
