@@ -97,7 +97,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
   if (!complaint.empty())
     return failure(Status::TooFewCorrespondences, complaint);
   if (isCancelled(progress))
-    return failure(Status::Cancelled, "cancelled before the first draw");
+    return failure(Status::Cancelled, "interrupted before the first draw");
 
   PosteriorEstimate result = estimateOf(
       modes.size() > 1
@@ -125,7 +125,7 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
   if (checked.summary.status != Status::NotRun)
     return checked;
   if (isCancelled(progress))
-    return failure(Status::Cancelled, "cancelled before the first draw");
+    return failure(Status::Cancelled, "interrupted before the first draw");
   const Eigen::Matrix3Xd distinct_points = distinctPoints(target_points);
   if (distinct_points.cols() < min_calibrated_points)
     return failure(Status::TooFewCorrespondences,

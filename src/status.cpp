@@ -20,7 +20,7 @@ toString(Status status)
   case Status::Diverged:
     return "diverged";
   case Status::Cancelled:
-    return "cancelled";
+    return "interrupted";
   case Status::TooFewCorrespondences:
     return "too_few_correspondences";
   case Status::InvalidOptions:

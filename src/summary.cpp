@@ -112,7 +112,7 @@ messageOf(const Summary& summary, const WorstDiagnostics& worst)
         summary.num_diverged_chains,
         summary.num_chains);
   case Status::Cancelled:
-    return formatted("cancelled after %ld draws", summary.num_draws);
+    return formatted("interrupted after %ld draws", summary.num_draws);
   case Status::Ok:
     return formatted(
         "the chains mixed: largest R-hat %.4f, smallest effective sample size "

@@ -159,7 +159,7 @@ toString(DescentEnd end)
   case DescentEnd::Diverged:
     return "diverged";
   case DescentEnd::Cancelled:
-    return "cancelled";
+    return "interrupted";
   case DescentEnd::InvalidInput:
     return "invalid_input";
   }

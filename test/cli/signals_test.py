@@ -52,10 +52,10 @@ class EndedBySignal(FaultTest):
                 output = self.new_folder()
                 process = start(TOOL, *pair, *ENDLESS, "-o", output, "--json")
                 text, errors = self.end(process, number)
-                self.assertRegex(errors, r"^pcl_bayesian_icp: cancelled: .*\n$")
+                self.assertRegex(errors, r"^pcl_bayesian_icp: interrupted: .*\n$")
                 self.assertEqual(process.returncode, 130)
                 document = strict_json(text)
-                self.assertEqual(document["status"]["name"], "cancelled")
+                self.assertEqual(document["status"]["name"], "interrupted")
                 num_draws = document["posterior"]["draws"]
                 self.assertIn(num_draws, range(1, 4000))
                 samples = (output / "samples.csv").read_text()

@@ -57,7 +57,7 @@ enum class DescentEnd {
 };
 
 /** \brief Short name: "converged", "max_iterations", "too_few_correspondences",
- * "diverged", "cancelled", "invalid_input". */
+ * "diverged", "interrupted", "invalid_input". */
 BAYESIAN_ICP_EXPORT const char*
 toString(DescentEnd end);
 
