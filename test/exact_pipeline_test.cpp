@@ -23,9 +23,8 @@ struct Scans {
   explicit Scans(Eigen::Index num_source = 300)
   : source(surface(91, num_source))
   , target(movedSurface())
-  {
-    truth = pose();
-  }
+  , truth(pose())
+  {}
 
   static Vector6d
   pose()
