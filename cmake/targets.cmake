@@ -9,6 +9,8 @@ function(bayesian_icp_configure target)
     ${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic -Wshadow
                       -Wconversion>
                       $<$<BOOL:${BAYESIAN_ICP_WARNINGS_AS_ERRORS}>:-Werror>
+                      # Clang counts signs among the conversions, GCC does not.
+                      $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
                       # GCC 12 sees array bounds violated where it inlines Eigen's SSE code.
                       $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
 endfunction()
