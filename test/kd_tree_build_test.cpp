@@ -79,7 +79,8 @@ countLeaves(const Storage& tree, std::uint32_t number)
   std::size_t count = 0;
   for (std::uint32_t child = 0; child < kd_tree::fan_out; ++child)
     if (tree.nodes[number].lower[0][child] < std::numeric_limits<float>::infinity())
-      count += countLeaves(tree, kd_tree::fan_out * number + 1 + child);
+      count += countLeaves(
+          tree, static_cast<std::uint32_t>(kd_tree::fan_out * number + 1 + child));
   return count;
 }
 

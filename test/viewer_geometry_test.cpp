@@ -28,7 +28,8 @@ fullTurn(Eigen::Index n)
 {
   PoseMatrix draws = PoseMatrix::Zero(n, 6);
   for (Eigen::Index i = 0; i < n; ++i)
-    draws(i, 5) = wrapAngle(2.0 * pi * (static_cast<double>(i) + 0.5) / n);
+    draws(i, 5) =
+        wrapAngle(2.0 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
   return draws;
 }
 
