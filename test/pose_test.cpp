@@ -107,6 +107,14 @@ TEST(Pose, WrappedAnglesLieInTheHalfOpenInterval)
   EXPECT_NEAR(wrapAngle(-1e3), -1e3 + 318.0 * pi, 1e-12);
 }
 
+TEST(Pose, CanonicalAnglesOfAnyFiniteOnesAreFinite)
+{
+  for (const double angle : {1e300, 1e308, std::numeric_limits<double>::max()})
+    for (const double sign : {-1.0, 1.0})
+      EXPECT_TRUE(
+          canonicalPose(Vector6d::Constant(sign * angle)).tail<3>().allFinite());
+}
+
 TEST(Pose, CanonicalPoseIsTheSameMotionWithSmallPitch)
 {
   Random random(5, 0);
