@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include <limits>
+
 namespace bayesian_icp {
 namespace {
 
