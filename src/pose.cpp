@@ -100,8 +100,10 @@ Vector6d
 canonicalPose(const Vector6d& pose)
 {
   Vector6d canonical = pose;
-  if (std::cos(pose[4]) < 0.0)
-    canonical.tail<3>() += Eigen::Vector3d(pi, pi - 2.0 * pose[4], pi);
+  if (std::abs(pose[4]) > 2.0 * pi) // the double of any number need not be one
+    canonical[4] = wrapAngle(pose[4]);
+  if (std::cos(canonical[4]) < 0.0)
+    canonical.tail<3>() += Eigen::Vector3d(pi, pi - 2.0 * canonical[4], pi);
   for (int k = 3; k < 6; ++k)
     canonical[k] = wrapAngle(canonical[k]);
   return canonical;

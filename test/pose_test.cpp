@@ -8,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include <limits>
+
 namespace bayesian_icp {
 namespace {
 
@@ -105,6 +107,14 @@ TEST(Pose, WrappedAnglesLieInTheHalfOpenInterval)
   EXPECT_DOUBLE_EQ(wrapAngle(3.0 * pi), pi);
   EXPECT_NEAR(wrapAngle(7.0), 7.0 - 2.0 * pi, 1e-15);
   EXPECT_NEAR(wrapAngle(-1e3), -1e3 + 318.0 * pi, 1e-12);
+}
+
+TEST(Pose, CanonicalAnglesOfAnyFiniteOnesAreFinite)
+{
+  for (const double angle : {1e300, 1e308, std::numeric_limits<double>::max()})
+    for (const double sign : {-1.0, 1.0})
+      EXPECT_TRUE(
+          canonicalPose(Vector6d::Constant(sign * angle)).tail<3>().allFinite());
 }
 
 TEST(Pose, CanonicalPoseIsTheSameMotionWithSmallPitch)

@@ -513,8 +513,8 @@ TEST(BadInput, TargetPointsThatAreTooFarAreIgnored)
   Eigen::Matrix4f results[2];
   const float coordinates[2] = {nan_value, std::numeric_limits<float>::max()};
   for (int i = 0; i < 2; ++i) {
-    (*scans.target)[3].x = coordinates[i];
-    (*scans.target)[4].y = -coordinates[i];
+    for (int k = 0; k < 40; ++k) // more than a leaf of PCL's tree has
+      (*scans.target)[k].x = coordinates[i] * (1.0f - 0.01f * static_cast<float>(k));
     BayesianIcp icp;
     useFewSamples(icp);
     icp.setInputSource(scans.source);

@@ -77,13 +77,35 @@ orientationOf(const CloudFile& cloud)
   return {q[0], q[1], q[2], q[3]};
 }
 
-/** PCL does not notice a full disk, and writes fields that PLY does not have. */
+/** Bit by bit. */
+bool
+areSame(const Eigen::Matrix3Xf& a, const Eigen::Matrix3Xf& b)
+{
+  return a.cols() == b.cols() &&
+         std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) {
+           return x == y || (x != x && y != y);
+         });
+}
+
+/** PCL does not notice a full disk, and has fields that it does not write to PLY as its
+ * header says. */
 void
-requireComplete(CloudFormat format, const std::string& path)
+requireComplete(const CloudFile& cloud, CloudFormat format, const std::string& path)
 {
   try {
     InputFile file = openInput(path);
     format == CloudFormat::Pcd ? checkPcd(file) : checkPly(file);
+    if (format == CloudFormat::Pcd)
+      return;
+    CloudFile written;
+    Blob blob;
+    readBlob(path, format, blob, written);
+    const FieldTriple xyz = findFields(blob, {"x", "y", "z"});
+    if (blob.data.size() == std::size_t(blob.width) * blob.height * blob.point_step &&
+        xyz.isComplete())
+      copyPoints(blob, xyz, written);
+    if (!areSame(written.points, cloud.points))
+      throw FileError(path, "it has other points than the cloud");
   }
   catch (const FileError& error) {
     const std::string reason = std::string(error.what()).substr(path.size() + 2);
@@ -215,7 +237,7 @@ writeCloud(const CloudFile& cloud, CloudFormat format, const std::string& path)
                                path, *cloud.blob, cloud.sensor_origin, orientation);
   if (result < 0)
     throw std::runtime_error("PCL cannot write it");
-  requireComplete(format, path);
+  requireComplete(cloud, format, path);
 }
 
 } // namespace bayesian_icp::io

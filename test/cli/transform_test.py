@@ -225,6 +225,16 @@ class TransformRefusals(TransformTest):
         self.assertFalse(output.exists())
         self.assert_done(transform(source, self.folder / "out.pcd", "--pose", WORDS))
 
+    def test_fields_that_pcl_writes_wrongly(self):
+        fields = [("x", "f"), ("y", "f"), ("z", "f")]
+        fields += [("normal_x", "d"), ("normal_y", "d"), ("normal_z", "d")]
+        points = [(0.5 * i, 1.0, 2.0, 0.0, 0.0, 1.0) for i in range(9)]
+        source = self.file("double.pcd", cloud_files.pcd_bytes(points, fields))
+        output = self.folder / "out.ply"
+        result = transform(source, output, "--pose", WORDS)
+        self.assert_refused(3, result, f"{output}: cannot be written")
+        self.assertFalse(output.exists())
+
     def test_full_disk(self):
         """No file may be larger than 500 bytes."""
         source = self.cloud()
