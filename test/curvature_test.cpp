@@ -136,7 +136,7 @@ TEST(NoiseDebit, TurnsAFreeStepAlongWhatLeavesTheScoreAsItIs)
   Secants secants;
   secants.curvature = to_V.transpose() * known.asDiagonal() * to_V;
   secants.steps = V;
-  secants.steps.col(5) += V.leftCols<5>() * random.normal6().head<5>();
+  secants.steps.col(5) += 0.02 * V.leftCols<5>() * random.normal6().head<5>();
   secants.differences = secants.curvature * secants.steps;
   secants.noise.fill(Matrix6d::Zero());
   secants.noise[5] = 1e9 * Matrix6d::Identity();
@@ -148,6 +148,33 @@ TEST(NoiseDebit, TurnsAFreeStepAlongWhatLeavesTheScoreAsItIs)
   EXPECT_LT((free - V.col(5)).norm(), 1e-9 * free.norm());
   EXPECT_LT((debited.information * V.col(5)).norm(),
             1e-9 * debited.information.norm() * V.col(5).norm());
+}
+
+TEST(NoiseDebit, DoesNotTurnAFreeStepByMoreThanAFifth)
+{
+  // The curvature along a held step is nearly zero, but not what it has to do with the
+  // others: only a turn by 1e6 steps would undo the free one's secant.
+  Secants secants;
+  secants.steps.setIdentity();
+  secants.curvature.setIdentity();
+  secants.curvature(0, 0) = 1e-6;
+  secants.curvature(0, 1) = secants.curvature(1, 0) = 100.0;
+  secants.curvature(1, 1) = 1e12;
+  secants.differences = secants.curvature;
+  secants.differences(0, 5) = 1.0;
+  const Matrix6d turned = alongTheSurface(
+      secants, {true, true, true, true, true, false}, Matrix6d::Identity());
+  EXPECT_EQ(turned, secants.steps);
+
+  secants.differences(0, 5) = 0.0;
+  secants.differences(2, 5) = 0.1;
+  Matrix6d expected = secants.steps;
+  expected(2, 5) = -0.1;
+  EXPECT_LT((alongTheSurface(
+                 secants, {true, true, true, true, true, false}, Matrix6d::Identity()) -
+             expected)
+                .norm(),
+            1e-12);
 }
 
 TEST(NoiseDebit, LeavesWhatThePriorKnowsBetterToThePrior)

@@ -59,6 +59,7 @@ TEST(RegisterNormalized, TellsCallbacksInMetres)
 {
   Settings settings;
   settings.options.preset = Preset::Paper;
+  settings.options.mini_batch.batch_size = 20;
   settings.options.chains.num_chains = 1;
   settings.options.chains.num_draws = 20;
   settings.options.chains.num_threads = 1;

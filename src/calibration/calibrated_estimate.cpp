@@ -43,10 +43,6 @@ constexpr double min_relative_information = 0.02;
  * way; but no more than of so many squared steps, as new patches are met. */
 constexpr double max_unheld_steps = 2.0;
 
-/** The axis of a free motion may be far off after the usual rounds; so many more are
- * of such motions alone. */
-constexpr int max_rounds_of_free_axes = 3;
-
 /** As uncertain as the information is: J comes from 12 to 96 clusters, H from noisy
  * secants. Chosen on simulated scans, docs/calibration.md. */
 constexpr int information_degrees_of_freedom = 20;
@@ -204,18 +200,13 @@ measureCurvature(const SurfaceScorer& scorer,
   int num_evaluations = 0;
   Secants secants;
   DebitedInformation debited;
-  for (int round = 0; round < options.num_rounds + max_rounds_of_free_axes; ++round) {
-    const bool is_extra = round >= options.num_rounds;
+  for (int round = 0; round < options.num_rounds; ++round) {
     const SecantPlan plan = {e.covariance,
                              e.displacement_metric,
                              e.prior.precision,
                              min_step_to_noise * noise,
                              J};
-    secants = is_extra ? remeasureFreeAxes(
-                             scorer, e.mode, e.scores, tau, plan, secants, debited.keep)
-                       : measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
-    if (is_extra && secants.num_evaluations == 0)
-      break;
+    secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
     num_evaluations += secants.num_evaluations;
     debited = debit(secants, J, e);
   }

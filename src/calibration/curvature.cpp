@@ -260,40 +260,4 @@ measureSecants(const SurfaceScorer& scorer,
   return secants;
 }
 
-Secants
-remeasureFreeAxes(const SurfaceScorer& scorer,
-                  const Isometry3d& mode,
-                  const SurfaceScores& at_mode,
-                  double tau,
-                  const SecantPlan& plan,
-                  const Secants& previous,
-                  const Vector6d& keep)
-{
-  constexpr int loosest = 5;
-  std::array<bool, 6> held;
-  for (int k = 0; k < 6; ++k)
-    held[static_cast<std::size_t>(k)] = k != loosest && keep[k] > 0.0;
-  const Matrix6d turned = alongTheSurface(previous, held);
-  const Matrix6d information = plan.covariance.inverse();
-  SecantMaker maker(scorer, mode, at_mode, tau, plan.score_covariance);
-  Secants secants = previous;
-  for (int k = 0; k < 6; ++k) {
-    if (held[static_cast<std::size_t>(k)])
-      continue;
-    Vector6d axis = turned.col(k);
-    axis /= std::sqrt(axis.dot(plan.displacement_metric * axis));
-    const double length =
-        lengthOf(axis, 1.0 / std::sqrt(axis.dot(information * axis)), plan);
-    const Vector6d step = length * axis;
-    if (isNearly(step, previous.planned.col(k), information))
-      continue;
-    const Secant secant = maker.along(step, k);
-    replace(k, step, secant, maker.isClear(secant) ? 0.0 : length, secants);
-    secants.may_be_held[static_cast<std::size_t>(k)] = keep[k] > 0.0;
-  }
-  secants.num_evaluations = maker.numEvaluations();
-  setCurvature(secants);
-  return secants;
-}
-
 } // namespace bayesian_icp

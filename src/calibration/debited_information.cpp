@@ -17,6 +17,11 @@ using Axes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
  * debited. */
 constexpr double full_to_threshold = 3.0;
 
+/** Longest turn of a step, as a part of its length, both in prior standard deviations.
+ * A longer one comes of a curvature that is nearly zero along what holds, and the steps
+ * would be nearly dependent after it. */
+constexpr double max_turn = 0.2;
+
 /** What a secant's noise of mean information \p noise is debited with: so much that
  * nothing is left up to the threshold, its mean where that is far exceeded, and in
  * between a line from the one to the other. */
@@ -31,7 +36,9 @@ noiseDebit(double information, double noise, double threshold)
 } // namespace
 
 Matrix6d
-alongTheSurface(const Secants& secants, const std::array<bool, 6>& held)
+alongTheSurface(const Secants& secants,
+                const std::array<bool, 6>& held,
+                const Matrix6d& prior_precision)
 {
   std::vector<int> firm, loose;
   for (int k = 0; k < 6; ++k)
@@ -42,7 +49,15 @@ alongTheSurface(const Secants& secants, const std::array<bool, 6>& held)
   const Axes V = steps(Eigen::all, firm);
   const Eigen::MatrixXd H = V.transpose() * secants.curvature * V;
   const Eigen::MatrixXd change = V.transpose() * secants.differences(Eigen::all, loose);
-  steps(Eigen::all, loose) -= V * H.ldlt().solve(change);
+  const Axes turns = V * H.ldlt().solve(change);
+  const auto lengthOf = [&](const Vector6d& step) {
+    return std::sqrt(step.dot(prior_precision * step));
+  };
+  for (std::size_t i = 0; i < loose.size(); ++i) {
+    const Vector6d turn = turns.col(static_cast<Eigen::Index>(i));
+    if (lengthOf(turn) <= max_turn * lengthOf(steps.col(loose[i])))
+      steps.col(loose[i]) -= turn;
+  }
   return steps;
 }
 
@@ -84,11 +99,11 @@ debitedInformation(const Secants& secants,
                                           noiseThreshold(score_covariance, noise))
                              : 0.0);
     bool& is_held = held[static_cast<std::size_t>(k)];
-    is_held = secants.may_be_held[static_cast<std::size_t>(k)] && kept > 0.0 &&
+    is_held = kept > 0.0 &&
               kept >= min_relative_information * step.dot(prior_precision * step);
     result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
   }
-  result.steps = alongTheSurface(secants, held);
+  result.steps = alongTheSurface(secants, held, prior_precision);
   result.transfer =
       result.steps * result.keep.cwiseSqrt().asDiagonal() * result.steps.inverse();
   const Matrix6d HT = secants.curvature * result.transfer;

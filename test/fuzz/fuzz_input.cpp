@@ -1,7 +1,7 @@
 #include "fuzz_input.h"
 
 #include "io/errors.h"
-#include "plot/temporary_folder.h"
+#include "temporary_folder.h"
 
 #include <cstdlib>
 #include <fstream>
@@ -12,7 +12,7 @@ namespace bayesian_icp::fuzz {
 std::string
 writeInput(const std::string& name, std::string_view bytes)
 {
-  static const plot::TemporaryFolder folder;
+  static const TemporaryFolder folder;
   std::string path = folder.path() + '/' + name;
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
   stream << bytes;

@@ -38,9 +38,6 @@ struct Secants {
   Vector6d unclear_displacement = Vector6d::Zero();
   /** Half the difference of the scores at +step and -step. */
   Matrix6d differences = Matrix6d::Zero();
-  /** Directions that may be held by the data: a free one whose axis is measured again
-   * stays free, or it would be tried until noise holds it. */
-  std::array<bool, 6> may_be_held = {true, true, true, true, true, true};
   /** Covariance of each difference, without what Gauss-Newton predicts of it. */
   std::array<Matrix6d, 6> noise = {};
   /** H: symmetric, in the twists' coordinates. */
@@ -65,29 +62,13 @@ measureSecants(const SurfaceScorer& scorer,
                const SecantPlan& plan,
                const Secants& previous = Secants());
 
-/** \brief Measure the axes of free motions again, and that of the loosest motion: each
- * step is turned alongTheSurface() and made as long as the plan allows.
- * \param[in] scorer of the source against the target's surface
- * \param[in] mode T_target_source
- * \param[in] at_mode scores there
- * \param[in] tau scale of the residuals in Tukey's weight
- * \param[in] plan directions and lengths of the steps
- * \param[in] previous secants about the same mode
- * \param[in] keep DebitedInformation::keep of \p previous
- * \return \p previous, without any evaluation, if no step would change */
-BAYESIAN_ICP_EXPORT Secants
-remeasureFreeAxes(const SurfaceScorer& scorer,
-                  const Eigen::Isometry3d& mode,
-                  const SurfaceScores& at_mode,
-                  double tau,
-                  const SecantPlan& plan,
-                  const Secants& previous,
-                  const Vector6d& keep);
-
 /** \brief The steps; from those that are not \p held the part is taken along the held
- * ones that accounts for their secants. */
+ * ones that accounts for their secants, unless that part is longer than a fifth of the
+ * step, both in prior standard deviations. */
 BAYESIAN_ICP_EXPORT Matrix6d
-alongTheSurface(const Secants& secants, const std::array<bool, 6>& held);
+alongTheSurface(const Secants& secants,
+                const std::array<bool, 6>& held,
+                const Matrix6d& prior_precision);
 
 /** \brief Factor c on the expected noise tr(J^-1 N) of a secant's information, which
  * noise alone exceeds with a probability of 1 in 1000 (Wilson and Hilferty's
