@@ -99,13 +99,25 @@ numDrawsOf(const std::vector<Matrix6Xd>& positions)
   return num_draws;
 }
 
-/** Mean of b, the last rows, over all chains. */
+/** b, the last rows, of every chain that has draws: a run may end before others have
+ * any, and Eigen has no rows of a matrix without columns. */
+std::vector<Eigen::Block<Matrix6Xd>>
+heldParts(std::vector<Matrix6Xd>& positions, Index num_held)
+{
+  std::vector<Eigen::Block<Matrix6Xd>> parts;
+  for (Matrix6Xd& chain : positions)
+    if (chain.cols() > 0)
+      parts.emplace_back(chain, 6 - num_held, 0, num_held, chain.cols());
+  return parts;
+}
+
+/** Mean of b over all chains. */
 VectorXd
-meanOfHeld(const std::vector<Matrix6Xd>& positions, Index num_held)
+meanOfHeld(std::vector<Matrix6Xd>& positions, Index num_held)
 {
   VectorXd sum = VectorXd::Zero(num_held);
-  for (const Matrix6Xd& chain : positions)
-    sum += chain.bottomRows(num_held).rowwise().sum();
+  for (const auto& held : heldParts(positions, num_held))
+    sum += held.rowwise().sum();
   return sum / static_cast<double>(numDrawsOf(positions));
 }
 
@@ -157,18 +169,17 @@ spreadAsEstimated(const ProductCoordinates& coordinates,
     return;
   const VectorXd mean = meanOfHeld(positions, num_held);
   MatrixXd covariance = MatrixXd::Zero(num_held, num_held);
-  for (Matrix6Xd& chain : positions) {
-    chain.bottomRows(num_held).colwise() -= mean;
-    covariance += chain.bottomRows(num_held) * chain.bottomRows(num_held).transpose();
+  for (auto& held : heldParts(positions, num_held)) {
+    held.colwise() -= mean;
+    covariance += held * held.transpose();
   }
   covariance /= static_cast<double>(num_draws - 1);
   const Matrix6d& factor = coordinates.gaussian().factor();
   const Matrix6d wanted = factor * factor.transpose();
   const MatrixXd map =
       mapBetween(covariance, wanted.bottomRightCorner(num_held, num_held));
-  for (Matrix6Xd& chain : positions)
-    chain.bottomRows(num_held) =
-        ((map * chain.bottomRows(num_held)).colwise() + mean).eval();
+  for (auto& held : heldParts(positions, num_held))
+    held = ((map * held).colwise() + mean).eval();
 }
 
 void
