@@ -39,11 +39,11 @@ enum class CovarianceConvention {
 };
 
 /** \brief All of them, in their order. */
-inline constexpr std::array<CovarianceConvention, 4> covariance_conventions = {
-    CovarianceConvention::Parameters,
-    CovarianceConvention::R3xSO3,
-    CovarianceConvention::LeftSE3,
-    CovarianceConvention::RightSE3};
+constexpr std::array<CovarianceConvention, 4> covariance_conventions = {
+    {CovarianceConvention::Parameters,
+     CovarianceConvention::R3xSO3,
+     CovarianceConvention::LeftSE3,
+     CovarianceConvention::RightSE3}};
 
 /** \brief Short name of a convention: "parameters", "r3xso3", "left_se3", "right_se3".
  */

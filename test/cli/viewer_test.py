@@ -104,8 +104,10 @@ class ScreenTest(ViewerTest):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.results = pathlib.Path(folder.name)
-        for name in ("can", "mug"):
-            result = run(*scans(name), *CALIBRATED, "-o", cls.results / name, "--quiet")
+        # With the default prior the mug's yaw is left to the prior in some seeds.
+        for name, prior in (("can", []), ("mug", ["--prior-variance", "0.01"])):
+            words = [*CALIBRATED, *prior, "-o", cls.results / name, "--quiet"]
+            result = run(*scans(name), *words)
             assert result.returncode == 0, result.stderr
 
     def picture(self, *arguments, size=(WIDTH, HEIGHT)):

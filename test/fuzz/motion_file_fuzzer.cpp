@@ -45,6 +45,8 @@ LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
     const Eigen::Matrix4d motion = evaluate::readTransform(file).matrix();
     fuzz::require(io::complaintAboutMotion(motion).empty(), "motions are rigid");
   });
-  fuzz::require(readLines(file) == readLines(file), "cutting a file ends");
+  std::vector<std::string> lines;
+  if (fuzz::isAccepted([&] { lines = readLines(file); }))
+    fuzz::require(readLines(file) == lines, "cutting a file ends");
   return 0;
 }
