@@ -13,10 +13,11 @@ names_in_tree >"$work/before"
 
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2} MAKEFLAGS=-j2
 cd "$work"
+# With the flags of the tests' build, of which the compiler cache has everything.
 colcon --log-base "$work/log" build --base-paths "$tree" \
   --build-base "$work/build" --install-base "$work/install" \
   --cmake-args -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
-  -DBAYESIAN_ICP_BUILD_TESTS=OFF
+  -DBAYESIAN_ICP_BUILD_TESTS=OFF -DBAYESIAN_ICP_WARNINGS_AS_ERRORS=ON
 names_in_tree | diff "$work/before" -
 
 # The workspace's environment is all that the consumer is told.
