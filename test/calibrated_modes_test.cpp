@@ -56,6 +56,15 @@ onCan(Random& random)
   return turn * Eigen::Vector3d(radius, 0.0, half * height);
 }
 
+/** A can with a handle: a plate that stands out from its side. */
+Eigen::Vector3d
+onMug(Random& random)
+{
+  if (random.index(20) > 0)
+    return onCan(random);
+  return {0.035 + 0.02 * random.uniform(), 0.0, 0.02 * (random.uniform() - 0.5)};
+}
+
 struct Clouds {
   Eigen::Matrix3Xd source, target;
   Eigen::Isometry3d truth;
@@ -142,6 +151,24 @@ TEST(CalibratedModes, ThereIsOneOfACanHoweverItTurns)
   const ModeSearch search = findModes(scorer, prior, estimateCalibrated(scorer, prior));
   EXPECT_EQ(search.modes.size(), 1u);
   EXPECT_FALSE(mayHaveSeveralModes(scorer, priorWith(0.19, scorer.centroid())));
+}
+
+TEST(CalibratedModes, AHandleOutweighsAFreeYaw)
+{
+  const Clouds clouds = cloudsOf(onMug, 0.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior = priorWith(0.35, scorer.centroid());
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
+  std::size_t num_modes = 0;
+  ModeSearchOptions options;
+  for (options.seed = 1; options.seed <= 4; ++options.seed) {
+    const ModeSearch search = findModes(scorer, prior, first, options);
+    num_modes = std::max(num_modes, search.modes.size());
+    EXPECT_GT(search.modes.front().estimate.keep.minCoeff(), 0.0);
+    EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+  }
+  EXPECT_GT(num_modes, 1u);
 }
 
 PosteriorEstimate

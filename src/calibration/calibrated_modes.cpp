@@ -231,7 +231,7 @@ findModes(const SurfaceScorer& scorer,
     known.emplace_back(estimate);
     search.modes.push_back({estimate, 0.0});
   }
-  weighModes(scorer, prior, search.modes);
+  weighModes(prior, search.modes);
   return search;
 }
 

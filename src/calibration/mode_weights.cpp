@@ -1,7 +1,6 @@
 #include "mode_weights.h"
 
 #include <bayesian_icp/calibration/product_coordinates.h>
-#include <bayesian_icp/calibration/score_clusters.h>
 
 #include <Eigen/Eigenvalues>
 
@@ -60,19 +59,6 @@ energiesOf(const SurfaceScores& scores, double tau)
   return energies;
 }
 
-/** Variance of the sum of values of points that are correlated in space. */
-double
-clusteredVariance(const VectorXd& values, const Eigen::Matrix3Xd& positions)
-{
-  PointScores points;
-  points.scores = Matrix6Xd::Zero(6, values.size());
-  points.scores.row(0) = values.transpose();
-  points.positions = positions;
-  ClusterOptions options;
-  options.num_clusters = 24;
-  return clusteredCovariance(points, Matrix6d::Identity(), options)(0, 0);
-}
-
 /** log of the Gaussian's integral times the prior at its mean. */
 double
 logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
@@ -87,15 +73,14 @@ logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
 } // namespace
 
 void
-weighModes(const SurfaceScorer& scorer,
-           const Prior& prior,
-           std::vector<CalibratedMode>& modes)
+weighModes(const Prior& prior, std::vector<CalibratedMode>& modes)
 {
   const auto least_cost =
       std::min_element(modes.begin(), modes.end(), [](const auto& a, const auto& b) {
         return a.estimate.cost < b.estimate.cost;
       });
   const double tau = least_cost->estimate.residual_scale;
+  const double kappa = least_cost->estimate.kappa_inf;
   double weight = 0.0;
   std::vector<VectorXd> energies;
   for (const auto& mode : modes) {
@@ -111,7 +96,8 @@ weighModes(const SurfaceScorer& scorer,
     const double sum = difference.sum();
     double heeded = 0.0;
     if (sum > 0.0) {
-      const double variance = clusteredVariance(difference, scorer.sourcePoints());
+      // Independent patches; not clusters, which take what one place tells for noise.
+      const double variance = kappa * difference.squaredNorm();
       heeded = std::max(0.0,
                         1.0 - unheeded_deviations * unheeded_deviations * variance /
                                   (sum * sum));

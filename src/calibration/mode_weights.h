@@ -13,10 +13,10 @@ namespace bayesian_icp {
  *
  * It is the Gaussian's integral times the prior, less the energy of the residuals above
  * that of the best mode, as far as this is above its own noise: E max(0, 1 - 4 V /
- * E^2), V the variance of E over clusters of points. */
+ * E^2), V its variance if each independent patch could as well have the opposite sign:
+ * kappa_inf times the sum of the points' squared differences. (Variance over clusters
+ * of points would take for noise what one place tells, as a mug's handle does.) */
 void
-weighModes(const SurfaceScorer& scorer,
-           const Prior& prior,
-           std::vector<CalibratedMode>& modes);
+weighModes(const Prior& prior, std::vector<CalibratedMode>& modes);
 
 } // namespace bayesian_icp

@@ -16,9 +16,7 @@ def scans(name):
 
 class CalibratedScans(ToolTest):
     def test_posterior_can_be_trusted_and_holds_the_truth(self):
-        # With the default prior the handle's yaw is left to the prior in some seeds.
-        prior = ["--prior-variance", "0.01"]
-        result = run(*scans("mug"), *PRESET, *prior, "--json")
+        result = run(*scans("mug"), *PRESET, "--json")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         document = strict_json(result.stdout)
         self.assertEqual(document["status"]["name"], "ok")
