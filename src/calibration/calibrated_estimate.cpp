@@ -33,7 +33,7 @@ constexpr double points_to_prior = 0.2;
 
 /** Least displacement of a secant's steps, in the target's noise: more of it flattens
  * Tukey's score, less makes the secants noisy. */
-constexpr double min_step_to_noise = 0.7;
+constexpr double min_step_to_noise = 0.5;
 
 /** Directions with less information, in units of the prior's, are held by the prior
  * only. */
