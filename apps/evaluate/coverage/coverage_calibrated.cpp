@@ -16,12 +16,11 @@ namespace {
 constexpr Eigen::Index max_source_points = 2000;
 constexpr std::uint64_t thinning_stream = 0x7468696e;
 
-/** All points, or max_source_points of them at random. */
+/** At most max_source_points of the points, in random order, as the preset has them:
+ * the first of them are searched with. */
 Eigen::Matrix3Xd
 thinnedSource(const CoverageCase& problem)
 {
-  if (problem.source.cols() <= max_source_points)
-    return problem.source;
   Random random(problem.seed, thinning_stream);
   return problem.source(Eigen::all,
                         randomChoice(problem.source.cols(), max_source_points, random));
