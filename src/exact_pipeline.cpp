@@ -159,9 +159,8 @@ doubtsAbout(const PoseEnergy& energy,
   if (thickness < distance && residual.residual == Residual::PointToPoint)
     doubts.push_back(formatted(
         "the source is a plane or a line to within %.2g m, less than the %.2g m "
-        "between "
-        "its points and the target's: how far it slides along is not to be seen from "
-        "distances between points",
+        "between its points and the target's: how far it slides along is not to be "
+        "seen from distances between points",
         thickness,
         distance));
   // The energy of a point beyond the kernel is largest, and the same for all.

@@ -36,7 +36,8 @@ thicknessOf(const Eigen::Matrix3Xd& points);
  * was stated, since the target is another one, or elsewhere; a source without shape, of
  * which the nearest points of the target say nothing along it; a kernel of Tukey's that
  * leaves out nearly all points: on that plateau the prior alone rules, and chains
- * agree. \param[in] estimate of \p energy; nothing is said of one without a finite mean
+ * agree.
+ * \param[in] estimate of \p energy; nothing is said of one without a finite mean
  * \param[in] thickness thicknessOf() the source [m]
  * \param[in] measurement_sigma as stated [m] */
 std::vector<std::string>

@@ -1,8 +1,9 @@
+#include "calibration/principal_axes.h"
+
 #include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/measurement.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 namespace bayesian_icp {
 
@@ -55,16 +56,14 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
     return measurement;
   const TwistPrior near_mean =
       twistPrior(prior, isometryOf(posterior.mean), Eigen::Vector3d::Zero());
-  // In coordinates in which the prior's covariance is 1, e = 1 / (1 + lambda), lambda
-  // the information of the clouds.
-  const Eigen::LLT<Matrix6d> root(near_mean.precision +
-                                  least_precision * Matrix6d::Identity());
-  const Matrix6d L = root.matrixL();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> shares(L.transpose() * covariance * L);
-  const Matrix6d directions = root.matrixU().solve(shares.eigenvectors());
+  // In units of the prior's the variance along an axis is 1 / (1 + lambda), lambda the
+  // information of the clouds.
+  const PrincipalAxes shares(
+      covariance, near_mean.precision + least_precision * Matrix6d::Identity());
+  const Matrix6d& directions = shares.axes;
   Vector6d variances, gains;
   for (int k = 0; k < 6; ++k) {
-    const double share = shares.eigenvalues()[k];
+    const double share = shares.variances[k];
     const bool is_measured =
         share < max_measured_share_of_prior * max_measured_share_of_prior;
     const double variance = share / (1.0 - share);
@@ -92,18 +91,6 @@ estimateOf(const Prior& prior)
   PoseEstimate estimate = estimateOf(prior.mean(), precision.inverse());
   estimate.status = Status::Ok;
   return estimate;
-}
-
-Prior
-priorOf(const Options& options,
-        const Vector6d& initial_pose,
-        const Eigen::Vector3d& source_centroid)
-{
-  const PriorOptions& prior = options.prior;
-  const Vector6d& mean = prior.mean.allFinite() ? prior.mean : initial_pose;
-  if (priorFrameOf(options) == PriorFrame::Origin)
-    return Prior(mean, prior.variance);
-  return Prior(mean, prior.variance, source_centroid);
 }
 
 } // namespace bayesian_icp

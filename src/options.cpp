@@ -137,6 +137,18 @@ priorFrameOf(const Options& options)
                                               : PriorFrame::Origin;
 }
 
+Prior
+priorOf(const Options& options,
+        const Vector6d& initial_pose,
+        const Eigen::Vector3d& source_centroid)
+{
+  const PriorOptions& prior = options.prior;
+  const Vector6d& mean = prior.mean.allFinite() ? prior.mean : initial_pose;
+  if (priorFrameOf(options) == PriorFrame::Origin)
+    return Prior(mean, prior.variance);
+  return Prior(mean, prior.variance, source_centroid);
+}
+
 std::string
 Options::validate() const
 {

@@ -2,8 +2,6 @@
 
 #include "plain_text.h"
 
-#include <bayesian_icp/measurement.h>
-
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>

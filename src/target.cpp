@@ -1,9 +1,10 @@
+#include "squared_gate.h"
+
 #include <bayesian_icp/target.h>
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace bayesian_icp {
@@ -71,9 +72,7 @@ TreeTarget::TreeTarget(const KdTree& tree,
                        double max_distance,
                        Eigen::Matrix3Xf normals)
 : tree_(tree)
-, max_squared_distance_(static_cast<float>(
-      std::min(max_distance * max_distance,
-               static_cast<double>(std::numeric_limits<float>::max()))))
+, max_squared_distance_(squaredGate(max_distance))
 , normals_(std::move(normals))
 {}
 

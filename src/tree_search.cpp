@@ -1,14 +1,12 @@
-#include <bayesian_icp/tree_search.h>
+#include "squared_gate.h"
 
-#include <algorithm>
+#include <bayesian_icp/tree_search.h>
 
 namespace bayesian_icp {
 
 TreeSearch::TreeSearch(const KdTree& target, double max_distance)
 : target_(target)
-, max_squared_distance_(static_cast<float>(
-      std::min(max_distance * max_distance,
-               static_cast<double>(std::numeric_limits<float>::max()))))
+, max_squared_distance_(squaredGate(max_distance))
 {}
 
 void

@@ -11,7 +11,6 @@
 
 #include <bayesian_icp/export.h>
 #include <bayesian_icp/exports.h>
-#include <bayesian_icp/options.h>
 #include <bayesian_icp/prior.h>
 
 namespace bayesian_icp {
@@ -50,14 +49,5 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior);
 /** \brief The prior as a Gaussian about its mean, with status Ok. */
 BAYESIAN_ICP_EXPORT PoseEstimate
 estimateOf(const Prior& prior);
-
-/** \brief The prior that a run has used.
- * \param[in] options of the run
- * \param[in] initial_pose its guess, which is the mean of a prior that has none
- * \param[in] source_centroid mean of the finite source points, source frame [m] */
-BAYESIAN_ICP_EXPORT Prior
-priorOf(const Options& options,
-        const Vector6d& initial_pose,
-        const Eigen::Vector3d& source_centroid);
 
 } // namespace bayesian_icp

@@ -109,4 +109,13 @@ struct Options {
 BAYESIAN_ICP_EXPORT PriorFrame
 priorFrameOf(const Options& options);
 
+/** \brief The prior that a run has used.
+ * \param[in] options of the run
+ * \param[in] initial_pose its guess, which is the mean of a prior that has none
+ * \param[in] source_centroid mean of the finite source points, source frame [m] */
+BAYESIAN_ICP_EXPORT Prior
+priorOf(const Options& options,
+        const Vector6d& initial_pose,
+        const Eigen::Vector3d& source_centroid);
+
 } // namespace bayesian_icp

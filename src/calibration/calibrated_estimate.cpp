@@ -40,8 +40,7 @@ constexpr double min_step_to_noise = 0.5;
 constexpr double min_relative_information = 0.02;
 
 /** Along a free motion the score is as unknown as the axis is, with the square of the
- * way; but no more than of so many squared steps, as new patches are met. (With two,
- * table tops came out a third too wide.) */
+ * way; but no more than of so many squared steps, as new patches are met. */
 constexpr double max_unheld_steps = 1.0;
 
 /** As uncertain as the information is: J comes from 12 to 96 clusters, H from noisy

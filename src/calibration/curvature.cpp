@@ -202,29 +202,13 @@ clearSecant(SecantMaker& maker,
   return maker.isClear(secant) ? secant : widest;
 }
 
-/** Take \p secant for direction \p k, of which the step was \p planned. */
-void
-replace(int k,
-        const Vector6d& planned,
-        const Secant& secant,
-        double unclear_displacement,
-        Secants& secants)
-{
-  secants.unclear_displacement[k] = unclear_displacement;
-  secants.planned.col(k) = planned;
-  secants.steps.col(k) = secant.step;
-  secants.differences.col(k) = secant.difference;
-  secants.noise[static_cast<std::size_t>(k)] = secant.noise;
-}
-
 /** H of steps and differences, symmetrised. */
-void
-setCurvature(Secants& secants)
+Matrix6d
+curvatureOf(const Secants& secants)
 {
   const Matrix6d products = secants.steps.transpose() * secants.differences;
   const Matrix6d inverse = secants.steps.inverse();
-  secants.curvature =
-      inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
+  return inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
 }
 
 } // namespace
@@ -253,10 +237,14 @@ measureSecants(const SurfaceScorer& scorer,
     const double shortest = std::max(min_shortened * plan.min_displacement,
                                      previous.unclear_displacement[k]);
     const Secant secant = clearSecant(maker, axis, length, shortest, k);
-    replace(k, step, secant, maker.isClear(secant) ? 0.0 : length, secants);
+    secants.unclear_displacement[k] = maker.isClear(secant) ? 0.0 : length;
+    secants.planned.col(k) = step;
+    secants.steps.col(k) = secant.step;
+    secants.differences.col(k) = secant.difference;
+    secants.noise[static_cast<std::size_t>(k)] = secant.noise;
   }
   secants.num_evaluations = maker.numEvaluations();
-  setCurvature(secants);
+  secants.curvature = curvatureOf(secants);
   return secants;
 }
 

@@ -46,6 +46,24 @@ chosenColumns(Index num_points, Index max_patches)
   return columns;
 }
 
+/** work(index, workspace) for every index of \p order; a thread has one workspace.
+ * Rethrows the first exception. */
+template <typename Workspace, typename Work>
+void
+forEachIndex(const std::vector<std::uint32_t>& order, int num_threads, const Work& work)
+{
+  const auto count = static_cast<std::ptrdiff_t>(order.size());
+  FirstException failure;
+#pragma omp parallel num_threads(num_threads)
+  {
+    Workspace workspace;
+#pragma omp for schedule(dynamic, 64)
+    for (std::ptrdiff_t i = 0; i < count; ++i)
+      failure.guard([&] { work(order[static_cast<std::size_t>(i)], workspace); });
+  }
+  failure.rethrow();
+}
+
 } // namespace
 
 SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
@@ -68,25 +86,15 @@ void
 SurfaceBuilder::fitPatches()
 {
   const PointNeighbors cloud(points_);
-  const auto order = cloud.alongTree();
-  const auto count = static_cast<std::ptrdiff_t>(order.size());
-  FirstException failure;
-#pragma omp parallel num_threads(num_threads_)
-  {
-    PatchFitWorkspace workspace;
-#pragma omp for schedule(dynamic, 64)
-    for (std::ptrdiff_t i = 0; i < count; ++i)
-      failure.guard([&] {
-        const std::uint32_t point = order[static_cast<std::size_t>(i)];
-        const std::uint32_t patch = patch_of_[point];
-        if (patch == KdTree::none)
-          return;
-        patches_[patch] =
-            fitPatch(cloud, points_.col(point), options_, workspace, spacings_[patch]);
-        noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
-      });
-  }
-  failure.rethrow();
+  const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
+    const std::uint32_t patch = patch_of_[point];
+    if (patch == KdTree::none)
+      return;
+    patches_[patch] =
+        fitPatch(cloud, points_.col(point), options_, workspace, spacings_[patch]);
+    noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
+  };
+  forEachIndex<PatchFitWorkspace>(cloud.alongTree(), num_threads_, fitAt);
   completeNeighbors();
 }
 
@@ -124,26 +132,16 @@ SurfaceBuilder::completeNeighbors()
   for (std::size_t j = 0; j < columns_.size(); ++j)
     centre_points.col(static_cast<Index>(j)) = points_.col(columns_[j]);
   const PointNeighbors centres(centre_points);
-  const auto order = centres.alongTree();
-  const auto count = static_cast<std::ptrdiff_t>(order.size());
-  FirstException failure;
-#pragma omp parallel num_threads(num_threads_)
-  {
-    NeighborList nearest;
-#pragma omp for schedule(dynamic, 64)
-    for (std::ptrdiff_t i = 0; i < count; ++i)
-      failure.guard([&] {
-        const std::uint32_t patch = order[static_cast<std::size_t>(i)];
-        if (!lacksNeighbors(patch))
-          return;
-        centres.find(centre_points.col(patch), num_donors, nearest);
-        neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
-        std::copy(nearest.indices.begin(),
-                  nearest.indices.end(),
-                  neighbors_[patch].patches.begin());
-      });
-  }
-  failure.rethrow();
+  const auto searchAt = [&](std::uint32_t patch, NeighborList& nearest) {
+    if (!lacksNeighbors(patch))
+      return;
+    centres.find(centre_points.col(patch), num_donors, nearest);
+    neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
+    std::copy(nearest.indices.begin(),
+              nearest.indices.end(),
+              neighbors_[patch].patches.begin());
+  };
+  forEachIndex<NeighborList>(centres.alongTree(), num_threads_, searchAt);
 }
 
 /** Root mean square of the noise of usable patches around one, its own if there is

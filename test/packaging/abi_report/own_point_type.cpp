@@ -1,19 +1,10 @@
 // The part of the report that is computed by the user's code: an own point type.
 #define PCL_NO_PRECOMPILE
 
+#include "../consumer/echo_point.h"
 #include "report.h"
 
 #include <pcl/registration/bayesian_icp.h>
-#include <pcl/pcl_macros.h>
-#include <pcl/register_point_struct.h>
-
-struct EchoPoint {
-  PCL_ADD_POINT4D;
-  std::uint16_t echo;
-  PCL_MAKE_ALIGNED_OPERATOR_NEW
-};
-POINT_CLOUD_REGISTER_POINT_STRUCT(
-    EchoPoint, (float, x, x)(float, y, y)(float, z, z)(std::uint16_t, echo, echo))
 
 void
 reportOwnPointType()

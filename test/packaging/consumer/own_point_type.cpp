@@ -1,21 +1,10 @@
 // Uses the class with a point type that PCL has never heard of.
 #define PCL_NO_PRECOMPILE
 
+#include "echo_point.h"
 #include "surface.h"
 
 #include <pcl/registration/bayesian_icp.h>
-#include <pcl/pcl_macros.h>
-#include <pcl/register_point_struct.h>
-
-#include <cstdint>
-
-struct EchoPoint {
-  PCL_ADD_POINT4D;
-  std::uint16_t echo;
-  PCL_MAKE_ALIGNED_OPERATOR_NEW
-};
-POINT_CLOUD_REGISTER_POINT_STRUCT(
-    EchoPoint, (float, x, x)(float, y, y)(float, z, z)(std::uint16_t, echo, echo))
 
 bool
 registersOwnPointType()

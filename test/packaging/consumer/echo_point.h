@@ -1,0 +1,16 @@
+// A point type that PCL has never heard of, for users who compile the class themselves.
+#pragma once
+
+#include <pcl/pcl_macros.h>
+#include <pcl/point_types.h>
+#include <pcl/register_point_struct.h>
+
+#include <cstdint>
+
+struct EchoPoint {
+  PCL_ADD_POINT4D;
+  std::uint16_t echo;
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+POINT_CLOUD_REGISTER_POINT_STRUCT(
+    EchoPoint, (float, x, x)(float, y, y)(float, z, z)(std::uint16_t, echo, echo))
