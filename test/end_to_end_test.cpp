@@ -62,6 +62,18 @@ distance(const BayesianIcp& icp, const Vector6d& pose)
 
 class EndToEnd : public ::testing::TestWithParam<const char*> {
 protected:
+  /** The posterior of the pose that maps \p source to \p target. */
+  static void
+  sample(const Cloud::Ptr& source, const Cloud::Ptr& target, BayesianIcp& icp)
+  {
+    useSmallSteps(icp);
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    Cloud output;
+    icp.align(output);
+    ASSERT_EQ(icp.getSamples().rows(), 4000);
+  }
+
   QuietConsole quiet_;
 };
 
@@ -69,12 +81,7 @@ TEST_P(EndToEnd, ThePosteriorHoldsTheTruthAndNotAPoseFarOff)
 {
   const Pair pair = load(GetParam());
   BayesianIcp icp;
-  useSmallSteps(icp);
-  icp.setInputSource(pair.source);
-  icp.setInputTarget(pair.target);
-  Cloud output;
-  icp.align(output);
-  ASSERT_EQ(icp.getSamples().rows(), 4000);
+  sample(pair.source, pair.target, icp);
   const Vector6d truth = bayesian_icp::poseOf(pair.T_target_source);
   EXPECT_LT(distance(icp, truth), chi_squared_999);
   for (int k = 0; k < 3; ++k)
@@ -85,12 +92,7 @@ TEST_P(EndToEnd, TheInverseRegistrationHasTheInversePosterior)
 {
   const Pair pair = load(GetParam());
   BayesianIcp icp;
-  useSmallSteps(icp);
-  icp.setInputSource(pair.target);
-  icp.setInputTarget(pair.source);
-  Cloud output;
-  icp.align(output);
-  ASSERT_EQ(icp.getSamples().rows(), 4000);
+  sample(pair.target, pair.source, icp);
   EXPECT_LT(distance(icp, bayesian_icp::poseOf(pair.T_target_source.inverse())),
             chi_squared_999);
 }

@@ -14,10 +14,6 @@ namespace bayesian_icp {
 namespace {
 
 const double pi = std::acos(-1.0);
-const CovarianceConvention conventions[] = {CovarianceConvention::Parameters,
-                                            CovarianceConvention::R3xSO3,
-                                            CovarianceConvention::LeftSE3,
-                                            CovarianceConvention::RightSE3};
 
 Eigen::Matrix4d
 hat(const Vector6d& twist)
@@ -193,7 +189,7 @@ TEST(SE3, LogInvertsExp)
 TEST(Conventions, PoseFromErrorInvertsPoseError)
 {
   Random random(7, 0);
-  for (const auto convention : conventions)
+  for (const auto convention : covariance_conventions)
     for (int i = 0; i < 20; ++i) {
       const Vector6d mean = test::randomPose(random, 0.9);
       const Vector6d pose = test::randomPose(random, 0.9);
@@ -209,7 +205,7 @@ TEST(Conventions, MeanHasNoError)
 {
   Random random(8, 0);
   const Vector6d mean = test::randomPose(random, 0.9);
-  for (const auto convention : conventions)
+  for (const auto convention : covariance_conventions)
     EXPECT_LT(poseError(mean, mean, convention).norm(), 1e-14);
 }
 

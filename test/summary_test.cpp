@@ -12,10 +12,6 @@ namespace bayesian_icp {
 namespace {
 
 const double pi = std::acos(-1.0);
-const CovarianceConvention conventions[] = {CovarianceConvention::Parameters,
-                                            CovarianceConvention::R3xSO3,
-                                            CovarianceConvention::LeftSE3,
-                                            CovarianceConvention::RightSE3};
 
 /** Draws whose error about \p mean in \p convention is N(0, covariance). */
 PoseMatrix
@@ -87,7 +83,7 @@ TEST(Covariance, OfEachConventionIsThatOfTheDrawsMadeInIt)
 {
   Random random(31, 0);
   const Eigen::Index n = 20000;
-  for (const auto convention : conventions) {
+  for (const auto convention : covariance_conventions) {
     const Vector6d mean = test::randomPose(random, 0.5);
     const Matrix6d truth = someCovariance(random);
     const PoseMatrix draws = gaussianDraws(random, n, mean, truth, convention);
@@ -138,7 +134,7 @@ TEST(Summary, BeforeARunSaysSoAndIsNaN)
   const Summary summary;
   EXPECT_EQ(summary.status, Status::NotRun);
   EXPECT_TRUE(summary.mean.array().isNaN().all());
-  for (const auto convention : conventions)
+  for (const auto convention : covariance_conventions)
     EXPECT_TRUE(summary.covariance(convention).array().isNaN().all());
 }
 

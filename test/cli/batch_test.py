@@ -44,6 +44,8 @@ def without_times(results):
 
 
 class BatchTest(ToolTest):
+    program = "pcl_bayesian_icp_batch"
+
     def manifest(self, pairs):
         return self.file("manifest.json", json.dumps(pairs))
 
@@ -61,15 +63,6 @@ class BatchTest(ToolTest):
                 for seed in range(count)
             ]
         )
-
-    def assert_batch_refused(self, exit_code, result, *parts):
-        self.assertEqual(result.returncode, exit_code, result.stderr)
-        self.assertEqual(result.stdout, "")
-        lines = result.stderr.splitlines()
-        self.assertEqual(len(lines), 1, result.stderr)
-        self.assertTrue(lines[0].startswith("pcl_bayesian_icp_batch: "), result.stderr)
-        for part in parts:
-            self.assertIn(str(part), lines[0])
 
 
 class BatchResults(BatchTest):
@@ -203,8 +196,8 @@ class BatchRefused(BatchTest):
             with self.subTest(content=content):
                 text = content if isinstance(content, str) else json.dumps(content)
                 manifest = self.file("manifest.json", text)
-                self.assert_batch_refused(3, run_batch(manifest), manifest, *parts)
-        self.assert_batch_refused(3, run_batch(self.folder / "none"), "no such file")
+                self.assert_refused(3, run_batch(manifest), manifest, *parts)
+        self.assert_refused(3, run_batch(self.folder / "none"), "no such file")
 
     def test_usage(self):
         manifest = self.seeds(1)
@@ -215,10 +208,8 @@ class BatchRefused(BatchTest):
             ([manifest, "--suggested-prior", "--prior-variance", "1"], "exclude"),
         ):
             with self.subTest(words=words):
-                self.assert_batch_refused(2, run_batch(*words), *parts)
-        self.assert_batch_refused(
-            3, run_batch(manifest, "--suggested-prior"), "suggested_prior_sigma"
-        )
+                self.assert_refused(2, run_batch(*words), *parts)
+        self.assert_refused(3, run_batch(manifest, "--suggested-prior"), "suggested_prior_sigma")
 
 
 class BatchResume(BatchTest):
@@ -276,11 +267,11 @@ class BatchResume(BatchTest):
         text = self.results.read_bytes()
         other = run_batch(manifest, *FAST, "--sigma", 2, "--results", self.results)
         first = json.loads(text.splitlines()[0])["name"]
-        self.assert_batch_refused(3, other, self.results, f"'{first}'", "other settings")
+        self.assert_refused(3, other, self.results, f"'{first}'", "other settings")
         self.assertEqual(self.results.read_bytes(), text)
         self.results.write_text("x,y\n1,2\n")
         other = run_batch(manifest, *FAST, "--results", self.results)
-        self.assert_batch_refused(3, other, self.results, "no result")
+        self.assert_refused(3, other, self.results, "no result")
         self.assertEqual(self.results.read_text(), "x,y\n1,2\n")
 
     def test_two_at_once(self):
@@ -291,7 +282,7 @@ class BatchResume(BatchTest):
                 time.sleep(0.01)
             second = run_batch(manifest, *SLOW, "--results", self.results)
             process.wait(60)
-        self.assert_batch_refused(3, second, self.results, "in use")
+        self.assert_refused(3, second, self.results, "in use")
         self.assertEqual(len(results_of(self.results.read_text())), 9)
 
     def test_full_disk(self):
@@ -311,7 +302,7 @@ class BatchResume(BatchTest):
             preexec_fn=limit_files,
             restore_signals=False,
         )
-        self.assert_batch_refused(3, result, self.results, "File too large")
+        self.assert_refused(3, result, self.results, "File too large")
         self.assertIn(len(results_of(self.results.read_text())), range(1, 9))
         self.assertEqual(self.resumed(manifest, *FAST), self.whole_run(manifest, *FAST))
 
@@ -323,7 +314,7 @@ class BatchResume(BatchTest):
             (self.folder, self.folder),
         ):
             result = run_batch(manifest, *FAST, "--results", results)
-            self.assert_batch_refused(3, result, named)
+            self.assert_refused(3, result, named)
         with open("/dev/full", "w", encoding="ascii") as full:
             result = run_batch(manifest, *FAST, "--quiet", stdout=full)
         self.assertEqual(result.returncode, 3)

@@ -35,8 +35,16 @@ def strict_json(text):
     return json.loads(text, parse_constant=refuse)
 
 
+def true_translation(folder):
+    """Of a pair of scans, [x, y, z]."""
+    return list(map(float, (folder / "T_target_source.txt").read_text().split()))[3:12:4]
+
+
 class ToolTest(unittest.TestCase):
     """A folder of its own for every test, and what is asked of all runs."""
+
+    # The one that assert_refused() expects to speak.
+    program = "pcl_bayesian_icp"
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -67,13 +75,20 @@ class ToolTest(unittest.TestCase):
         self.assertEqual(result.stdout, "")
         lines = result.stderr.splitlines()
         self.assertEqual(len(lines), 1, result.stderr)
-        self.assertTrue(lines[0].startswith("pcl_bayesian_icp: "), result.stderr)
+        self.assertTrue(lines[0].startswith(f"{self.program}: "), result.stderr)
         for part in parts:
             self.assertIn(str(part), lines[0])
 
     def assert_ran(self, result):
         """A posterior was sampled, whatever is to be thought of it."""
         self.assertIn(result.returncode, (0, 1), result.stderr)
+
+    def assert_holds_truth(self, document, folder):
+        """The true translation is within four standard deviations of the mean."""
+        coordinates = document["posterior"]["coordinates"]
+        for coordinate, true_value in zip(coordinates, true_translation(folder)):
+            error = abs(coordinate["mean"] - true_value)
+            self.assertLess(error, 4 * coordinate["standard_deviation"], coordinate["name"])
 
     def run_to_files(self, *arguments):
         """Run with -o; (samples.csv as text, posterior.json parsed)."""

@@ -46,12 +46,7 @@ class Mug(ExactTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         document = strict_json(result.stdout)
         self.assertEqual(document["status"]["name"], "ok")
-        text = (DATA / "mug" / "T_target_source.txt").read_text()
-        truth = [list(map(float, line.split())) for line in text.splitlines() if line[0] != "#"]
-        for k in range(3):
-            coordinate = document["posterior"]["coordinates"][k]
-            error = abs(coordinate["mean"] - truth[k][3])
-            self.assertLess(error, 4 * coordinate["standard_deviation"])
+        self.assert_holds_truth(document, DATA / "mug")
 
     def test_same_draws_on_any_number_of_threads(self):
         runs = [

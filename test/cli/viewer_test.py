@@ -70,15 +70,10 @@ class Picture:
 
 
 class ViewerTest(ToolTest):
+    program = "pcl_bayesian_icp_viewer"
+
     def refuse(self, exit_code, *arguments, parts=(), display=None):
-        result = view(*arguments, display=display)
-        self.assertEqual(result.returncode, exit_code, result.stderr)
-        self.assertEqual(result.stdout, "")
-        lines = result.stderr.splitlines()
-        self.assertEqual(len(lines), 1, result.stderr)
-        self.assertTrue(lines[0].startswith("pcl_bayesian_icp_viewer: "), result.stderr)
-        for part in parts:
-            self.assertIn(str(part), lines[0])
+        self.assert_refused(exit_code, view(*arguments, display=display), *parts)
 
 
 class ScreenTest(ViewerTest):
