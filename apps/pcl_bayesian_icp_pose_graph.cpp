@@ -2,6 +2,7 @@
  * \brief pcl_bayesian_icp_pose_graph: consecutive scans in, a pose graph for g2o out.
  */
 #include "io/cloud_file.h"
+#include "io/folders.h"
 #include "io/interrupt.h"
 #include "io/output_folder.h"
 #include "io/program.h"
@@ -28,8 +29,7 @@ makeGraph(const GraphCommand& command)
   if (!command.note.empty() && !command.is_quiet)
     tell("note: " + command.note);
   io::silencePcl();
-  const std::filesystem::path path(command.output_file);
-  io::OutputFolder folder(path.has_parent_path() ? path.parent_path().string() : ".");
+  io::OutputFolder folder(io::folderOf(command.output_file));
   ScanGraph graph(command.request, [&](bool is_ok, const std::string& line) {
     if (!is_ok || !command.is_quiet)
       tell(line);
@@ -38,7 +38,7 @@ makeGraph(const GraphCommand& command)
   graph.registerScans();
   if (io::wasInterrupted())
     return Interrupted;
-  folder.add(path.filename().string(),
+  folder.add(std::filesystem::path(command.output_file).filename().string(),
              [&](std::ostream& stream) { stream << graph.g2oText(); });
   folder.commit();
   return graph.numNotOk() == 0 ? Good : NotAllOk;

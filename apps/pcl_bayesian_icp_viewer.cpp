@@ -1,6 +1,7 @@
 /** \file
  * \brief pcl_bayesian_icp_viewer: shows a registration and how sure it is.
  */
+#include "io/folders.h"
 #include "io/interrupt.h"
 #include "io/output_folder.h"
 #include "io/program.h"
@@ -30,9 +31,9 @@ tell(const std::string& message)
 
 /** Where a screenshot goes; it is known before the work whether it can be written. */
 struct Screenshot {
-  explicit Screenshot(const std::filesystem::path& file)
-  : folder(file.has_parent_path() ? file.parent_path().string() : ".")
-  , name(file.filename().string())
+  explicit Screenshot(const std::string& file)
+  : folder(io::folderOf(file))
+  , name(std::filesystem::path(file).filename().string())
   {}
 
   io::OutputFolder folder;

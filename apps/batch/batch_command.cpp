@@ -35,7 +35,8 @@ describeOptionsOfBatch()
                       "deviations 'suggested_prior_sigma' of each pair");
   group.add_options()("quiet", "print no progress");
   po::options_description all;
-  all.add(group).add(describeSettings(Settings()));
+  all.add(group);
+  describeSettings(Settings(), all);
   return all;
 }
 
@@ -115,7 +116,7 @@ batchHelpText()
          "  130  interrupted (Ctrl-C or SIGTERM); pairs under way were given up\n"
          "\nExample:\n"
          "  pcl_bayesian_icp_batch manifest.json --results results.jsonl \\\n"
-         "      --preset calibrated --prior-frame source-centroid\n";
+         "      --prior-variance 0.01\n";
   return help.str();
 }
 

@@ -2,6 +2,7 @@
 
 #include "batch/batch_line.h"
 #include "io/errors.h"
+#include "io/folders.h"
 #include "io/numbers.h"
 
 #include <algorithm>
@@ -20,11 +21,9 @@ constexpr const char* rank_suffix = ".rank";
 std::vector<std::string>
 rankFilesOf(const std::string& name)
 {
-  const fs::path path(name);
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const std::string start = path.filename().string() + rank_suffix;
+  const std::string start = fs::path(name).filename().string() + rank_suffix;
   std::vector<std::string> found;
-  for (const auto& entry : fs::directory_iterator(folder)) {
+  for (const auto& entry : fs::directory_iterator(io::folderOf(name))) {
     const std::string candidate = entry.path().filename().string();
     int rank = 0;
     if (candidate.rfind(start, 0) == 0 &&

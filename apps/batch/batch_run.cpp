@@ -14,7 +14,6 @@
 #include <mutex>
 #include <new>
 #include <optional>
-#include <system_error>
 #include <thread>
 
 namespace bayesian_icp::app {
@@ -157,8 +156,8 @@ runBatch(const std::vector<BatchPair>& pairs,
     for (int i = 1; i < num_workers; ++i)
       others.emplace_back(workAs, i);
   }
-  catch (const std::system_error&) {
-    // The system has no more threads: those that there are do it all.
+  catch (const std::exception&) {
+    // No more threads, or no memory for them: those that there are do it all.
   }
   const int usual_num_threads = omp_get_max_threads();
   workAs(0);

@@ -25,10 +25,11 @@ struct BatchPair {
 
 /** \brief Read a manifest: a JSON list of pairs, as docs/batch.md describes.
  *
- * Files are relative to the manifest. \param[in] settings of pairs that say nothing
- * else \param[in] use_suggested_prior take the prior of each pair's
- * "suggested_prior_sigma" \throws io::FileError naming the pair if something in the
- * manifest is unknown, malformed or missing */
+ * Files are relative to the manifest.
+ * \param[in] settings of pairs that say nothing else
+ * \param[in] use_suggested_prior take the prior of each pair's "suggested_prior_sigma"
+ * \throws io::FileError naming the pair if something in the manifest is unknown,
+ *         malformed or missing */
 std::vector<BatchPair>
 readManifest(const std::string& file,
              const Settings& settings,

@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "io/text_hash.h"
+
 #include <Eigen/Core>
 
 #include <cstddef>
@@ -11,15 +13,13 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief FNV-1a, 64 bits, of what is added, in its order. */
+/** \brief io::hashOf() what is added, in its order. */
 class InputHash {
 public:
   void
   add(const void* data, std::size_t size)
   {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i)
-      value_ = (value_ ^ bytes[i]) * 0x100000001b3u;
+    value_ = io::hashOf({static_cast<const char*>(data), size}, value_);
   }
 
   void
@@ -43,7 +43,7 @@ public:
   }
 
 private:
-  std::uint64_t value_ = 0xcbf29ce484222325u;
+  std::uint64_t value_ = io::hash_of_nothing;
 };
 
 } // namespace bayesian_icp::evaluate

@@ -12,6 +12,7 @@
 #include <io/program.h>
 
 #include <functional>
+#include <iomanip>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -63,7 +64,8 @@ printHelp(std::ostream& stream)
 {
   stream << "Usage: pcl_bayesian_icp_evaluate COMMAND [options]\n\nCommands:\n";
   for (const SubCommand& command : subCommands())
-    stream << "  " << command.name << "  " << command.summary << '\n';
+    stream << "  " << std::left << std::setw(14) << command.name << command.summary
+           << '\n';
   stream
       << "\nCOMMAND --help tells its options. Exit codes: 0 good, 1 a result is not\n"
          "to be relied on, 2 usage, 3 cannot read or write a file.\n";

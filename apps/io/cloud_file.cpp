@@ -77,7 +77,7 @@ orientationOf(const CloudFile& cloud)
   return {q[0], q[1], q[2], q[3]};
 }
 
-/** Bit by bit. */
+/** Whether all coordinates are the same; one that is not a number is another one. */
 bool
 areSame(const Eigen::Matrix3Xf& a, const Eigen::Matrix3Xf& b)
 {

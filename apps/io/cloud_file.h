@@ -53,7 +53,8 @@ movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion);
 /** \brief Write \p source, moved into the frame of \p target, as a compressed PCD.
  *
  * As movedCloud(), but the viewpoint is the target's, so that viewers, which apply it,
- * put both clouds in one place. \throws std::exception if it cannot be encoded */
+ * put both clouds in one place.
+ * \throws std::exception if it cannot be encoded */
 void
 writeAligned(const CloudFile& source,
              const CloudFile& target,

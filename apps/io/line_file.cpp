@@ -1,6 +1,7 @@
 #include "io/line_file.h"
 
 #include "io/errors.h"
+#include "io/folders.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -8,13 +9,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <filesystem>
 #include <fstream>
 #include <system_error>
 
 namespace bayesian_icp::io {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -46,10 +44,7 @@ struct Descriptor {
 int
 openLocked(const std::string& name)
 {
-  const fs::path folder = fs::path(name).parent_path();
-  std::error_code error;
-  if (!folder.empty() && !fs::create_directories(folder, error) && error)
-    throw FileError(folder.string(), "cannot be made: " + error.message());
+  makeFolder(folderOf(name));
   Descriptor file;
   file.value = open(name.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file.value < 0)

@@ -1,6 +1,7 @@
 #include "io/output_folder.h"
 
 #include "io/errors.h"
+#include "io/folders.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -68,10 +69,8 @@ private:
 
 OutputFolder::OutputFolder(const std::string& folder) : folder_(folder)
 {
+  makeFolder(folder);
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw FileError(folder, "cannot be made: " + error.message());
   if (!fs::is_directory(folder, error))
     throw FileError(folder, "is not a folder");
   if (access(folder.c_str(), W_OK | X_OK) != 0)

@@ -9,11 +9,14 @@
 
 namespace bayesian_icp::io {
 
-/** \brief 64 bit FNV-1a: the same on every machine. Not for protection from malice. */
+/** \brief The hash of no text. */
+constexpr std::uint64_t hash_of_nothing = 14695981039346656037u;
+
+/** \brief 64 bit FNV-1a: the same on every machine. Not for protection from malice.
+ * \param[in] hash of what is before \p text */
 inline std::uint64_t
-hashOf(std::string_view text)
+hashOf(std::string_view text, std::uint64_t hash = hash_of_nothing)
 {
-  std::uint64_t hash = 14695981039346656037u;
   for (const char character : text) {
     hash ^= static_cast<unsigned char>(character);
     hash *= 1099511628211u;

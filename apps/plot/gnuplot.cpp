@@ -2,7 +2,6 @@
 
 #include "plot/child_program.h"
 
-#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -61,15 +60,6 @@ requireGnuplot(const std::string& option)
   if (!hasGnuplot())
     throw GnuplotError("is not there, but " + option +
                        " needs it (package gnuplot-nox)");
-}
-
-void
-makePlotFolder(const std::string& folder)
-{
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw io::FileError(folder, "cannot be made: " + error.message());
 }
 
 std::string

@@ -26,10 +26,6 @@ hasGnuplot();
 void
 requireGnuplot(const std::string& option);
 
-/** \throws io::FileError */
-void
-makePlotFolder(const std::string& folder);
-
 /** \brief A string of gnuplot's. */
 std::string
 quotedForGnuplot(const std::string& text);

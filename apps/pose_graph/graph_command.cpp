@@ -36,7 +36,8 @@ describeOptionsOfGraph()
                       "edge of the prior");
   group.add_options()("quiet", "print only what is wrong");
   po::options_description all;
-  all.add(group).add(describeSettings(Settings()));
+  all.add(group);
+  describeSettings(Settings(), all);
   return all;
 }
 

@@ -11,9 +11,10 @@ namespace bayesian_icp::app {
 
 /** \brief Read settings from a file: the "options" of a posterior.json, a
  * posterior.json itself, or a config.json of the authors' program. Settings that it
- * does not mention have their defaults. \param[out] note something that the user ought
- * to know; empty if nothing \throws io::FileError if there is no JSON in the file,
- * io::UsageError if what it asks for is unknown, malformed or not available */
+ * does not mention have their defaults.
+ * \param[out] note something that the user ought to know; empty if nothing
+ * \throws io::FileError if there is no JSON in the file, io::UsageError if what it asks
+ *         for is unknown, malformed or not available */
 Settings
 readConfigFile(const std::string& file, std::string& note);
 

@@ -97,8 +97,8 @@ describeGeneral()
 
 } // namespace
 
-po::options_description
-describeSettings(const Settings& defaults)
+void
+describeSettings(const Settings& defaults, po::options_description& options)
 {
   po::options_description registration("Registration");
   registration.add_options()(
@@ -123,18 +123,15 @@ describeSettings(const Settings& defaults)
   Describer describe_calibrated{calibrated};
   visitCalibrated(defaults.options.calibrated, describe_calibrated);
 
-  po::options_description all;
-  all.add(registration).add(posterior).add(sampler).add(exact).add(calibrated);
-  return all;
+  options.add(registration).add(posterior).add(sampler).add(exact).add(calibrated);
 }
 
 po::options_description
 describeOptions()
 {
   po::options_description all;
-  all.add(describeGeneral())
-      .add(describeExportOptions())
-      .add(describeSettings(Settings()));
+  all.add(describeGeneral()).add(describeExportOptions());
+  describeSettings(Settings(), all);
   return all;
 }
 
@@ -178,15 +175,13 @@ helpText()
          "draws.\n"
          "Clouds are .pcd or .ply files in metres. Options may begin with one dash or\n"
          "two, their values follow a blank or '='.\n"
-      << describeOptions() << describeSgdOptions() << about_exact << about_calibrated
-      << aboutSgdIcp()
+      << describeOptions() << '\n'
+      << describeSgdOptions() << about_exact << about_calibrated << aboutSgdIcp()
       << "\nExit codes:\n"
          "  0    the posterior is there and can be trusted\n"
          "  1    the registration failed, the chains have not mixed, they are in "
          "several\n"
-         "       modes, the clouds call for doubt (preset calibrated), or an export is "
-         "not\n"
-         "       possible\n"
+         "       modes, the clouds call for doubt, or an export is not possible\n"
          "  2    wrong usage\n"
          "  3    a file cannot be read, used or written\n"
          "  130  interrupted (Ctrl-C or SIGTERM); what was drawn until then is "
@@ -196,8 +191,8 @@ helpText()
          "out\n"
          "  pcl_bayesian_icp source.pcd target.pcd --preset exact --sigma 0.005 \\\n"
          "      --effective-points 300 --prior-frame source-centroid\n"
-         "  pcl_bayesian_icp source.pcd target.pcd --preset calibrated \\\n"
-         "      --prior-frame source-centroid\n";
+         "  pcl_bayesian_icp source.pcd target.pcd --prior-mean 0,0,0.2,0,0,1.57 \\\n"
+         "      --prior-variance 0.01,0.01,0.01,0.04,0.04,0.04\n";
   return help.str();
 }
 

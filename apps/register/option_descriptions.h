@@ -9,11 +9,12 @@ namespace bayesian_icp::app {
 
 struct Settings;
 
-/** \brief The options that decide the result of a registration, which all programs that
- * register have in common, described with their units and \p defaults. Values are
+/** \brief Add the options that decide the result of a registration, which all programs
+ * that register have in common, described with their units and \p defaults. Values are
  * strings. */
-boost::program_options::options_description
-describeSettings(const Settings& defaults);
+void
+describeSettings(const Settings& defaults,
+                 boost::program_options::options_description& options);
 
 /** \brief Every option of pcl_bayesian_icp, described with its unit and its default.
  * Values are strings. */

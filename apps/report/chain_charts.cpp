@@ -17,7 +17,7 @@ constexpr Eigen::Index min_draws_a_bin = 10;
 std::string
 blockName(const char* kind, std::size_t i)
 {
-  return std::string("$") + kind + std::to_string(i);
+  return kind + std::to_string(i);
 }
 
 /** Lines "index of the draw, difference from the mean". */
@@ -26,10 +26,10 @@ traceBlock(const std::string& name,
            const Eigen::VectorXd& errors,
            Eigen::Index max_rows)
 {
-  std::string block = name + " << EOD\n";
+  std::string lines;
   for (const Eigen::Index row : evenlySpaced(errors.size(), max_rows))
-    block += std::to_string(row) + ' ' + plotNumber(errors[row]) + '\n';
-  return block + "EOD\n";
+    lines += std::to_string(row) + ' ' + plotNumber(errors[row]) + '\n';
+  return plot::dataBlock(name, lines);
 }
 
 /** Lines "lower edge of the bin in percent of all ranks, draws in it in units of what
@@ -45,11 +45,11 @@ rankBlock(const std::string& name,
     counts[std::min(num_bins - 1,
                     static_cast<int>(num_bins * (rank + 0.5) / num_ranks))] += 1.0;
   const double expected = static_cast<double>(ranks.size()) / num_bins;
-  std::string block = name + " << EOD\n";
+  std::string lines;
   for (int bin = 0; bin <= num_bins; ++bin)
-    block += plotNumber(100.0 * bin / num_bins) + ' ' +
+    lines += plotNumber(100.0 * bin / num_bins) + ' ' +
              plotNumber(counts[std::min(bin, num_bins - 1)] / expected) + '\n';
-  return block + "EOD\n";
+  return plot::dataBlock(name, lines);
 }
 
 std::string
@@ -80,7 +80,7 @@ linesOf(const DrawSet& draws, const char* kind, const std::string& style)
 {
   std::string lines;
   for (std::size_t i = 0; i < draws.chains.size(); ++i)
-    lines += (i > 0 ? ", " : "") + blockName(kind, i) + " using 1:2 with " + style +
+    lines += (i > 0 ? ", $" : "$") + blockName(kind, i) + " using 1:2 with " + style +
              " linecolor rgb '" + colourOf(draws.chains[i].chain) + '\'';
   return lines;
 }

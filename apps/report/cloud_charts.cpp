@@ -83,11 +83,11 @@ constexpr double bottom_margin = 50.0, top_margin = 8.0;
 std::string
 pointsBlock(const std::string& name, const Eigen::Matrix3Xd& points)
 {
-  std::string block = '$' + name + " << EOD\n";
+  std::string lines;
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    block += plotNumber(points(0, i)) + ' ' + plotNumber(points(1, i)) + ' ' +
+    lines += plotNumber(points(0, i)) + ' ' + plotNumber(points(1, i)) + ' ' +
              plotNumber(points(2, i)) + '\n';
-  return block + "EOD\n";
+  return plot::dataBlock(name, lines);
 }
 
 std::string

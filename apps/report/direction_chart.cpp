@@ -12,14 +12,14 @@ constexpr double millimetres_per_metre = 1e3;
 std::string
 directionsBlock(const std::vector<DataDirection>& directions)
 {
-  std::string block = "$directions << EOD\n";
+  std::string lines;
   for (std::size_t i = 0; i < directions.size(); ++i)
-    block +=
+    lines +=
         std::to_string(i + 1) + ' ' +
         plotNumber(millimetres_per_metre * directions[i].standard_deviation) + ' ' +
         plotNumber(millimetres_per_metre * directions[i].prior_standard_deviation) +
         '\n';
-  return block + "EOD\n";
+  return plot::dataBlock("directions", lines);
 }
 
 } // namespace

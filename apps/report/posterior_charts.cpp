@@ -20,17 +20,17 @@ constexpr const char* data_set_separator = "\n\n";
 std::string
 drawsBlock(const DrawSet& draws, Eigen::Index max_rows, const char* separator)
 {
-  std::string block = "$draws << EOD\n";
+  std::string lines;
   const Eigen::Index share = std::max<Eigen::Index>(
       1, max_rows / static_cast<Eigen::Index>(draws.chains.size()));
   for (const ChainDraws& chain : draws.chains) {
     for (const Eigen::Index row : evenlySpaced(chain.errors.rows(), share)) {
       for (int k = 0; k < 6; ++k)
-        block += plotNumber(chain.errors(row, k)) + (k < 5 ? ' ' : '\n');
+        lines += plotNumber(chain.errors(row, k)) + (k < 5 ? ' ' : '\n');
     }
-    block += separator;
+    lines += separator;
   }
-  return block + "EOD\n";
+  return plot::dataBlock("draws", lines);
 }
 
 /** Where all but a few stray draws are, with a margin on both sides; 0 is within. */
@@ -45,12 +45,16 @@ rangeOf(const DrawSet& draws, int k)
   return {low - added, high + added};
 }
 
-/** Half of a range about the mean that has all of it. */
-double
-reachOf(const DrawSet& draws, int k)
+/** Half of a range about the mean that has all of it, for each coordinate. */
+Vector6d
+reachesOf(const DrawSet& draws)
 {
-  const auto [low, high] = rangeOf(draws, k);
-  return std::max(-low, high);
+  Vector6d reaches;
+  for (int k = 0; k < 6; ++k) {
+    const auto [low, high] = rangeOf(draws, k);
+    reaches[k] = std::max(-low, high);
+  }
+  return reaches;
 }
 
 std::string
@@ -155,14 +159,13 @@ ticksOf(const char* which, double reach, bool has_labels)
 }
 
 std::string
-scatterPanel(const DrawSet& draws, int row, int column)
+scatterPanel(const DrawSet& draws, const Vector6d& reaches, int row, int column)
 {
   const Axis& x = draws.axes[static_cast<std::size_t>(column)];
   const Axis& y = draws.axes[static_cast<std::size_t>(row)];
-  const double x_reach = reachOf(draws, column), y_reach = reachOf(draws, row);
   std::string script = "set border 15 linewidth 0.5\n" +
-                       ticksOf("x", x_reach, row == 5) +
-                       ticksOf("y", y_reach, column == 0);
+                       ticksOf("x", reaches[column], row == 5) +
+                       ticksOf("y", reaches[row], column == 0);
   script +=
       row == 5 ? "set xlabel '" + x.name + " [" + x.unit + "]'\n" : "unset xlabel\n";
   script +=
@@ -172,7 +175,7 @@ scatterPanel(const DrawSet& draws, int row, int column)
     plots += (i > 0 ? ", " : "plot ") +
              dots("$draws index " + io::textOf(i) + " using " +
                       std::to_string(column + 1) + ':' + std::to_string(row + 1),
-                  2.0 * x_reach,
+                  2.0 * reaches[column],
                   2.2,
                   std::string("#30") + (colourOf(draws.chains[i].chain) + 1));
   return script + plots + '\n';
@@ -194,13 +197,14 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance)
 {
   std::string script = drawsBlock(draws, max_pair_draws, data_set_separator) +
                        chart_style + "set multiplot\n";
+  const Vector6d reaches = reachesOf(draws);
   for (int row = 0; row < 6; ++row)
     for (int column = 0; column < 6; ++column)
       script +=
           placedAt(row, column) +
           (column == row ? textPanel(draws.axes[static_cast<std::size_t>(row)].name, 16)
            : column > row ? correlationPanel(covariance, row, column)
-                          : scatterPanel(draws, row, column));
+                          : scatterPanel(draws, reaches, row, column));
   Chart chart;
   chart.id = "pairs-of-coordinates";
   chart.title = "Pairs of coordinates";

@@ -2,6 +2,7 @@
  * \brief pcl_bayesian_icp_transform: moves a cloud by a pose that was found.
  */
 #include "io/cloud_file.h"
+#include "io/folders.h"
 #include "io/interrupt.h"
 #include "io/motion.h"
 #include "io/output_folder.h"
@@ -44,11 +45,10 @@ transformCloud(const Request& request)
                          " is the input; --overwrite replaces it all the same");
   const Eigen::Affine3d motion(motionOf(request));
   const io::CloudFile cloud = io::readCloud(request.input_file);
-  const fs::path output(request.output_file);
-  io::OutputFolder folder(output.has_parent_path() ? output.parent_path().string()
-                                                   : ".");
+  io::OutputFolder folder(io::folderOf(request.output_file));
   io::catchInterrupt(); // from here on a whole file or none
-  folder.addByName(output.filename().string(), [&](const std::string& path) {
+  const std::string name = fs::path(request.output_file).filename().string();
+  folder.addByName(name, [&](const std::string& path) {
     const Eigen::Affine3d applied = request.is_inverse ? motion.inverse() : motion;
     io::writeCloud(io::movedCloud(cloud, applied.matrix()), format, path);
   });

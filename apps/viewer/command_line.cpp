@@ -110,7 +110,8 @@ refuseSettings(const po::variables_map& given)
   if (given.count("live") > 0)
     throw io::UsageError(
         "--live: has no effect with a posterior that is there already");
-  const po::options_description settings = app::describeSettings(app::Settings());
+  po::options_description settings;
+  app::describeSettings(app::Settings(), settings);
   for (const auto& option : settings.options())
     if (given.count(option->long_name()) > 0)
       throw io::UsageError("--" + option->long_name() +

@@ -24,7 +24,8 @@ struct LegendLine {
 };
 
 /** \brief One line a layer of \p panel, the title before and the magnification after
- * it. \param[in] uncertainty null if there are no draws; then no layer may need them
+ * it.
+ * \param[in] uncertainty null if there are no draws; then no layer may need them
  * \param[in] shows_keys whether to name the key that switches the layer */
 std::vector<LegendLine>
 legendOf(const Panel& panel,

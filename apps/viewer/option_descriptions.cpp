@@ -103,7 +103,7 @@ describeOptions()
 {
   po::options_description all;
   all.add(describeGeneral()).add(describePclViewers()).add(describeOwn());
-  all.add(app::describeSettings(app::Settings()));
+  app::describeSettings(app::Settings(), all);
   return all;
 }
 
@@ -141,9 +141,7 @@ helpText()
          "  3    a file cannot be read, used or written\n"
          "  130  interrupted (Ctrl-C or SIGTERM)\n"
          "\nExample:\n"
-         "  pcl_bayesian_icp_viewer source.pcd target.pcd --preset calibrated --live "
-         "\\\n"
-         "      --prior-frame source-centroid\n"
+         "  pcl_bayesian_icp_viewer source.pcd target.pcd --live\n"
          "  pcl_bayesian_icp_viewer result/posterior.json -multiview 1\n"
          "  xvfb-run -a pcl_bayesian_icp_viewer result/posterior.json \\\n"
          "      --show target,deviation --screenshot deviation.png --size 800x600\n";

@@ -39,7 +39,8 @@ public:
   }
 
   /** \brief Divide the window into so many panels, row by row, and forget what was in
-   * it. \return their viewports' numbers */
+   * it.
+   * \return their viewports' numbers */
   std::vector<int>
   makePanels(std::size_t number);
 

@@ -9,6 +9,7 @@ add_library(
   ${apps}/batch/manifest.cpp
   ${apps}/evaluate/scan_manifest.cpp
   ${apps}/io/cloud_file.cpp
+  ${apps}/io/folders.cpp
   ${apps}/io/input_file.cpp
   ${apps}/io/json_file.cpp
   ${apps}/io/line_file.cpp

@@ -1,6 +1,6 @@
 #include "coverage_file.h"
 
-#include <io/numbers.h>
+#include "csv_fields.h"
 
 #include <stdexcept>
 #include <tuple>
@@ -15,7 +15,6 @@ constexpr char columns[] =
     "relative_sd_vx,relative_sd_vy,relative_sd_vz,"
     "relative_sd_wx,relative_sd_wy,relative_sd_wz,"
     "translation_error_m,rotation_error_rad,seconds,queries,notes";
-constexpr std::size_t num_columns = 32;
 
 /** Numbers of a score in the order of the columns from nees to queries. */
 template <typename ScoreType, typename Visit>
@@ -33,24 +32,6 @@ forEachNumber(ScoreType& score, const Visit& visit)
   visit(score.rotation_error);
   visit(score.seconds);
   visit(score.num_queries);
-}
-
-/** A text that fits into a field. */
-std::string
-fieldOf(std::string text)
-{
-  for (char& character : text)
-    if (character == ',' || static_cast<unsigned char>(character) < 0x20)
-      character = ' ';
-  return text;
-}
-
-template <typename Number>
-void
-readField(std::string_view field, Number& number)
-{
-  if (!io::readNumber(field, number))
-    throw std::runtime_error("not a number");
 }
 
 } // namespace
@@ -71,27 +52,29 @@ CoverageRun::header()
 std::string
 CoverageRun::row() const
 {
-  std::string row = fieldOf(name.scene) + ',' + fieldOf(name.condition) + ',' +
-                    io::textOf(name.seed) + ',' + fieldOf(name.method) +
-                    (score.is_valid ? ",1" : ",0");
-  forEachNumber(score, [&row](auto number) { row += ',' + io::textOf(number); });
-  return row + ',' + fieldOf(score.notes);
+  CsvRow row;
+  row.add(name.scene).add(name.condition).add(name.seed).add(name.method);
+  row.add(score.is_valid ? 1 : 0);
+  forEachNumber(score, [&row](auto number) { row.add(number); });
+  return row.add(score.notes).text();
 }
 
 CoverageRun
 CoverageRun::ofRow(const std::string& line)
 {
-  const auto fields = io::splitAt(',', line);
-  if (fields.size() != num_columns || (fields[4] != "0" && fields[4] != "1"))
-    throw std::runtime_error("not a row");
+  CsvFields fields(line);
   CoverageRun run;
-  run.name = {
-      std::string(fields[0]), std::string(fields[1]), 0, std::string(fields[3])};
-  readField(fields[2], run.name.seed);
-  run.score.is_valid = fields[4] == "1";
-  std::size_t column = 5;
-  forEachNumber(run.score, [&](auto& number) { readField(fields[column++], number); });
-  run.score.notes = std::string(fields.back());
+  run.name.scene = fields.text();
+  run.name.condition = fields.text();
+  fields.read(run.name.seed);
+  run.name.method = fields.text();
+  const std::string is_valid = fields.text();
+  if (is_valid != "0" && is_valid != "1")
+    throw std::runtime_error("neither 0 nor 1");
+  run.score.is_valid = is_valid == "1";
+  forEachNumber(run.score, [&fields](auto& number) { fields.read(number); });
+  run.score.notes = fields.text();
+  fields.end();
   return run;
 }
 

@@ -4,6 +4,7 @@
 #include "coverage_table.h"
 
 #include <io/errors.h>
+#include <io/folders.h>
 #include <io/numbers.h>
 #include <plot/gnuplot.h>
 
@@ -168,7 +169,7 @@ aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
 void
 plotCoverage(const Runs& runs, const std::string& folder)
 {
-  plot::makePlotFolder(folder);
+  io::makeFolder(folder);
   Methods methods;
   for (const auto& [name, of_method] : runsByMethod(runs))
     if (const Runs valid = validOf(of_method); !valid.empty())

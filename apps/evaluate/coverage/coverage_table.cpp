@@ -1,11 +1,10 @@
 #include "coverage_table.h"
 
 #include "coverage_summary.h"
+#include "formatted_text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
 namespace bayesian_icp::evaluate {
@@ -16,15 +15,6 @@ constexpr double mm = 1e3;
 constexpr double degree = 180.0 / 3.14159265358979323846;
 
 using Runs = std::vector<CoverageRun>;
-
-template <typename... Values>
-std::string
-format(const char* pattern, Values... values)
-{
-  std::array<char, 256> text;
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
 
 /** "0.95 [0.90,0.98]" */
 std::string

@@ -39,8 +39,8 @@ struct GicpFit {
 };
 
 /** \brief pcl::GeneralizedIterativeClosestPoint with its default planes, until its
- * steps are short. Planes of source points are those of the whole source. \return not
- * converged if a cloud has fewer points than a plane's neighbourhood */
+ * steps are short. Planes of source points are those of the whole source.
+ * \return not converged if a cloud has fewer points than a plane's neighbourhood */
 GicpFit
 fitPclGicp(const PclProblem& problem);
 

@@ -2,6 +2,7 @@
 #include "paper_experiment.h"
 
 #include <io/cloud_file.h>
+#include <io/folders.h>
 #include <plot/gnuplot.h>
 
 #include <iostream>
@@ -40,15 +41,13 @@ runExperiments(const ExperimentCommand& command, int argc, const char* const* ar
   }
   io::silencePcl();
   plot::requireGnuplot("--output");
-  int num_skipped = 0;
-  study.pairs = readPairs(study.options, std::cerr, num_skipped);
-  study.num_skipped = num_skipped;
+  study.pairs = readPairs(study.options, std::cerr, study.num_skipped);
   study.report = [](const std::string& line) { std::cerr << line << std::endl; };
-  plot::makePlotFolder(study.options.output_folder);
+  io::makeFolder(study.options.output_folder);
   command.run(study);
-  if (num_skipped > 0)
-    std::cerr << num_skipped << " pairs were skipped" << std::endl;
-  return num_skipped > 0 ? skipped_exit_code : 0;
+  if (study.num_skipped > 0)
+    std::cerr << study.num_skipped << " pairs were skipped" << std::endl;
+  return study.num_skipped > 0 ? skipped_exit_code : 0;
 }
 
 int

@@ -1,5 +1,6 @@
 #include "monte_carlo_runs.h"
 
+#include "csv_fields.h"
 #include "input_hash.h"
 #include "row_file.h"
 
@@ -21,7 +22,6 @@ constexpr char version[] = "monte carlo icp 1";
 constexpr char header[] =
     "index,start_x_m,start_y_m,start_z_m,start_roll_rad,start_pitch_rad,start_yaw_rad,"
     "x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,stop,iterations,mean_squared_distance_m2";
-constexpr std::size_t num_columns = 16;
 
 constexpr int block_size = 100;
 constexpr double seconds_between_reports = 5.0;
@@ -43,10 +43,10 @@ forEachNumber(Run& run, const Visit& visit)
 std::string
 rowOf(const MonteCarloIcpRun& run)
 {
-  std::string row;
-  forEachNumber(run, [&row](auto number) { row += io::textOf(number) + ','; });
-  return row + toString(run.stop) + ',' + io::textOf(run.num_iterations) + ',' +
-         io::textOf(run.mean_squared_distance);
+  CsvRow row;
+  forEachNumber(run, [&row](auto number) { row.add(number); });
+  row.add(std::string(toString(run.stop)));
+  return row.add(run.num_iterations).add(run.mean_squared_distance).text();
 }
 
 IcpStop
@@ -66,20 +66,14 @@ stopOf(std::string_view name)
 MonteCarloIcpRun
 runOf(const std::string& line)
 {
-  const auto fields = io::splitAt(',', line);
-  if (fields.size() != num_columns)
-    throw std::runtime_error("wrong number of columns");
-  std::size_t column = 0;
-  const auto read = [&](auto& number) {
-    if (!io::readNumber(fields[column++], number))
-      throw std::runtime_error("not a number");
-  };
+  CsvFields fields(line);
   MonteCarloIcpRun run;
-  forEachNumber(run, read);
-  run.stop = stopOf(fields[column++]);
+  forEachNumber(run, [&fields](auto& number) { fields.read(number); });
+  run.stop = stopOf(fields.text());
   run.has_converged = run.stop != IcpStop::TooFewPairs;
-  read(run.num_iterations);
-  read(run.mean_squared_distance);
+  fields.read(run.num_iterations);
+  fields.read(run.mean_squared_distance);
+  fields.end();
   return run;
 }
 

@@ -26,7 +26,7 @@ struct Spread {
 Spread
 spreadOf(const std::vector<double>& values);
 
-/** \brief "0.387 +- 0.199"; says how many values were finite if not all, "infinite" if
+/** \brief "0.387 ± 0.199"; says how many values were finite if not all, "infinite" if
  * none. */
 std::string
 textOf(const Spread& spread);

@@ -5,8 +5,8 @@
 #include <boost/version.hpp>
 
 #include <io/numbers.h>
+#include <plot/child_program.h>
 
-#include <cstdio>
 #include <fstream>
 #include <thread>
 
@@ -32,17 +32,11 @@ commandOf(const PaperOptions& options)
          options.output_folder + (options.is_quick ? " --quick" : "");
 }
 
-/** The first line that a command prints; empty if it prints none. */
 std::string
-firstLineOf(const char* command)
+gnuplotVersion()
 {
-  std::string line;
-  if (FILE* pipe = popen(command, "r")) {
-    for (int c = std::fgetc(pipe); c != EOF && c != '\n'; c = std::fgetc(pipe))
-      line += static_cast<char>(c);
-    pclose(pipe);
-  }
-  return line;
+  const std::string text = plot::runChildProgram({"gnuplot", "--version"}, "").output;
+  return text.substr(0, text.find('\n'));
 }
 
 std::string
@@ -77,7 +71,7 @@ originSection(const PaperOptions& options)
                      std::to_string(EIGEN_MAJOR_VERSION) + '.' +
                      std::to_string(EIGEN_MINOR_VERSION)},
                 {"Boost", BOOST_LIB_VERSION},
-                {"gnuplot", firstLineOf("gnuplot --version")},
+                {"gnuplot", gnuplotVersion()},
                 {"processor", processorName()},
                 {"cores", std::to_string(std::thread::hardware_concurrency())}};
   section.blocks.emplace_back(table);

@@ -1,25 +1,18 @@
 #include "rank_table.h"
 
+#include "formatted_text.h"
+
 #include <io/coordinates.h>
+#include <io/folders.h>
 #include <plot/gnuplot.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
 namespace bayesian_icp::evaluate {
 
 namespace {
-
-template <typename... Values>
-std::string
-format(const char* pattern, Values... values)
-{
-  std::array<char, 128> text;
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
 
 std::string
 verdictOf(const RankSampler& sampler, bool is_uniform)
@@ -29,14 +22,14 @@ verdictOf(const RankSampler& sampler, bool is_uniform)
   return is_uniform ? "uniform" : "NOT UNIFORM";
 }
 
-/** Lines "bin, runs in it"; a block of a name of its own. */
+/** Lines "bin, runs in it". */
 std::string
-histogramBlock(const std::string& name, const RankHistogram& histogram)
+histogramLines(const RankHistogram& histogram)
 {
-  std::string lines = '$' + name + " << EOD\n";
+  std::string lines;
   for (std::size_t bin = 0; bin < histogram.size(); ++bin)
     lines += std::to_string(bin) + ' ' + std::to_string(histogram[bin]) + '\n';
-  return lines + "EOD\n";
+  return lines;
 }
 
 } // namespace
@@ -70,7 +63,7 @@ printRankTable(const RankStudy& study, const RankFile& results, std::ostream& st
 void
 plotRanks(const RankStudy& study, const RankFile& results, const std::string& folder)
 {
-  plot::makePlotFolder(folder);
+  io::makeFolder(folder);
   const std::size_t num_rows = study.samplers.size();
   std::string data;
   std::string plot = "set multiplot layout " + std::to_string(num_rows) + ", 6\n";
@@ -80,7 +73,7 @@ plotRanks(const RankStudy& study, const RankFile& results, const std::string& fo
     const double expected = static_cast<double>(runs.size()) / num_rank_bins;
     for (int k = 0; k < 6; ++k) {
       const std::string name = "ranks" + std::to_string(i) + '_' + std::to_string(k);
-      data += histogramBlock(name, rankHistogram(runs, k));
+      data += plot::dataBlock(name, histogramLines(rankHistogram(runs, k)));
       plot +=
           "set title " +
           plot::quotedForGnuplot(sampler.name + ' ' +
