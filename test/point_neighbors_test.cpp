@@ -76,6 +76,23 @@ TEST(PointNeighbors, AlongTheTreeEveryPointIsVisitedOnce)
   }
 }
 
+TEST(PointNeighbors, AreNotPointsTooFarAwayForAFloat)
+{
+  Eigen::Matrix3Xf points = Eigen::Matrix3Xf::Random(3, 40);
+  points.col(7).setConstant(1e30f);
+  points.col(23).setConstant(-1e30f);
+  const PointNeighbors neighbors(points);
+  NeighborList list;
+  for (int i = 0; i < 3; ++i) {
+    neighbors.find(points.col(0), 40, list);
+    ASSERT_EQ(list.indices.size(), 38u);
+    EXPECT_EQ(list.squared_distances.size(), 38u);
+    EXPECT_LT(list.squared_distances.back(), 12.f);
+    neighbors.find(points.col(7), 40, list);
+    ASSERT_EQ(list.indices, std::vector<std::uint32_t>{7});
+  }
+}
+
 } // namespace
 } // namespace test
 } // namespace bayesian_icp

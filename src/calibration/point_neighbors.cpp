@@ -15,7 +15,8 @@ using kd_tree::Node;
 
 namespace {
 
-/** Above any squared distance to a point; below that to a place without one. */
+/** Above any squared distance to a neighbour; below that to a place without a point, or
+ * with one so far away that a float cannot hold it. */
 constexpr float no_limit = std::numeric_limits<float>::max();
 
 /** A level leaves at most seven of its children behind, and 2^32 points have less than
@@ -239,7 +240,7 @@ PointNeighbors::find(const Vector3f& query, std::size_t count, NeighborList& lis
   const float radius = 1.0001f * (ball->radius + (query - ball->query).norm());
   const float limit = std::min(radius * radius, no_limit);
   if (gather(query, count, limit, list.found_) < count)
-    gather(query, count, no_limit, list.found_);
+    count = std::min(count, gather(query, count, no_limit, list.found_));
   sortNearest(list.found_, count, list.sorted_, list.buckets_);
   list.indices.resize(count);
   list.squared_distances.resize(count);
@@ -247,8 +248,10 @@ PointNeighbors::find(const Vector3f& query, std::size_t count, NeighborList& lis
     list.indices[i] = static_cast<std::uint32_t>(list.sorted_[i]);
     list.squared_distances[i] = squaredDistanceOf(list.sorted_[i]);
   }
-  if (count > 0)
-    *ball = {count, query, std::sqrt(list.squared_distances.back())};
+  if (count > 0) {
+    ball->query = query;
+    ball->radius = std::sqrt(list.squared_distances.back());
+  }
 }
 
 } // namespace bayesian_icp

@@ -47,7 +47,7 @@ public:
   explicit PointNeighbors(const Eigen::Matrix3Xf& points);
 
   /** \brief The \p count nearest points, at least 1, nearest first; fewer if there are
-   * fewer.
+   * fewer. A point is none if the squared distance to it is too large for a float.
    * \param[in] query finite; near the last one asked with \p list, the search is faster
    * \param[in] count how many
    * \param[in,out] list an empty one, or of an earlier search in this object */
