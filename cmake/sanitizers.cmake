@@ -7,6 +7,10 @@ set_property(CACHE BAYESIAN_ICP_SANITIZER PROPERTY STRINGS "" address thread)
 if(BAYESIAN_ICP_SANITIZER STREQUAL address)
   set(sanitizer_options -fsanitize=address,undefined,float-cast-overflow
                         -fno-sanitize-recover=all)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+    list(APPEND sanitizer_options
+         -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/undefined_of_others.ignore)
+  endif()
   # Eigen would choose another allocator than the PCL of the system was built with.
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1 _GLIBCXX_ASSERTIONS)
 elseif(BAYESIAN_ICP_SANITIZER STREQUAL thread)
