@@ -99,6 +99,7 @@ double
 medianShareOfPrior(const std::vector<CoverageRun>& runs, int coordinate)
 {
   std::vector<double> shares;
+  shares.reserve(runs.size());
   for (const CoverageRun& run : runs)
     shares.push_back(run.score.relative_sd[coordinate]);
   const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);

@@ -59,6 +59,7 @@ expectUniformPit(const std::vector<CoverageRun>& runs)
 {
   for (int k = 0; k < 6; ++k) {
     std::vector<double> pit;
+    pit.reserve(runs.size());
     for (const CoverageRun& run : runs)
       pit.push_back(run.score.pit[k]);
     // Exceeded with probability 2 exp(-2 2.2^2) = 1.2e-4.

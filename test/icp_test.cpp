@@ -221,7 +221,7 @@ TEST(Icp, EveryCriterionIsPcls)
   const IcpPair pair = readIcpPair("mug", 10);
   const Isometry3d start = isometryOf(0.05 * Vector6d::Ones());
   const auto expectSame = [&](const IcpOptions& options, IcpStop stop) {
-    const IcpResult ours = pair.run(start, options);
+    IcpResult ours = pair.run(start, options);
     const IcpResult theirs = pair.runPcl(start, options);
     EXPECT_EQ(ours.stop, stop) << toString(ours.stop);
     EXPECT_EQ(theirs.stop, stop) << toString(theirs.stop);

@@ -81,8 +81,7 @@ TEST_P(KdTreePath, OfTwoEquallyNearPointsInDifferentSubtreesTheFirstIsFound)
   // A lattice of 16 x 16 x 16, from the last corner to the first.
   Eigen::Matrix3Xf points(3, 4096);
   for (int i = 0; i < 4096; ++i)
-    points.col(4095 - i) << static_cast<float>(i % 16), static_cast<float>(i / 16 % 16),
-        static_cast<float>(i / 256);
+    points.col(4095 - i) = Eigen::Vector3i(i % 16, i / 16 % 16, i / 256).cast<float>();
   const KdTree tree = treeOf(points);
   for (std::uint32_t later = 0; later < 4096; ++later)
     for (int axis = 0; axis < 3; ++axis) {

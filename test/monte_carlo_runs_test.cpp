@@ -172,6 +172,6 @@ TEST_F(MonteCarloRuns, BrokenFilesAreNamed)
   expectError(good + "3,oops\n", "bad line");
   expectError("another header\n", "not a file of results");
   std::string other_end = good;
-  other_end.replace(other_end.rfind("_"), 1, "?");
+  other_end.replace(other_end.rfind('_'), 1, "?");
   expectError(other_end, "bad line");
 }

@@ -280,7 +280,7 @@ TEST(SurfaceScore, IsZeroWithoutPatches)
 
 TEST(SurfaceScore, ScaleAndCostOfResiduals)
 {
-  SurfaceScores scores;
+  SurfaceScores scores{};
   scores.residuals.resize(6);
   scores.residuals << 1.0, -2.0, 0.5, 100.0, -7.0, 0.1;
   scores.has_patch = {1, 1, 1, 0, 1, 1};

@@ -128,7 +128,7 @@ TEST_P(Torture, Exact) { check<float>(1); }
 
 TEST_P(Torture, Paper) { check<float>(2); }
 
-INSTANTIATE_TEST_SUITE_P(,
+INSTANTIATE_TEST_SUITE_P(OfClouds,
                          Torture,
                          ::testing::ValuesIn(tortureCases()),
                          [](const auto& of_case) { return of_case.param.id; });

@@ -11,6 +11,8 @@ import cloud_files
 
 TOOL = os.environ["PCL_BAYESIAN_ICP"]
 DATA = pathlib.Path(os.environ["PCL_BAYESIAN_ICP_DATA"])
+# What the tools are built with: a sanitizer needs more address space than can be limited.
+SANITIZER = os.environ.get("PCL_BAYESIAN_ICP_SANITIZER")
 
 # The pose that brings the source of small_pair() onto its target.
 SMALL_PAIR_POSE = (0.01, -0.02, 0.015, 0.05, -0.04, 0.08)

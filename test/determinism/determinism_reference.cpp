@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <limits>
@@ -123,7 +125,7 @@ run(const std::string& action, const std::string& folder)
   }
   bool all_well = true;
   for (const std::string& name : runNames()) {
-    const std::string path = folder + "/" + name + ".json";
+    const std::string path = std::filesystem::path(folder) / (name + ".json");
     all_well =
         (action == "--write" ? write(path, name) : check(path, name)) && all_well;
   }
@@ -139,6 +141,10 @@ run(const std::string& action, const std::string& folder)
 
 int
 main(int argc, char** argv)
-{
+try {
   return bayesian_icp::test::run(argc == 3 ? argv[1] : "", argc == 3 ? argv[2] : "");
+}
+catch (const std::exception& error) {
+  std::cerr << "determinism_reference: " << error.what() << '\n';
+  return 1;
 }
