@@ -38,7 +38,7 @@ checkEstimate(const Summary& summary, const PoseMatrix& samples)
     fuzz::require(summary.mean.allFinite(), "the mean of draws is finite");
   if (summary.num_draws < 2)
     fuzz::require(covariance.array().isNaN().all(), "one draw has no covariance");
-  if (hasUsableMean(summary.status))
+  else if (hasUsableMean(summary.status))
     fuzz::require(covariance.allFinite(), "a usable posterior has a covariance");
 }
 
