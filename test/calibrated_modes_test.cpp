@@ -171,6 +171,15 @@ TEST(CalibratedModes, AHandleOutweighsAFreeYaw)
   EXPECT_GT(num_modes, 1u);
 }
 
+TEST(CalibratedModes, ThereIsOneAlsoOfCloudsThatDoNotMeet)
+{
+  Clouds clouds = cloudsOf(onCube, 0.0);
+  clouds.source.row(0).array() += 50.0;
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  EXPECT_EQ(calibratedModes(scorer, priorWith(0.35, scorer.centroid())).size(), 1u);
+}
+
 PosteriorEstimate
 estimateFrom(const Clouds& clouds, double yaw_sd)
 {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp {
 
@@ -102,7 +103,10 @@ weighModes(const Prior& prior, std::vector<CalibratedMode>& modes)
                         1.0 - unheeded_deviations * unheeded_deviations * variance /
                                   (sum * sum));
     }
-    modes[m].log_weight = logVolumeOf(modes[m].estimate, prior) - weight * sum * heeded;
+    const double log_weight =
+        logVolumeOf(modes[m].estimate, prior) - weight * sum * heeded;
+    modes[m].log_weight =
+        std::isfinite(log_weight) ? log_weight : std::numeric_limits<double>::lowest();
   }
   std::stable_sort(modes.begin(), modes.end(), [](const auto& a, const auto& b) {
     return a.log_weight > b.log_weight;
