@@ -16,7 +16,8 @@ namespace bayesian_icp {
  * E^2), V its variance if each independent patch could as well have the opposite sign:
  * kappa_inf times the sum of the points' squared differences. (Variance over clusters
  * of points would take for noise what one place tells, as a mug's handle does.) A mode
- * of which this is not finite, as its clouds do not meet, has the least weight there is.
+ * of which this is not finite, as its clouds do not meet, has the least weight there
+ * is.
  */
 void
 weighModes(const Prior& prior, std::vector<CalibratedMode>& modes);
