@@ -1,13 +1,13 @@
 #include "coverage_calibrated.h"
 
 #include "coverage_methods.h"
+#include "formatted_text.h"
 
 #include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
 #include <bayesian_icp/summary.h>
 
 #include <algorithm>
-#include <cstdio>
 
 namespace bayesian_icp::evaluate {
 
@@ -29,9 +29,7 @@ thinnedSource(const CoverageCase& problem)
 std::string
 numberNote(const char* name, double value)
 {
-  char text[64];
-  std::snprintf(text, sizeof(text), ";%s=%.3g", name, value);
-  return text;
+  return format(";%s=%.3g", name, value);
 }
 
 /** The raised flags, how many directions the data say nothing about, and the

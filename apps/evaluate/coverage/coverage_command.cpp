@@ -6,13 +6,13 @@
 #include "coverage_real.h"
 #include "coverage_study.h"
 #include "coverage_table.h"
+#include "formatted_text.h"
 
 #include <io/cloud_file.h>
 #include <io/errors.h>
 #include <plot/gnuplot.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 
@@ -122,17 +122,14 @@ studyOf(const CoverageOptions& options)
 void
 reportProgress(const CoverageProgress& progress)
 {
-  char line[160];
-  std::snprintf(line,
-                sizeof line,
-                "%zu of %zu cases, about %.0f s left (%s, %s, seed %llu)",
-                progress.num_done,
-                progress.num_cases,
-                progress.seconds_left,
-                progress.last_case.scene.c_str(),
-                progress.last_case.condition.c_str(),
-                static_cast<unsigned long long>(progress.last_case.seed));
-  std::cerr << line << std::endl;
+  std::cerr << format("%zu of %zu cases, about %.0f s left (%s, %s, seed %llu)",
+                      progress.num_done,
+                      progress.num_cases,
+                      progress.seconds_left,
+                      progress.last_case.scene.c_str(),
+                      progress.last_case.condition.c_str(),
+                      static_cast<unsigned long long>(progress.last_case.seed))
+            << std::endl;
 }
 
 /** The rows of the study, in its order. */

@@ -1,9 +1,9 @@
 #include "result_table.h"
 
 #include "draw_statistics.h"
+#include "formatted_text.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <ostream>
 #include <tuple>
@@ -73,9 +73,7 @@ printHeader(std::ostream& stream)
 std::string
 column(double value, int width, int precision)
 {
-  char text[64];
-  std::snprintf(text, sizeof text, " %*.*f", width - 1, precision, value);
-  return text;
+  return format(" %*.*f", width - 1, precision, value);
 }
 
 void
@@ -94,16 +92,13 @@ printLine(const CellName& cell,
       collect(scores, [](const Score& s) { return s.wasserstein.maxCoeff(); });
   const auto num_mixed = std::count_if(
       scores.begin(), scores.end(), [](const Score& s) { return s.status == "ok"; });
-  char name[80];
-  std::snprintf(name,
-                sizeof name,
-                "%-10s %-6g %-5g %-16s %2zu",
-                std::get<0>(cell).c_str(),
-                std::get<1>(cell),
-                std::get<2>(cell),
-                sampler.c_str(),
-                scores.size());
-  stream << name << column(median(kl), 8, 4) << column(largest(kl), 8, 4)
+  stream << format("%-10s %-6g %-5g %-16s %2zu",
+                   std::get<0>(cell).c_str(),
+                   std::get<1>(cell),
+                   std::get<2>(cell),
+                   sampler.c_str(),
+                   scores.size())
+         << column(median(kl), 8, 4) << column(largest(kl), 8, 4)
          << column(medianCoordinateKl(scores), 8, 4) << column(median(w1), 8, 3)
          << column(100.0 * shareOfGoodMarginals(scores), 7, 0)
          << column(largest(rhat), 7, 3) << column(smallest(bulk), 10, 0)
