@@ -100,8 +100,7 @@ class ScreenTest(ViewerTest):
         cls.addClassCleanup(folder.cleanup)
         cls.results = pathlib.Path(folder.name)
         for name in ("can", "mug"):
-            words = [*CALIBRATED, "-o", cls.results / name, "--quiet"]
-            result = run(*scans(name), *words)
+            result = run(*scans(name), *CALIBRATED, "-o", cls.results / name, "--quiet")
             assert result.returncode == 0, result.stderr
 
     def picture(self, *arguments, size=(WIDTH, HEIGHT)):
