@@ -42,6 +42,7 @@ draws(benchmark::State& state, const Cloud::Ptr& source, const Cloud::Ptr& targe
       tree, target, std::sqrt(std::numeric_limits<double>::max()), nullptr);
   const Eigen::Matrix3Xd points = pcl::bayesian_icp_detail::pointMatrix(*source);
   bayesian_icp::Options options;
+  options.preset = bayesian_icp::Preset::Paper;
   options.chains.num_draws = num_draws;
   options.chains.num_threads = 1;
   options.mini_batch.batch_size = batch_size;

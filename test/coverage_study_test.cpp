@@ -3,6 +3,8 @@
 #include "coverage_table.h"
 #include "coverage_test_support.h"
 
+#include <bayesian_icp/pipeline.h>
+
 #include <gtest/gtest.h>
 
 #include <io/errors.h>
@@ -222,6 +224,30 @@ TEST_F(CoverageStudyTest, TableHasEveryCellAndThePools)
                             "\nall scenes, moved\n",
                             "\nall\n"})
     EXPECT_NE(table.str().find(title), std::string::npos) << title;
+}
+
+TEST(CoverageMethods, PaperIsAlgorithm1WithThePriorOfTheCase)
+{
+  CoverageCase problem = rightPosterior(1, 0).problem;
+  problem.prior_mean << 0.1, 0.0, -0.1, 0.0, 0.1, 0.0;
+  Options options;
+  options.preset = Preset::Paper;
+  options.prior.mean = problem.prior_mean;
+  options.prior.variance = problem.prior_sd.cwiseAbs2();
+  options.prior.frame = PriorFrame::SourceCentroid;
+  options.chains.seed = problem.seed;
+  const PosteriorEstimate expected =
+      estimatePosterior(problem.source,
+                        KdTree(problem.target.cast<float>(), 1),
+                        problem.prior_mean,
+                        options);
+  ASSERT_GT(expected.samples.rows(), 0);
+  for (const CoverageMethod& method : coverageMethods())
+    if (method.name == "paper") {
+      EXPECT_EQ(timedResult(method, problem).draws, expected.samples);
+      return;
+    }
+  FAIL() << "no method paper";
 }
 
 TEST(CoverageMethods, PriorIsAsLikelyAsItSays)

@@ -39,6 +39,7 @@ MethodResult
 runPaperPreset(const CoverageCase& problem)
 {
   Options options;
+  options.preset = Preset::Paper;
   options.prior.mean = problem.prior_mean;
   options.prior.variance = problem.prior_sd.cwiseAbs2();
   options.prior.frame = PriorFrame::SourceCentroid;
