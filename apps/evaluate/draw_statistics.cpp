@@ -142,8 +142,9 @@ energyScore(const PoseMatrix& draws, const PoseMatrix& outcomes)
     for (Eigen::Index j = 0; j < i; ++j)
       sum +=
           (draws.row(i * size / num_paired) - draws.row(j * size / num_paired)).norm();
-  const auto num_pairs = static_cast<double>(num_paired * (num_paired - 1) / 2);
-  return to_outcomes / static_cast<double>(outcomes.rows()) - 0.5 * sum / num_pairs;
+  const Eigen::Index num_pairs = num_paired * (num_paired - 1) / 2;
+  return to_outcomes / static_cast<double>(outcomes.rows()) -
+         0.5 * sum / static_cast<double>(num_pairs);
 }
 
 double
