@@ -8,6 +8,8 @@
 #include "coverage_table.h"
 #include "formatted_text.h"
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <io/cloud_file.h>
 #include <io/errors.h>
 #include <plot/gnuplot.h>
@@ -63,14 +65,13 @@ realOffer(const std::string& folder)
 Names
 chosen(const Names& asked, const Names& known, const std::string& option)
 {
-  for (const std::string& name : asked)
-    if (std::count(known.begin(), known.end(), name) == 0) {
-      std::string all;
-      for (const std::string& other : known)
-        all.append(" ").append(other);
-      throw io::UsageError("--" + option + ": there is no " + io::quoted(name) +
-                           ", but" + all);
-    }
+  const auto unknown =
+      std::find_if(asked.begin(), asked.end(), [&known](const std::string& name) {
+        return std::count(known.begin(), known.end(), name) == 0;
+      });
+  if (unknown != asked.end())
+    throw io::UsageError("--" + option + ": there is no " + io::quoted(*unknown) +
+                         ", but " + boost::algorithm::join(known, " "));
   return asked.empty() ? known : asked;
 }
 

@@ -19,9 +19,9 @@ nodesOf(int degrees_of_freedom)
   if (degrees_of_freedom == 0)
     return {0.0};
   const boost::math::chi_squared distribution(degrees_of_freedom);
-  std::vector<double> nodes;
+  std::vector<double> nodes(num_nodes);
   for (int i = 0; i < num_nodes; ++i)
-    nodes.push_back(boost::math::quantile(distribution, (i + 0.5) / num_nodes));
+    nodes[i] = boost::math::quantile(distribution, (i + 0.5) / num_nodes);
   return nodes;
 }
 
