@@ -56,8 +56,8 @@ RankFile::RankFile(const std::string& name)
   std::optional<Ranks> ranks;
   if (numberOf<int>(fields[2]) == 1) {
     ranks.emplace();
-    for (int k = 0; k < 6; ++k) {
-      (*ranks)[k] = numberOf<int>(fields[static_cast<std::size_t>(3 + k)]);
+    for (std::size_t k = 0; k < 6; ++k) {
+      (*ranks)[k] = numberOf<int>(fields[3 + k]);
       if ((*ranks)[k] < 0 || (*ranks)[k] > num_ranked_draws)
         throw std::runtime_error("not a rank");
     }
