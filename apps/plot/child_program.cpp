@@ -75,6 +75,7 @@ start(const std::vector<std::string>& words,
       pid_t& process)
 {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words)
     arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);

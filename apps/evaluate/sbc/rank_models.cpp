@@ -67,9 +67,11 @@ cubeLattice()
 {
   Eigen::Matrix3Xd points(3, num_on_side * num_on_side * num_on_side);
   for (int i = 0; i < points.cols(); ++i)
-    points.col(i) = point_distance * Vector3d(i % num_on_side - 1,
-                                              i / num_on_side % num_on_side - 1,
-                                              i / (num_on_side * num_on_side) - 1);
+    points.col(i) =
+        point_distance * Eigen::Vector3i(i % num_on_side - 1,
+                                         i / num_on_side % num_on_side - 1,
+                                         i / (num_on_side * num_on_side) - 1)
+                             .cast<double>();
   return points;
 }
 
