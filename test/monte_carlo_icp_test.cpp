@@ -82,6 +82,15 @@ TEST_F(MonteCarloIcp, RunsHaveAnIndexThatAnIntCanHold)
   EXPECT_EQ(runs[1].index, std::numeric_limits<int>::max() - 1);
 }
 
+TEST_F(MonteCarloIcp, APointBeyondFloatHasNoNeighbourAndDoesNoHarm)
+{
+  source_(0, 0) = std::numeric_limits<double>::max();
+  for (const MonteCarloIcpRun& made : run(options_)) {
+    EXPECT_TRUE(made.has_converged);
+    EXPECT_TRUE(made.end.allFinite());
+  }
+}
+
 TEST_F(MonteCarloIcp, RunsAreIcpFromTheirStarts)
 {
   options_.icp.max_distance = 0.2;
