@@ -1,9 +1,8 @@
 #include "kd_tree_build.h"
 #include "kd_tree_kernels.h"
+#include "num_threads.h"
 
 #include <bayesian_icp/kd_tree.h>
-
-#include <omp.h>
 
 #include <algorithm>
 #include <limits>
@@ -18,6 +17,7 @@ using kd_tree::Search;
 /** Worth some 2 ms with hints. For less, waking a thread may cost more than it saves,
  * by far if other programs keep the cores busy. */
 constexpr std::ptrdiff_t min_queries_to_share = 32768;
+constexpr int share_size = 512;
 
 Search
 searchOf(InstructionSet instruction_set)
@@ -78,9 +78,7 @@ KdTree::KdTree(Eigen::Matrix3Xf points, int num_threads, InstructionSet instruct
     throw std::invalid_argument("KdTree: too many points");
   auto tree = std::make_unique<Tree>();
   tree->search = supportedSearchOf(instruction_set);
-  tree->storage = kd_tree::build(points_.data(),
-                                 num_points,
-                                 num_threads > 0 ? num_threads : omp_get_max_threads());
+  tree->storage = kd_tree::build(points_.data(), num_points, num_threads);
   const kd_tree::Storage& storage = tree->storage;
   tree->view = {storage.nodes.data(),
                 storage.cells.data(),
@@ -121,14 +119,12 @@ KdTree::nearestOfAll(const Eigen::Matrix3Xf& queries,
   const auto num_queries = static_cast<std::ptrdiff_t>(queries.cols());
   neighbors.resize(static_cast<std::size_t>(num_queries),
                    {none, std::numeric_limits<float>::infinity(), false});
-  if (num_threads <= 0)
-    num_threads = omp_get_max_threads();
-  if (num_queries < min_queries_to_share || omp_in_parallel() != 0)
-    num_threads = 1;
-#pragma omp parallel num_threads(num_threads)
+  const std::ptrdiff_t num_shares =
+      num_queries < min_queries_to_share ? 1 : num_queries / share_size;
+#pragma omp parallel num_threads(numThreadsFor(num_threads, num_shares))
   {
     std::uint32_t last = none;
-#pragma omp for schedule(dynamic, 512)
+#pragma omp for schedule(dynamic, share_size)
     for (std::ptrdiff_t i = 0; i < num_queries; ++i) {
       Neighbor& neighbor = neighbors[static_cast<std::size_t>(i)];
       const std::uint32_t hint = neighbor.index == none ? last : neighbor.index;

@@ -1,6 +1,7 @@
 #include "kd_tree_build.h"
 
 #include "kd_tree_arrange.h"
+#include "num_threads.h"
 
 #include <cmath>
 
@@ -10,7 +11,7 @@ namespace {
 
 /** Worth some 5 ms. For less, waking a thread may cost more than it saves, by far if
  * other programs keep the cores busy. */
-constexpr std::size_t min_points_per_thread = 50000;
+constexpr std::ptrdiff_t min_points_per_thread = 50000;
 
 std::vector<Record>
 finitePoints(const float* points, std::size_t num_points)
@@ -134,14 +135,6 @@ makeLeaves(const std::vector<Record>& records, Storage& storage, int num_threads
   }
 }
 
-int
-usefulThreads(int num_threads, std::size_t num_points)
-{
-  const std::size_t useful =
-      std::max<std::size_t>(num_points / min_points_per_thread, 1);
-  return static_cast<int>(std::min(useful, static_cast<std::size_t>(num_threads)));
-}
-
 } // namespace
 
 Storage
@@ -152,7 +145,8 @@ build(const float* points,
 {
   std::vector<Record> records = finitePoints(points, num_points);
   const std::vector<Level> levels = levelsOf(records.size());
-  num_threads = usefulThreads(num_threads, records.size());
+  num_threads = numThreadsFor(
+      num_threads, static_cast<std::ptrdiff_t>(records.size()) / min_points_per_thread);
 
   Storage storage;
   storage.num_points = records.size();

@@ -28,7 +28,7 @@ struct Storage {
 enum class RepeatedPoints { Kept, LeftOut };
 
 /** Build the tree over the finite points among \p num_points points x, y, z, x, y, z,
- * ... The result does not depend on \p num_threads, at least 1. */
+ * ... The result does not depend on \p num_threads, 0: as OpenMP would. */
 Storage
 build(const float* points,
       std::size_t num_points,

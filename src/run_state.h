@@ -4,12 +4,11 @@
  */
 #pragma once
 
+#include "num_threads.h"
+
 #include <bayesian_icp/chains.h>
 #include <bayesian_icp/first_exception.h>
 
-#include <omp.h>
-
-#include <algorithm>
 #include <atomic>
 #include <mutex>
 
@@ -94,18 +93,6 @@ private:
   FirstException first_exception_;
   std::mutex mutex_;
 };
-
-/** \brief Threads for so many pieces of work: one inside a parallel region of the
- * caller.
- * \param[in] num_threads as asked for, 0: as OpenMP would */
-inline int
-numThreadsFor(int num_threads, int num_pieces)
-{
-  if (omp_in_parallel() != 0)
-    return 1;
-  const int offered = num_threads > 0 ? num_threads : omp_get_max_threads();
-  return std::max(1, std::min(offered, num_pieces));
-}
 
 /** \brief Threads for the chains of a run. */
 inline int

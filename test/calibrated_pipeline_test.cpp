@@ -91,6 +91,8 @@ TEST(Calibrated, TheSameDrawsForEveryNumberOfThreads)
   ASSERT_EQ(draws.rows(), 200);
   options.chains.num_threads = 3;
   EXPECT_EQ(estimateFrom(scans, options).samples, draws);
+  options.chains.num_threads = std::numeric_limits<int>::max();
+  EXPECT_EQ(estimateFrom(scans, options).samples, draws);
   options.chains.seed = 2;
   EXPECT_NE(estimateFrom(scans, options).samples, draws);
 }

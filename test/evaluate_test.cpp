@@ -2,7 +2,7 @@
 // bad draws, files that come back as they went.
 #include "draw_statistics.h"
 #include "evaluate_test_support.h"
-#include "gold_cache.h"
+#include "gold_file.h"
 #include "result_table.h"
 #include "score.h"
 
@@ -11,8 +11,10 @@
 #include <io/errors.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 using namespace bayesian_icp;
@@ -116,6 +118,24 @@ TEST(GoldStandard, ComesBackFromItsFile)
   EXPECT_THROW(readGold(cut_off), std::runtime_error);
   std::istringstream foreign("x,y,z\n1,2,3\n");
   EXPECT_THROW(readGold(foreign), std::runtime_error);
+}
+
+TEST(GoldStandard, CountsThatItsFileHasNoRoomForAreRefused)
+{
+  GoldStandard gold;
+  gold.chains = {PoseMatrix::Random(3, 6)};
+  std::ostringstream stream;
+  writeGold(gold, stream);
+  // Behind the counts are the draws.
+  const std::size_t num_rows = stream.str().size() - (1 + 3 * 6) * sizeof(double);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const std::size_t place : {num_rows, num_rows - sizeof(double)})
+    for (const double count : {nan, -1.0, 4.0 + 3 * 6, 1e300}) {
+      std::string text = stream.str();
+      std::memcpy(&text[place], &count, sizeof count);
+      std::istringstream broken(text);
+      EXPECT_THROW(readGold(broken), std::runtime_error) << count << " at " << place;
+    }
 }
 
 TEST(Score, JudgesGoodAndBadDraws)

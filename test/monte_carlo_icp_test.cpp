@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace bayesian_icp {
@@ -71,6 +72,23 @@ TEST_F(MonteCarloIcp, APartIsAPartOfTheWhole)
   ASSERT_EQ(part.size(), 5u);
   for (std::size_t i = 0; i < part.size(); ++i)
     expectSame(part[i], whole[i + 7]);
+}
+
+TEST_F(MonteCarloIcp, RunsHaveAnIndexThatAnIntCanHold)
+{
+  options_.first_run = std::numeric_limits<int>::max() - 2;
+  const auto runs = run(options_);
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[1].index, std::numeric_limits<int>::max() - 1);
+}
+
+TEST_F(MonteCarloIcp, APointBeyondFloatHasNoNeighbourAndDoesNoHarm)
+{
+  source_(0, 0) = std::numeric_limits<double>::max();
+  for (const MonteCarloIcpRun& made : run(options_)) {
+    EXPECT_TRUE(made.has_converged);
+    EXPECT_TRUE(made.end.allFinite());
+  }
 }
 
 TEST_F(MonteCarloIcp, RunsAreIcpFromTheirStarts)

@@ -277,6 +277,17 @@ TEST_F(SgdRegistration, BadInputFailsWithoutHarm)
   EXPECT_EQ(icp.getResult().end, DescentEnd::InvalidInput);
 }
 
+TEST_F(SgdRegistration, AStepBeyondTheRangeOfScalarIsDivergence)
+{
+  SgdIcp icp;
+  icp.setOptimizer(SgdOptimizer::FixedStep);
+  icp.setStepSize(1e60); // poses that a double can hold
+  align(icp);
+  EXPECT_EQ(icp.getResult().end, DescentEnd::Diverged);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_TRUE(icp.getFinalTransformation().allFinite());
+}
+
 TEST_F(SgdRegistration, ADistanceRejectorActsAsTheGate)
 {
   SgdIcp gated, rejecting;

@@ -87,6 +87,26 @@ areSame(const Eigen::Matrix3Xf& a, const Eigen::Matrix3Xf& b)
          });
 }
 
+/** Calls a writer of PCL, which may throw exceptions of any type.
+ * \param[in] write returns what the writer does: negative for an error */
+template <typename Write>
+void
+requireWritten(const Write& write)
+{
+  std::string reason;
+  try {
+    if (write() >= 0)
+      return;
+  }
+  catch (const std::bad_alloc&) {
+    throw;
+  }
+  catch (const std::exception& error) {
+    reason = std::string(": ") + error.what();
+  }
+  throw std::runtime_error("PCL cannot write the cloud" + reason);
+}
+
 /** PCL does not notice a full disk, and has fields that it does not write to PLY as its
  * header says. */
 void
@@ -221,22 +241,23 @@ writeAligned(const CloudFile& source,
              std::ostream& stream)
 {
   const CloudFile aligned = movedCloud(source, T_target_source);
-  if (pcl::PCDWriter().writeBinaryCompressed(
-          stream, *aligned.blob, target.sensor_origin, orientationOf(target)) < 0)
-    throw std::runtime_error("PCL cannot write the aligned cloud");
+  requireWritten([&] {
+    return pcl::PCDWriter().writeBinaryCompressed(
+        stream, *aligned.blob, target.sensor_origin, orientationOf(target));
+  });
 }
 
 void
 writeCloud(const CloudFile& cloud, CloudFormat format, const std::string& path)
 {
   const Eigen::Quaternionf orientation = orientationOf(cloud);
-  const int result = format == CloudFormat::Pcd
-                         ? pcl::PCDWriter().writeBinaryCompressed(
-                               path, *cloud.blob, cloud.sensor_origin, orientation)
-                         : pcl::PLYWriter().writeBinary(
-                               path, *cloud.blob, cloud.sensor_origin, orientation);
-  if (result < 0)
-    throw std::runtime_error("PCL cannot write it");
+  requireWritten([&] {
+    return format == CloudFormat::Pcd
+               ? pcl::PCDWriter().writeBinaryCompressed(
+                     path, *cloud.blob, cloud.sensor_origin, orientation)
+               : pcl::PLYWriter().writeBinary(
+                     path, *cloud.blob, cloud.sensor_origin, orientation);
+  });
   requireComplete(cloud, format, path);
 }
 

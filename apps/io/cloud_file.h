@@ -54,7 +54,7 @@ movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion);
  *
  * As movedCloud(), but the viewpoint is the target's, so that viewers, which apply it,
  * put both clouds in one place.
- * \throws std::exception if it cannot be encoded */
+ * \throws std::runtime_error if it cannot be encoded */
 void
 writeAligned(const CloudFile& source,
              const CloudFile& target,
@@ -69,7 +69,7 @@ CloudFormat
 formatOf(const std::string& name);
 
 /** \brief Write a cloud as a compressed PCD or a binary PLY to the file \p path.
- * \throws std::exception if it cannot be encoded or written */
+ * \throws std::runtime_error if it cannot be encoded or written */
 void
 writeCloud(const CloudFile& cloud, CloudFormat format, const std::string& path);
 

@@ -29,7 +29,7 @@ struct ChainOptions {
   Vector6d initial_spread = Vector6d::Zero();
   /** Seed of all random numbers; chain i uses stream i of this seed. */
   std::uint64_t seed = 1;
-  /** OpenMP threads; 0 is as many as OpenMP offers. The draws do not depend on it. */
+  /** OpenMP threads, 1024 at most; 0: as OpenMP would. Draws do not depend on it. */
   int num_threads = 0;
 
   /** \brief Number of draws that chain \p chain keeps. */

@@ -30,6 +30,17 @@ squaredGate(double max_distance)
   return static_cast<double>(gate) > square ? std::nextafter(gate, -1.f) : gate;
 }
 
+/** The mean, or the origin where points that no search in single precision finds have
+ * drawn it out of the range of a float. */
+Vector3d
+centreOf(const Eigen::Matrix3Xd& source)
+{
+  if (source.cols() == 0)
+    return Vector3d::Zero();
+  const Vector3d mean = source.rowwise().mean();
+  return mean.cast<float>().allFinite() ? mean : Vector3d(Vector3d::Zero());
+}
+
 /** Whether the step is as small as the options ask. */
 bool
 isSmall(const Isometry3d& step, const IcpOptions& options)
@@ -88,8 +99,7 @@ toString(IcpStop stop)
 IcpRunner::IcpRunner(const Eigen::Matrix3Xd& source, const KdTree& target)
 : source_(source)
 , target_(target)
-, source_centre_(source.cols() > 0 ? Vector3d(source.rowwise().mean())
-                                   : Vector3d(Vector3d::Zero()))
+, source_centre_(centreOf(source))
 , neighbors_(static_cast<std::size_t>(source.cols()), KdTree::none)
 {}
 

@@ -6,6 +6,7 @@
 #include <bayesian_icp/random.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace bayesian_icp {
 
@@ -44,7 +45,8 @@ monteCarloIcp(const Eigen::Matrix3Xd& source,
               const MonteCarloIcpOptions& options,
               const MonteCarloIcpProgress& progress)
 {
-  const int num_runs = std::max(0, options.num_runs);
+  const int max_runs = std::numeric_limits<int>::max() - std::max(0, options.first_run);
+  const int num_runs = std::clamp(options.num_runs, 0, max_runs);
   const int num_threads = numThreadsFor(options.num_threads, num_runs);
   ProgressCallback callback;
   if (progress)

@@ -1,12 +1,11 @@
 #include "surface_builder.h"
 
+#include "../num_threads.h"
 #include "median.h"
 #include "patch_fit.h"
 
 #include <bayesian_icp/first_exception.h>
 #include <bayesian_icp/random.h>
-
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +45,9 @@ chosenColumns(Index num_points, Index max_patches)
   return columns;
 }
 
+/** Indices that a thread takes at a time. */
+constexpr int share_size = 64;
+
 /** work(index, workspace) for every index of \p order; a thread has one workspace.
  * Rethrows the first exception. */
 template <typename Workspace, typename Work>
@@ -57,7 +59,7 @@ forEachIndex(const std::vector<std::uint32_t>& order, int num_threads, const Wor
 #pragma omp parallel num_threads(num_threads)
   {
     Workspace workspace;
-#pragma omp for schedule(dynamic, 64)
+#pragma omp for schedule(dynamic, share_size)
     for (std::ptrdiff_t i = 0; i < count; ++i)
       failure.guard([&] { work(order[static_cast<std::size_t>(i)], workspace); });
   }
@@ -70,7 +72,7 @@ SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
                                const SurfaceModelOptions& options,
                                int num_threads)
 : options_(options)
-, num_threads_(num_threads > 0 ? num_threads : omp_get_max_threads())
+, num_threads_(numThreadsFor(num_threads, points.cols() / share_size))
 , points_(points)
 , columns_(chosenColumns(points.cols(), options.max_patches))
 , patch_of_(static_cast<std::size_t>(points.cols()), KdTree::none)

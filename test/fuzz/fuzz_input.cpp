@@ -3,6 +3,7 @@
 #include "io/errors.h"
 #include "temporary_folder.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -14,6 +15,8 @@ writeInput(const std::string& name, std::string_view bytes)
 {
   static const TemporaryFolder folder;
   std::string path = folder.path() + '/' + name;
+  // ext4 puts a file that was cut to nothing on the disk before it goes on.
+  std::remove(path.c_str());
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
   stream << bytes;
   stream.close();

@@ -43,8 +43,32 @@ foreach(name IN LISTS fuzzers)
 endforeach()
 
 # The class from its headers, and PCL's ICP and search tree as well; FLANN's need lz4.
-target_sources(fuzz_registration PRIVATE registration_input.cpp)
+target_sources(
+  fuzz_registration PRIVATE registration_by_descent.cpp registration_checks.cpp
+                            registration_input.cpp registration_of_normals.cpp)
 target_compile_definitions(fuzz_registration PRIVATE PCL_NO_PRECOMPILE)
 target_include_directories(fuzz_registration PRIVATE ${PROJECT_SOURCE_DIR}/include)
 target_link_libraries(fuzz_registration PRIVATE pcl_common pcl_kdtree pcl_search
                                                 pcl_registration lz4)
+
+# What belongs to a batch or an evaluation alone.
+find_package(Boost REQUIRED COMPONENTS program_options)
+target_sources(
+  fuzz_result_file
+  PRIVATE ${apps}/batch/batch_file.cpp
+          ${apps}/batch/batch_line.cpp
+          ${apps}/evaluate/coverage/coverage_file.cpp
+          ${apps}/evaluate/option_values.cpp
+          ${apps}/evaluate/paper/distribution_file.cpp
+          ${apps}/evaluate/row_file.cpp
+          ${apps}/evaluate/samplers/gold_file.cpp
+          ${apps}/evaluate/samplers/result_file.cpp
+          ${apps}/evaluate/sbc/rank_study.cpp
+          ${apps}/register/data_json.cpp
+          ${apps}/register/posterior_json.cpp)
+foreach(folder coverage paper samplers sbc)
+  target_include_directories(fuzz_result_file PRIVATE ${apps}/evaluate/${folder})
+endforeach()
+target_compile_definitions(fuzz_result_file
+                           PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
+target_link_libraries(fuzz_result_file PRIVATE Boost::program_options)

@@ -95,7 +95,7 @@ pointOfShape(int shape, Random& random)
   }
 }
 
-Eigen::Matrix3Xf
+Eigen::Matrix3Xd
 cloudOf(Bytes& bytes, int max_num_points)
 {
   const int num_points = bytes.ConsumeIntegralInRange(0, max_num_points);
@@ -105,16 +105,16 @@ cloudOf(Bytes& bytes, int max_num_points)
   const bool is_odd = bytes.ConsumeBool();
   const double scale = is_odd ? oddNumber(bytes) : 1.0;
   const double offset = is_odd ? oddNumber(bytes) : 0.0;
-  Eigen::Matrix3Xf cloud(3, num_points);
+  Eigen::Matrix3Xd cloud(3, num_points);
   for (int i = 0; i < num_points; ++i) {
     const Eigen::Vector3d error(random.normal(), random.normal(), random.normal());
     const Eigen::Vector3d point = pointOfShape(shape, random) + noise * error;
-    cloud.col(i) = ((scale * point).array() + offset).cast<float>();
+    cloud.col(i) = (scale * point).array() + offset;
   }
   const int num_odd = bytes.ConsumeIntegralInRange(0, max_num_odd_points);
   for (int i = 0; i < std::min(num_odd, num_points); ++i)
     for (int k = 0; k < 3; ++k)
-      cloud(k, i) = static_cast<float>(oddNumber(bytes));
+      cloud(k, i) = oddNumber(bytes);
   return cloud;
 }
 
@@ -205,6 +205,78 @@ optionsOf(Bytes& bytes)
   return options;
 }
 
+/** Any, but what is asked for takes memory: 5 MB for 100 000 draws. */
+ChainOptions
+oddChains(Bytes& bytes)
+{
+  constexpr int largest_int = std::numeric_limits<int>::max();
+  ChainOptions chains;
+  chains.num_chains = oddCount(bytes, 1, 20);
+  chains.num_draws = bytes.PickValueInArray({-1, 0, 1, 20, 500, 100000});
+  chains.num_threads = bytes.PickValueInArray({1, 2, 0, -1, largest_int});
+  return chains;
+}
+
+StochasticGradientIcpOptions
+descentOf(Bytes& bytes)
+{
+  StochasticGradientIcpOptions descent;
+  descent.optimizer = choiceOf<SgdOptimizer>(bytes, 5);
+  descent.is_one_to_one = bytes.ConsumeBool();
+  descent.seed = bytes.ConsumeIntegral<std::uint8_t>();
+  FieldChanger change(bytes);
+  change(descent.step_size);
+  change(descent.batch_size, 1, 100);
+  change(descent.max_iterations, 1, 200);
+  change(descent.translation_epsilon);
+  change(descent.rotation_epsilon);
+  change(descent.num_still_iterations, 1, 10);
+  return descent;
+}
+
+MonteCarloIcpOptions
+monteCarloOf(Bytes& bytes)
+{
+  MonteCarloIcpOptions monte_carlo;
+  monte_carlo.seed = bytes.ConsumeIntegral<std::uint8_t>();
+  monte_carlo.num_runs = bytes.ConsumeIntegralInRange(-1, 20);
+  monte_carlo.num_threads = bytes.PickValueInArray({1, 2});
+  monte_carlo.icp.max_iterations = bytes.ConsumeIntegralInRange(-1, 20);
+  FieldChanger change(bytes);
+  change(monte_carlo.mean);
+  change(monte_carlo.half_range);
+  change(monte_carlo.first_run, 0, 100);
+  change(monte_carlo.icp.max_distance);
+  change(monte_carlo.icp.transformation_epsilon);
+  change(monte_carlo.icp.euclidean_fitness_epsilon);
+  change(monte_carlo.icp.rotation_epsilon);
+  change(monte_carlo.icp.absolute_fitness_epsilon);
+  return monte_carlo;
+}
+
+/** What the bytes behind the clouds say; nothing if there are none. */
+void
+widen(Bytes& bytes, RegistrationInput& input)
+{
+  if (bytes.ConsumeBool())
+    input.options.prior.frame = choiceOf<PriorFrame>(bytes, 3);
+  if (bytes.ConsumeBool()) {
+    const ChainOptions chains = oddChains(bytes);
+    input.options.chains.num_chains = chains.num_chains;
+    input.options.chains.num_draws = chains.num_draws;
+    input.options.chains.num_threads = chains.num_threads;
+  }
+  if (!bytes.ConsumeBool()) {
+    input.source = input.source.cast<float>().cast<double>();
+    input.target = input.target.cast<float>().cast<double>();
+  }
+  input.method = choiceOf<Method>(bytes, 4);
+  if (input.method == Method::StochasticGradient)
+    input.descent = descentOf(bytes);
+  if (input.method == Method::MonteCarlo)
+    input.monte_carlo = monteCarloOf(bytes);
+}
+
 } // namespace
 
 RegistrationInput
@@ -224,6 +296,7 @@ registrationInputOf(const std::uint8_t* data, std::size_t size)
   const int max_num_points = input.options.preset == Preset::Calibrated ? 80 : 40;
   input.target = cloudOf(bytes, max_num_points);
   input.source = bytes.ConsumeBool() ? input.target : cloudOf(bytes, max_num_points);
+  widen(bytes, input);
   return input;
 }
 

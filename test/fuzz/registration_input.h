@@ -3,6 +3,8 @@
  */
 #pragma once
 
+#include <bayesian_icp/baselines/monte_carlo_icp.h>
+#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/pose.h>
 
@@ -11,15 +13,29 @@
 
 namespace bayesian_icp::fuzz {
 
+/** \brief What registers an input. */
+enum class Method {
+  /** The posterior: by the library without PCL, and by the class. */
+  Posterior,
+  /** The posterior by the class for points with normals and Scalar double. */
+  PosteriorOfNormals,
+  StochasticGradient,
+  MonteCarlo
+};
+
 /** \brief Something to register: as odd as the bytes say, but of bounded cost. */
 struct RegistrationInput {
+  Method method = Method::Posterior;
   /** Points [m], any coordinates, also none; at most 80 each for preset `calibrated`,
    * 40 for the others. */
-  Eigen::Matrix3Xf source;
-  Eigen::Matrix3Xf target;
+  Eigen::Matrix3Xd source;
+  Eigen::Matrix3Xd target;
   Vector6d guess = Vector6d::Zero();
-  /** Any options, but few draws and chains. */
+  /** Any options, but at most 100 000 draws. */
   Options options;
+  StochasticGradientIcpOptions descent;
+  /** At most 20 runs and as many iterations of each. */
+  MonteCarloIcpOptions monte_carlo;
   /** ICP's maximum correspondence distance [m]. */
   double gate = 1.0;
   int icp_iterations = 5;

@@ -1,5 +1,6 @@
 # fuzz.build configures and builds the fuzzers in build/fuzz; fuzz.<name> runs one over its
-# corpus and a number of new inputs that takes seconds, fuzz.<name>.long for a minute.
+# corpus and a number of new inputs that takes seconds, always the same ones;
+# fuzz.<name>.long for a minute, over others each time.
 find_program(CLANGXX NAMES clang++-14 clang++)
 find_program(BASH bash REQUIRED)
 if(NOT CLANGXX)
@@ -16,7 +17,8 @@ add_test(
     -DCMAKE_CXX_COMPILER=${CLANGXX}
     -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
     -DBAYESIAN_ICP_BUILD_FUZZERS=ON -DBAYESIAN_ICP_BUILD_APPS=OFF
-    -DBAYESIAN_ICP_BUILD_TESTS=OFF)
+    -DBAYESIAN_ICP_BUILD_TESTS=OFF
+    -DBAYESIAN_ICP_WARNINGS_AS_ERRORS=${BAYESIAN_ICP_WARNINGS_AS_ERRORS})
 set_tests_properties(
   fuzz.build
   PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers PROCESSORS 2 COST 900 TIMEOUT 1800
@@ -37,7 +39,8 @@ set(runs_of_configuration 1000)
 set(runs_of_motion_file 3000)
 set(runs_of_posterior_file 2000)
 set(runs_of_registration 100)
+set(runs_of_result_file 2000)
 foreach(fuzzer IN LISTS fuzzers)
-  fuzz_test(fuzz.${fuzzer} fuzz ${fuzzer} -runs=${runs_of_${fuzzer}})
+  fuzz_test(fuzz.${fuzzer} fuzz ${fuzzer} -seed=1 -runs=${runs_of_${fuzzer}})
   fuzz_test(fuzz.${fuzzer}.long long ${fuzzer} -max_total_time=60)
 endforeach()

@@ -1,5 +1,6 @@
 #include "gold_cache.h"
 
+#include "gold_file.h"
 #include "input_hash.h"
 
 #include <io/output_folder.h>
@@ -11,38 +12,6 @@
 namespace bayesian_icp::evaluate {
 
 namespace {
-
-/** To be changed with the moves of the runs or the energy: old files are then ignored.
- */
-constexpr char format[] = "bayesian_icp gold standard 1\n";
-
-void
-write(std::ostream& stream, double number)
-{
-  stream.write(reinterpret_cast<const char*>(&number), sizeof number);
-}
-
-double
-read(std::istream& stream)
-{
-  double number = 0.0;
-  stream.read(reinterpret_cast<char*>(&number), sizeof number);
-  if (!stream)
-    throw std::runtime_error("the gold standard is cut off");
-  return number;
-}
-
-/** Numbers of the header, in the order of the file. */
-std::vector<double*>
-headerOf(GoldStandard& gold)
-{
-  return {&gold.rhat,
-          &gold.kl_between_runs,
-          &gold.bulk_ess,
-          &gold.tail_ess,
-          &gold.acceptance,
-          &gold.seconds};
-}
 
 bool
 readFile(const std::string& name, GoldStandard& gold)
@@ -73,7 +42,7 @@ std::uint64_t
 goldKey(const Problem& problem, const GoldOptions& options)
 {
   InputHash hash;
-  hash.add(format, sizeof format);
+  hash.add(gold_format, sizeof gold_format);
   hash.addMatrix(problem.scene().source);
   hash.addMatrix(problem.scene().target.points());
   hash.add(problem.energy().weight());
@@ -89,44 +58,6 @@ goldKey(const Problem& problem, const GoldOptions& options)
                               static_cast<double>(options.seed)})
     hash.add(number);
   return hash.value();
-}
-
-void
-writeGold(const GoldStandard& gold, std::ostream& stream)
-{
-  stream << format;
-  GoldStandard header = gold;
-  for (const double* number : headerOf(header))
-    write(stream, *number);
-  write(stream, gold.has_converged ? 1.0 : 0.0);
-  write(stream, static_cast<double>(gold.chains.size()));
-  for (const PoseMatrix& chain : gold.chains) {
-    write(stream, static_cast<double>(chain.rows()));
-    for (Eigen::Index i = 0; i < chain.rows(); ++i)
-      for (int k = 0; k < 6; ++k)
-        write(stream, chain(i, k));
-  }
-}
-
-GoldStandard
-readGold(std::istream& stream)
-{
-  std::string first_line(sizeof format - 1, '\0');
-  stream.read(first_line.data(), static_cast<std::streamsize>(first_line.size()));
-  if (first_line != format)
-    throw std::runtime_error("not a gold standard of this version");
-  GoldStandard gold;
-  for (double* number : headerOf(gold))
-    *number = read(stream);
-  gold.has_converged = read(stream) != 0.0;
-  gold.chains.resize(static_cast<std::size_t>(read(stream)));
-  for (PoseMatrix& chain : gold.chains) {
-    chain.resize(static_cast<Eigen::Index>(read(stream)), 6);
-    for (Eigen::Index i = 0; i < chain.rows(); ++i)
-      for (int k = 0; k < 6; ++k)
-        chain(i, k) = read(stream);
-  }
-  return gold;
 }
 
 GoldStandard

@@ -28,11 +28,4 @@ cachedGold(const Problem& problem,
            const std::string& folder,
            const std::function<void(const std::string&)>& report);
 
-/** \brief The file format, in the byte order of this machine.
- * \throws std::runtime_error if \p stream does not hold a whole gold standard */
-void
-writeGold(const GoldStandard& gold, std::ostream& stream);
-GoldStandard
-readGold(std::istream& stream);
-
 } // namespace bayesian_icp::evaluate

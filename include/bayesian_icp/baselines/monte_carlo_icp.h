@@ -19,8 +19,8 @@ struct MonteCarloIcpOptions {
   /** Starts are uniform in mean +- half_range [m, rad], coordinate by coordinate. */
   Vector6d mean = Vector6d::Zero();
   Vector6d half_range = Vector6d::Ones();
-  /** Runs first_run ... first_run + num_runs - 1: run k is a function of (seed, k)
-   * alone, so that a part of the runs can be made later. */
+  /** Runs first_run ... first_run + num_runs - 1 (below 2^31 - 1): run k is a function
+   * of (seed, k) alone, so that a part of the runs can be made later. */
   int first_run = 0;
   int num_runs = 10000;
   std::uint64_t seed = 1;

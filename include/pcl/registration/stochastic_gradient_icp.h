@@ -141,7 +141,8 @@ private:
   void
   giveTargetToPlugins();
 
-  void
+  /** \return whether Scalar can hold the pose; nothing is done if not */
+  bool
   takeStep(const Search& search,
            const PointCloudSource& source,
            const bayesian_icp::Vector6d& pose);

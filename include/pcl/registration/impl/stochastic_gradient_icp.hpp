@@ -78,15 +78,19 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
   if (bayesian_icp_detail::isRigid(initial) && options.validate().empty()) {
     giveTargetToPlugins();
     const auto search = this->makeCorrespondenceSearch(source);
+    bool is_in_range = true;
     result_ = bayesian_icp::stochasticGradientIcp(
         bayesian_icp_detail::pointMatrix(*source),
         *search,
         bayesian_icp::poseOf(initial),
         options,
         [&](int iteration, const bayesian_icp::Vector6d& pose) {
-          takeStep(*search, *source, pose);
-          return (!progress_callback_ || progress_callback_(iteration, pose));
+          is_in_range = takeStep(*search, *source, pose);
+          return (is_in_range &&
+                  (!progress_callback_ || progress_callback_(iteration, pose)));
         });
+    if (!is_in_range)
+      result_.end = bayesian_icp::DescentEnd::Diverged;
     if (nr_iterations_ > 0)
       final_transformation_ =
           this->asEstimationAllows(*source, guess, final_transformation_);
@@ -121,20 +125,22 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void
+bool
 StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
     takeStep(const Search& search,
              const PointCloudSource& source,
              const bayesian_icp::Vector6d& pose)
 {
   const Eigen::Matrix4d T = bayesian_icp::matrixOf(pose);
+  if (!T.template cast<Scalar>().allFinite())
+    return (false);
   previous_transformation_ = transformation_;
   transformation_ = (T * final_transformation_.template cast<double>().inverse().eval())
                         .template cast<Scalar>();
   final_transformation_ = T.template cast<Scalar>();
   ++nr_iterations_;
   if (update_visualizer_ == nullptr)
-    return;
+    return (true);
   findPairs(search, source);
   PointCloudSource moved = source;
   this->transformCloud(source, moved, final_transformation_);
@@ -144,6 +150,7 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
     in_target.push_back(pair.index_match);
   }
   update_visualizer_(moved, in_source, *target_, in_target);
+  return (true);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

@@ -1,0 +1,80 @@
+/** \file
+ * \brief Fuzzes files that a batch or an evaluation goes on with: lines of JSON, rows
+ * of CSV files, gold standards.
+ */
+#include "accuracy_file.h"
+#include "batch/batch_file.h"
+#include "coverage_file.h"
+#include "distribution_file.h"
+#include "fuzz_input.h"
+#include "gold_file.h"
+#include "rank_study.h"
+
+#include <sstream>
+#include <stdexcept>
+
+namespace {
+
+using namespace bayesian_icp;
+
+void
+readBatch(const std::string& file)
+{
+  app::BatchPair pair;
+  pair.name = "a";
+  pair.settings_id = "b";
+  const std::vector<app::BatchPair> pairs = {pair};
+  const app::BatchFile batch(file, pairs);
+  fuzz::require(batch.numFinished() + batch.remaining().size() == 1,
+                "a pair is finished or not");
+}
+
+/** Read each line of a file as a row. */
+template <typename Run>
+void
+readRows(const std::string& text)
+{
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::string row;
+    try {
+      row = Run::ofRow(line).row();
+    }
+    catch (const std::runtime_error&) {
+      continue; // not a row
+    }
+    fuzz::require(Run::ofRow(row).row() == row, "rows are read back as written");
+  }
+}
+
+void
+readGold(const std::string& bytes)
+{
+  std::istringstream stream(bytes);
+  evaluate::GoldStandard gold;
+  try {
+    gold = evaluate::readGold(stream);
+  }
+  catch (const std::runtime_error&) {
+    return; // to be made anew
+  }
+  std::ostringstream written;
+  evaluate::writeGold(gold, written);
+  fuzz::require(written.str().size() <= bytes.size(), "all draws are in the file");
+}
+
+} // namespace
+
+extern "C" int
+LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
+{
+  const std::string bytes(fuzz::textOf(data, size));
+  fuzz::isAccepted([&] { readBatch(fuzz::writeInput("results", bytes)); });
+  fuzz::isAccepted([&] { evaluate::ResultFile(fuzz::writeInput("results", bytes)); });
+  fuzz::isAccepted([&] { evaluate::RankFile(fuzz::writeInput("results", bytes)); });
+  readRows<evaluate::AccuracyRun>(bytes);
+  readRows<evaluate::CoverageRun>(bytes);
+  readRows<evaluate::DistributionRun>(bytes);
+  readGold(bytes);
+  return 0;
+}
