@@ -2,6 +2,7 @@
 
 #include "calibration/distinct_points.h"
 #include "pipeline_parts.h"
+#include "plain_text.h"
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
 #include <bayesian_icp/calibration/calibrated_estimate.h>
@@ -9,6 +10,10 @@
 #include <bayesian_icp/calibration/calibrated_report.h>
 #include <bayesian_icp/random.h>
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -18,6 +23,10 @@ namespace {
 
 /** Stream of the random choice of source points; those of chains count from 0. */
 constexpr std::uint64_t choice_stream = std::uint64_t(1) << 40;
+
+/** Narrower than this, in standard deviations of the noise, a target is a line: patches
+ * that are fitted to its noise would hold motions along it. */
+constexpr double min_width_to_noise = 3.0;
 
 std::string
 textOfCount(Eigen::Index num_points)
@@ -53,9 +62,23 @@ isCancelled(const ProgressCallback& progress)
   return progress && !progress({0, 0, 0, 0});
 }
 
+/** Standard deviation of the points across the line that fits them best, where they are
+ * widest [m]. */
+double
+widthOf(const Eigen::Matrix3Xd& points)
+{
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Matrix3d covariance =
+      centred * centred.transpose() / static_cast<double>(points.cols());
+  const double variance =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+          .eigenvalues()[1];
+  return std::sqrt(std::max(variance, 0.0));
+}
+
 /** Why distances to the target's surface mean nothing; empty if they do. */
 std::string
-complaintAbout(const SurfaceModel& model)
+complaintAbout(const SurfaceModel& model, const Eigen::Matrix3Xd& target_points)
 {
   if (!(model.usableFraction() > 0.0))
     return "the target has no usable surface: its points are too noisy, too sparse or "
@@ -63,6 +86,13 @@ complaintAbout(const SurfaceModel& model)
   if (!(model.medianSigma() > 0.0))
     return "the target's points lie on their surface exactly: without noise there is "
            "no scale";
+  const double width = widthOf(target_points);
+  if (width < min_width_to_noise * model.medianSigma())
+    return formatted("the target has no surface: it is a line to within %.2g m, %.1f "
+                     "times its noise (at least %.0f)",
+                     width,
+                     width / model.medianSigma(),
+                     min_width_to_noise);
   return std::string();
 }
 
@@ -134,7 +164,7 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                        " of its points differ");
   const SurfaceModel model(
       distinct_points, SurfaceModelOptions(), options.chains.num_threads);
-  const std::string no_surface = complaintAbout(model);
+  const std::string no_surface = complaintAbout(model, distinct_points);
   if (!no_surface.empty())
     return failure(Status::TooFewCorrespondences, no_surface);
   Random random(options.chains.seed, choice_stream);

@@ -25,31 +25,37 @@ casesOfPose()
        turned(pose(0.01, -0.02, 0.015, 0.02, -0.03, pi - 0.01),
               pose(0, 0, 0, 0, 0, -pi + 0.01)),
        unchanged,
-       {right, right, as_ever}},
+       {right, right, not_mixed},
+       right},
       {"YawMinusPi",
        "yaw just above -pi, guess just below pi",
        turned(pose(0.01, -0.02, 0.015, 0.02, -0.03, -pi + 0.01),
               pose(0, 0, 0, 0, 0, pi - 0.01)),
        unchanged,
-       {right, right, as_ever}},
+       {right, right, not_mixed},
+       right},
       {"PitchPlus90",
        "pitch of 90 degrees",
        turned(pose(0.01, -0.02, 0.015, 0, 0.5 * pi, 0),
               pose(0, 0, 0, 0, 0.5 * pi - 0.02, 0)),
        unchanged,
-       {rightButWarned("pitch +-90"), warned("pitch +-90"), as_ever}},
+       {rightButWarned(Status::NotMixed, "pitch +-90"),
+        rightButWarned(Status::Doubtful, "pitch +-90"),
+        not_mixed}},
       {"PitchMinus90",
        "pitch of -90 degrees",
        turned(pose(0.01, -0.02, 0.015, 0, -0.5 * pi, 0),
               pose(0, 0, 0, 0, -0.5 * pi + 0.02, 0)),
        unchanged,
-       {rightButWarned("pitch +-90"), warned("pitch +-90"), as_ever}},
+       {rightButWarned(Status::NotMixed, "pitch +-90"),
+        rightButWarned(Status::Doubtful, "pitch +-90"),
+        not_mixed}},
       {"Pitch88",
        "pitch of 88 degrees",
        turned(pose(0.01, -0.02, 0.015, 0, 0.5 * pi - 0.035, 0),
               pose(0, 0, 0, 0, 0.5 * pi - 0.06, 0)),
        unchanged,
-       {right, right, as_ever}},
+       {right, right, not_mixed}},
   };
 }
 
@@ -68,60 +74,65 @@ casesOfOptions()
        "prior variances of 0",
        usual,
        variance(0.0),
-       {refused("must be positive"),
-        refused("must be positive"),
-        refused("must be positive")}},
+       {refused(Status::InvalidOptions, "must be positive"),
+        refused(Status::InvalidOptions, "must be positive"),
+        refused(Status::InvalidOptions, "must be positive")}},
       {"PriorInfinite",
        "prior variances of infinity",
        usual,
        variance(infinity),
-       {refused("must be finite"), right, as_ever}},
+       {refused(Status::InvalidOptions, "must be finite"), right, not_mixed},
+       right},
       {"PriorTiny",
        "prior variances of 1e-12, far from the truth",
        usual,
        variance(1e-12),
-       {warned("surfaces disagree"), warned("m from the target"), as_ever}},
+       {warned(Status::Doubtful, "surfaces disagree"),
+        warned(Status::Doubtful, "m from the target"),
+        diverged}},
       {"PriorHuge",
        "prior variances of 1e12",
        usual,
        variance(1e12),
-       {right, right, as_ever}},
+       {right, right, not_mixed}},
       {"BatchZero",
        "mini-batches of 0 points",
        usual,
        batch(0),
-       {refused("batch_size is 0"),
-        refused("batch_size is 0"),
-        refused("batch_size is 0")}},
+       {refused(Status::InvalidOptions, "batch_size is 0"),
+        refused(Status::InvalidOptions, "batch_size is 0"),
+        refused(Status::InvalidOptions, "batch_size is 0")}},
       {"BatchOne",
        "mini-batches of 1 point",
        usual,
        batch(1),
-       {right, warned("did not mix"), as_ever}},
+       {unused, not_mixed, not_mixed}},
       {"BatchHuge",
        "mini-batches of 2^31 - 1 points",
        usual,
        batch(std::numeric_limits<int>::max()),
-       {right, right, as_ever}},
+       {unused, right, not_mixed}},
       {"NoDraws",
        "zero draws",
        usual,
        [](Options& options) { options.chains.num_draws = 0; },
-       {refused("num_draws is 0"),
-        refused("num_draws is 0"),
-        refused("num_draws is 0")}},
+       {refused(Status::InvalidOptions, "num_draws is 0"),
+        refused(Status::InvalidOptions, "num_draws is 0"),
+        refused(Status::InvalidOptions, "num_draws is 0")}},
       {"OneDraw",
        "one draw of one chain",
        usual,
        [](Options& options) {
          options.chains.num_draws = options.chains.num_chains = 1;
        },
-       {warned("did not mix"), warned("did not mix"), as_ever}},
+       {not_mixed, not_mixed, not_mixed_or_diverged}},
       {"ThreePoints",
        "a source of three points",
        spoilt([](TorturePair& pair) { pair.source = pair.source.leftCols(3).eval(); }),
        unchanged,
-       {refused("needs 30"), warned("a plane or a line"), as_ever}},
+       {refused(Status::InvalidInput, "needs 30"),
+        warned(Status::Doubtful, "a plane or a line"),
+        not_mixed_or_diverged}},
       {"HalfNaN",
        "every other source point is NaN",
        spoilt([](TorturePair& pair) {
@@ -129,12 +140,15 @@ casesOfOptions()
            pair.source(1, i) = std::nan("");
        }),
        unchanged,
-       {right, right, as_ever}},
+       {right, right, not_mixed},
+       right},
       {"GuessInfinite",
        "a guess that is infinite",
        spoilt([](TorturePair& pair) { pair.guess[0] = infinity; }),
        unchanged,
-       {refused("not finite"), refused("not finite"), refused("not finite")}},
+       {refused(Status::InvalidInput, "not finite"),
+        refused(Status::InvalidInput, "not finite"),
+        refused(Status::InvalidInput, "not finite")}},
   };
 }
 
@@ -155,6 +169,19 @@ tortureOptions(Preset preset)
   }
   if (preset == Preset::Paper)
     options.chains.num_draws = 200;
+  return options;
+}
+
+Options
+smallStepOptions()
+{
+  Options options = tortureOptions(Preset::Paper);
+  options.likelihood.measurement_sigma = 0.03;
+  options.sgld.step_size = 3e-9;
+  options.mini_batch.batch_size = 40;
+  options.chains.num_draws = 2000;
+  options.chains.thinning = 10;
+  options.chains.num_burn_in = 200;
   return options;
 }
 

@@ -7,6 +7,7 @@
 #include "torture_clouds.h"
 
 #include <bayesian_icp/options.h>
+#include <bayesian_icp/summary.h>
 
 #include <array>
 #include <functional>
@@ -18,20 +19,30 @@ namespace test {
 
 /** What a registration has to end in. */
 enum class Verdict {
-  /** Status Ok, and the truth lies within the posterior. */
+  /** Status Ok, and the posterior is right: isRight() in torture_test.cpp. */
   Right,
   /** Draws, but a status that is not Ok and a message that says why. */
   Warned,
-  /** As Warned, and yet the truth lies within the posterior. */
+  /** As Warned, and yet the posterior is right. */
   RightButWarned,
   /** No draws: a status and a message that says why. */
-  Refused
+  Refused,
+  /** The case's options change nothing: the draws are those without them. */
+  Unused,
+  /** The case is not tried. */
+  NotTried
+};
+
+/** A status and a piece of its message. */
+struct Outcome {
+  Status status;
+  std::string reason;
 };
 
 struct Expectation {
   Verdict verdict;
-  /** A piece of the message. */
-  std::string reason;
+  /** Any of these will do. */
+  std::vector<Outcome> outcomes;
 };
 
 struct TortureCase {
@@ -43,16 +54,19 @@ struct TortureCase {
   std::function<void(Options&)> change;
   /** Of presets calibrated, exact and paper. */
   std::array<Expectation, 3> expected;
+  /** Of preset paper with small steps. */
+  Expectation with_small_steps = {Verdict::NotTried, {}};
 };
 
-/** \brief The presets in the order of TortureCase::expected. */
-constexpr std::array<Preset, 3> torture_presets = {
-    Preset::Calibrated, Preset::Exact, Preset::Paper};
-
 /** \brief Options before TortureCase::change: quick, and with a scale that fits the
- * clouds of most cases. */
+ * clouds of most cases. Preset paper has the paper's scale and step size. */
 Options
 tortureOptions(Preset preset);
+
+/** \brief Those of preset paper with a scale and a step size with which its chains mix
+ * on usualPair(). */
+Options
+smallStepOptions();
 
 /** \brief The cases of odd clouds. */
 std::vector<TortureCase>

@@ -93,6 +93,7 @@ scaledPair(double scale)
   pair.source *= scale;
   pair.target *= scale;
   pair.truth.head<3>() *= scale;
+  pair.noise *= scale;
   return pair;
 }
 
@@ -110,6 +111,7 @@ TorturePair
 flattenedPair(int num_dimensions, double noise)
 {
   TorturePair pair = usualPair();
+  pair.num_free_axes = num_dimensions;
   Matrix3Xd target = scan(2, num_target_points, whole, 0.0);
   Random random(3, 0);
   for (Matrix3Xd* cloud : {&pair.source, &target})

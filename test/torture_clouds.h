@@ -11,6 +11,9 @@
 namespace bayesian_icp {
 namespace test {
 
+/** Standard deviation of the points' height [m]. */
+constexpr double usual_noise = 0.003;
+
 /** Two clouds [m] and the pose between them. */
 struct TorturePair {
   Eigen::Matrix3Xd source;
@@ -20,10 +23,12 @@ struct TorturePair {
   /** Whether there is a pose that is right: not where the clouds do not belong
    * together. */
   bool has_truth = true;
+  /** Noise of a usual scan of this size [m]. */
+  double noise = usual_noise;
+  /** Along so many of the source's first axes nothing holds it. */
+  int num_free_axes = 0;
 };
 
-/** Standard deviation of the points' height [m]. */
-constexpr double usual_noise = 0.003;
 constexpr Eigen::Index num_source_points = 1000;
 constexpr Eigen::Index num_target_points = 4000;
 

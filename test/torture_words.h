@@ -23,28 +23,37 @@ inline void
 unchanged(Options&)
 {}
 
-static const Expectation right = {Verdict::Right, ""};
+static const Expectation right = {Verdict::Right, {{Status::Ok, "the chains mixed"}}};
 
 inline Expectation
-warned(const char* reason)
+warned(Status status, const char* reason)
 {
-  return {Verdict::Warned, reason};
+  return {Verdict::Warned, {{status, reason}}};
 }
 
 inline Expectation
-rightButWarned(const char* reason)
+rightButWarned(Status status, const char* reason)
 {
-  return {Verdict::RightButWarned, reason};
+  return {Verdict::RightButWarned, {{status, reason}}};
 }
 
 inline Expectation
-refused(const char* reason)
+refused(Status status, const char* reason)
 {
-  return {Verdict::Refused, reason};
+  return {Verdict::Refused, {{status, reason}}};
 }
 
-/** Preset paper's chains at its own step size and budget. */
-static const Expectation as_ever = warned("");
+static const Expectation unused = {Verdict::Unused, {}};
+
+static const Expectation not_mixed = warned(Status::NotMixed, "did not mix");
+
+static const Expectation diverged = warned(Status::Diverged, "chains diverged");
+
+/** Preset paper's chains are chaotic at its own step size: which of the two it is can
+ * depend on the processor's last bits. */
+static const Expectation not_mixed_or_diverged = {
+    Verdict::Warned,
+    {{Status::NotMixed, "did not mix"}, {Status::Diverged, "chains diverged"}}};
 
 } // namespace test
 } // namespace bayesian_icp

@@ -15,11 +15,11 @@ reportOwnPointType()
   registration.setInputSource(source);
   registration.setInputTarget(target);
   pcl::PointCloud<EchoPoint> output;
-  for (const auto preset : {bayesian_icp::Preset::Exact, bayesian_icp::Preset::Paper}) {
+  using bayesian_icp::Preset;
+  for (const auto preset : {Preset::Calibrated, Preset::Exact, Preset::Paper}) {
     registration.setOptions(reportOptions(preset));
     registration.align(output);
-    std::cout << "echo " << output.back().echo << '\n';
-    printPosterior(preset == bayesian_icp::Preset::Exact ? "own exact" : "own paper",
-                   registration);
+    std::cout << "own point type, echo " << output.back().echo << '\n';
+    printPosterior(toString(preset), registration);
   }
 }
