@@ -13,6 +13,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <sstream>
 
 using namespace bayesian_icp;
@@ -183,6 +184,25 @@ TEST_F(CoverageStudyTest, AnExceptionOfACaseEndsTheStudyAndKeepsTheRows)
   EXPECT_THROW(runCoverageStudy(failing, results), io::FileError);
   EXPECT_NE(results.find({"scene", "condition", 1, "right"}), nullptr);
   EXPECT_EQ(results.find({"scene", "condition", 6, "right"}), nullptr);
+}
+
+TEST_F(CoverageStudyTest, LackOfMemoryIsNoResult)
+{
+  CoverageFile results(file_);
+  CoverageStudy failing = study(2, 2);
+  failing.methods[0].run = [](const CoverageCase&) -> MethodResult {
+    throw std::bad_alloc();
+  };
+  EXPECT_THROW(runCoverageStudy(failing, results), std::bad_alloc);
+  EXPECT_EQ(linesOf(file_).size(), 1u) << "only the header";
+}
+
+TEST_F(CoverageStudyTest, AnExceptionOfTheReportEndsTheStudy)
+{
+  CoverageFile results(file_);
+  CoverageStudy failing = study(2, 2);
+  failing.report = [](const CoverageProgress&) { throw std::bad_alloc(); };
+  EXPECT_THROW(runCoverageStudy(failing, results), std::bad_alloc);
 }
 
 TEST_F(CoverageStudyTest, BrokenRowsAreRefused)

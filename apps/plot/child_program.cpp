@@ -83,8 +83,13 @@ start(const std::vector<std::string>& words,
   posix_spawn_file_actions_init(&actions);
   for (int i = 0; i < 3; ++i)
     posix_spawn_file_actions_adddup2(&actions, standard_files[i].descriptor(), i);
+  // Of another group of processes: Ctrl-C at the terminal is for this program alone.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   const int error = posix_spawnp(
-      &process, arguments.front(), &actions, nullptr, arguments.data(), environ);
+      &process, arguments.front(), &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   return error;
 }

@@ -1,9 +1,10 @@
 #include "plot/gnuplot.h"
 
+#include "io/output_folder.h"
 #include "plot/child_program.h"
 
+#include <ostream>
 #include <sstream>
-#include <utility>
 
 namespace bayesian_icp::plot {
 
@@ -31,19 +32,26 @@ scriptOf(const Drawing& drawing)
          drawing.script + '\n';
 }
 
-/** The SVG documents that follow each other in \p text. */
+constexpr const char* svg_end = "</svg>";
+constexpr const char* png_end = "IEND\xae\x42\x60\x82";
+
+/** The documents that follow each other in \p text, which end with each of \p ends in
+ * turn. One that is cut off is not among them. */
 std::vector<std::string>
-documentsOf(const std::string& text)
+documentsOf(const std::string& text, const std::vector<std::string>& ends)
 {
-  const std::string last_tag = "</svg>";
   std::vector<std::string> documents;
-  std::size_t begin = 0, end = 0;
-  while ((end = text.find(last_tag, begin)) != std::string::npos) {
-    end += last_tag.size();
+  std::size_t begin = 0;
+  while (true) {
+    const std::string& last_word = ends[documents.size() % ends.size()];
+    begin = text.find_first_not_of('\n', begin);
+    const std::size_t last = text.find(last_word, begin);
+    if (last == std::string::npos)
+      return documents;
+    const std::size_t end = last + last_word.size();
     documents.push_back(text.substr(begin, end - begin));
     begin = end;
   }
-  return documents;
 }
 
 } // namespace
@@ -87,25 +95,30 @@ panelsWithKey(std::size_t num_rows, std::size_t num_columns)
 }
 
 std::string
-pictures(const std::string& file, const std::string& size, const std::string& plot)
+pictures(const std::string& size, const std::string& plot)
 {
-  std::ostringstream lines;
-  for (const auto& [terminal, ending] :
-       {std::pair<std::string, std::string>{"svg", ".svg"}, {"pngcairo", ".png"}})
-    lines << "set terminal " << terminal << " noenhanced size " << size
-          << " font 'sans,11' background rgb 'white'\nset output "
-          << quotedForGnuplot(file + ending) << '\n'
-          << plot << "unset output\n";
-  return lines.str();
+  std::string lines;
+  for (const std::string terminal : {"svg", "pngcairo"})
+    lines += "set terminal " + terminal + " noenhanced size " + size +
+             " font 'sans,11' background rgb 'white'\nset output\n" + plot;
+  return lines;
 }
 
 void
-runGnuplot(const std::string& script, const std::string& folder)
+savePictures(const std::string& script,
+             const std::vector<std::string>& names,
+             const std::string& folder)
 {
   const ProgramResult run = runChildProgram({"gnuplot"}, script);
-  if (!run.is_good)
+  const auto documents = documentsOf(run.output, {svg_end, png_end});
+  if (!run.is_good || documents.size() != 2 * names.size())
     throw io::FileError(
         folder, "gnuplot could not draw the plots" + firstComplaint(run.errors));
+  io::OutputFolder files(folder);
+  for (std::size_t i = 0; i < documents.size(); ++i)
+    files.add(names[i / 2] + (i % 2 == 0 ? ".svg" : ".png"),
+              [&](std::ostream& stream) { stream << documents[i]; });
+  files.commit();
 }
 
 std::vector<std::string>
@@ -118,7 +131,7 @@ drawSvgs(const std::vector<Drawing>& drawings)
   const ProgramResult run = runChildProgram({"gnuplot", "--default-settings"}, script);
   if (!run.is_good)
     throw GnuplotError("could not draw the figures" + firstComplaint(run.errors));
-  std::vector<std::string> svgs = documentsOf(run.output);
+  std::vector<std::string> svgs = documentsOf(run.output, {svg_end});
   if (svgs.size() != drawings.size())
     throw GnuplotError("has not drawn all figures");
   return svgs;

@@ -41,17 +41,21 @@ dataBlock(const std::string& name, const std::string& lines);
 std::string
 panelsWithKey(std::size_t num_rows, std::size_t num_columns);
 
-/** \brief Lines that write one picture as SVG and PNG.
- * \param[in] file without its ending
+/** \brief Lines that draw one picture twice, as SVG and as PNG.
  * \param[in] size "width, height" in pixels
  * \param[in] plot the commands that draw it */
 std::string
-pictures(const std::string& file, const std::string& size, const std::string& plot);
+pictures(const std::string& size, const std::string& plot);
 
-/** \brief Have a script drawn whose pictures are in \p folder.
- * \throws io::FileError if gnuplot does not draw it */
+/** \brief Have a script drawn and its pictures put into a folder, all of them or none.
+ * \param[in] script has pictures() once for each of \p names
+ * \param[in] names of the files, without .svg and .png
+ * \param[in] folder is made if it is missing
+ * \throws io::FileError if gnuplot does not draw them, or they cannot be written */
 void
-runGnuplot(const std::string& script, const std::string& folder);
+savePictures(const std::string& script,
+             const std::vector<std::string>& names,
+             const std::string& folder);
 
 /** \brief One picture to be drawn as SVG. */
 struct Drawing {

@@ -12,6 +12,7 @@
 
 #include <io/cloud_file.h>
 #include <io/errors.h>
+#include <io/output_folder.h>
 #include <plot/gnuplot.h>
 
 #include <algorithm>
@@ -157,8 +158,10 @@ runCoverageCommand(int argc, const char* const* argv)
     return 0;
   }
   io::silencePcl();
-  if (!options.plot_folder.empty())
+  if (!options.plot_folder.empty()) {
     plot::requireGnuplot("--plots");
+    const io::OutputFolder can_be_written(options.plot_folder);
+  }
   CoverageStudy study = studyOf(options);
   study.report = reportProgress;
   CoverageFile results(options.result_file);

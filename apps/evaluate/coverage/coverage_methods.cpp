@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include <chrono>
+#include <new>
 
 namespace bayesian_icp::evaluate {
 
@@ -90,6 +91,9 @@ timedResult(const CoverageMethod& method, const CoverageCase& problem)
   MethodResult result;
   try {
     result = method.run(problem);
+  }
+  catch (const std::bad_alloc&) {
+    throw; // no fault of the method
   }
   catch (const std::exception& error) {
     result.notes = std::string("exception: ") + error.what();

@@ -4,7 +4,6 @@
 #include "coverage_table.h"
 
 #include <io/errors.h>
-#include <io/folders.h>
 #include <io/numbers.h>
 #include <plot/gnuplot.h>
 
@@ -82,7 +81,7 @@ blocksOf(const std::string& prefix, const Methods& methods, const Data& data)
 }
 
 std::string
-coverageScript(const Methods& methods, const std::string& folder)
+coverageScript(const Methods& methods)
 {
   std::string plot = "plot x notitle with lines linecolor 'gray'";
   for (std::size_t i = 0; i < methods.size(); ++i)
@@ -94,11 +93,11 @@ coverageScript(const Methods& methods, const std::string& folder)
          "set size ratio -1\n"
          "set xlabel 'probability of the region'\n"
          "set ylabel 'share of truths within it'\n" +
-         plot::pictures(folder + "/coverage", "900, 600", plot + "\n");
+         plot::pictures("900, 600", plot + "\n");
 }
 
 std::string
-pitScript(const Methods& methods, const std::string& folder)
+pitScript(const Methods& methods)
 {
   const std::string rows = std::to_string(methods.size());
   std::string plot = "set multiplot layout " + rows + ", 6\n";
@@ -111,8 +110,7 @@ pitScript(const Methods& methods, const std::string& folder)
   return blocksOf("pit", methods, pitData) +
          "reset\nunset key\nset style fill solid 0.6 noborder\nset boxwidth 0.09\n"
          "set xrange [0:1]\nset yrange [0:*]\nset xtics 0.5\n" +
-         plot::pictures(folder + "/pit",
-                        "1200, " + std::to_string(180 * methods.size()),
+         plot::pictures("1200, " + std::to_string(180 * methods.size()),
                         plot + "unset multiplot\n");
 }
 
@@ -133,7 +131,7 @@ aneesData(const Runs& runs, const std::vector<std::string>& cells)
 }
 
 std::string
-aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
+aneesScript(const Runs& runs, const Methods& methods)
 {
   std::vector<std::string> cells;
   for (const CoverageRun& run : runs) {
@@ -158,7 +156,6 @@ aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
          std::to_string(cells.size()) + " - 0.5]\nset xtics rotate by -60 (" + ticks +
          ")\n" +
          plot::pictures(
-             folder + "/anees",
              std::to_string(std::max<std::size_t>(900, 300 + 18 * cells.size())) +
                  ", 600",
              plot + "\n");
@@ -169,16 +166,16 @@ aneesScript(const Runs& runs, const Methods& methods, const std::string& folder)
 void
 plotCoverage(const Runs& runs, const std::string& folder)
 {
-  io::makeFolder(folder);
   Methods methods;
   for (const auto& [name, of_method] : runsByMethod(runs))
     if (const Runs valid = validOf(of_method); !valid.empty())
       methods.emplace_back(name, valid);
   if (methods.empty())
     throw io::FileError(folder, "no plots: there is no valid run");
-  plot::runGnuplot("set encoding utf8\n" + coverageScript(methods, folder) +
-                       pitScript(methods, folder) + aneesScript(runs, methods, folder),
-                   folder);
+  plot::savePictures("set encoding utf8\n" + coverageScript(methods) +
+                         pitScript(methods) + aneesScript(runs, methods),
+                     {"coverage", "pit", "anees"},
+                     folder);
 }
 
 } // namespace bayesian_icp::evaluate

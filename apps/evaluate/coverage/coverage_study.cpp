@@ -1,8 +1,8 @@
 #include "coverage_study.h"
 
-#include <atomic>
+#include <bayesian_icp/first_exception.h>
+
 #include <chrono>
-#include <exception>
 
 namespace bayesian_icp::evaluate {
 
@@ -45,47 +45,29 @@ public:
   void
   run(const Task& task)
   {
-    if (has_failed_)
-      return;
-    try {
+    // No exception may leave a parallel region or a critical section.
+    failure_.guard([&] {
       const CoverageCase problem = study_.make_case(task.name);
       for (const CoverageMethod* method : task.methods) {
         const CoverageRun run = {
             runNameOf(task.name, *method),
             coverageScoreOf(problem, timedResult(*method, problem))};
 #pragma omp critical(coverage_results)
-        add(run);
+        failure_.guard([&] { results_.add(run); });
       }
 #pragma omp critical(coverage_results)
-      report(task.name);
-    }
-    catch (...) {
-#pragma omp critical(coverage_results)
-      fail(std::current_exception());
-    }
+      failure_.guard([&] { report(task.name); });
+    });
   }
 
   void
   rethrow() const
   {
-    if (error_)
-      std::rethrow_exception(error_);
+    failure_.rethrow();
   }
 
 private:
   using Clock = std::chrono::steady_clock;
-
-  /** No exception may leave a critical section. */
-  void
-  add(const CoverageRun& run)
-  {
-    try {
-      results_.add(run);
-    }
-    catch (...) {
-      fail(std::current_exception());
-    }
-  }
 
   void
   report(const CoverageCaseName& name)
@@ -100,21 +82,12 @@ private:
                      name});
   }
 
-  void
-  fail(std::exception_ptr error)
-  {
-    if (!error_)
-      error_ = std::move(error);
-    has_failed_ = true;
-  }
-
   const CoverageStudy& study_;
   CoverageFile& results_;
   std::size_t num_tasks_;
   std::size_t num_done_ = 0;
   Clock::time_point begin_ = Clock::now();
-  std::atomic<bool> has_failed_ = false;
-  std::exception_ptr error_;
+  FirstException failure_;
 };
 
 } // namespace

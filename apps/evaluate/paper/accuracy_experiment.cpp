@@ -161,16 +161,16 @@ plotErrors(const std::vector<PairAccuracy>& pairs, const std::string& folder)
                 (column == 1 ? "translation error [m]" : "rotation error [rad]") +
                 "'\n" + plot + '\n';
     }
-  plot::runGnuplot(
+  plot::savePictures(
       "set encoding utf8\nset datafile missing 'nan'\n" + blocks +
           "unset key\nset logscale y\nset format y '%.0e'\nset grid y\n"
           "set style fill solid 0.4\nset boxwidth 0.5\n"
           "set xtics rotate by -45\n" +
           tics + ")\n" +
           plot::pictures(
-              folder + "/accuracy",
               std::to_string(std::max<std::size_t>(500, 280 * pairs.size())) + ", 760",
               panels + "unset multiplot\n"),
+      {"accuracy"},
       folder);
 }
 

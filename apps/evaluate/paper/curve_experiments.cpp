@@ -103,16 +103,16 @@ plotCurves(const std::string& folder, const CurvePlan& plan, const Curves& curve
                                        coordinate_names[static_cast<std::size_t>(k)]) +
                 '\n' + plot + '\n';
     }
-  plot::runGnuplot("set encoding utf8\nset datafile missing 'nan'\n" + blocks +
-                       "set logscale y\nset format y '%.0e'\nset grid y\n"
-                       "set xlabel '" +
-                       plan.axis +
-                       "'\nset ylabel 'KL [nats]'\n"
-                       "set xtics rotate by -45\n" +
-                       plot::pictures(folder + "/" + plan.name,
-                                      "1600, " + std::to_string(320 * curves.size()),
-                                      panels + "unset multiplot\n"),
-                   folder);
+  plot::savePictures("set encoding utf8\nset datafile missing 'nan'\n" + blocks +
+                         "set logscale y\nset format y '%.0e'\nset grid y\n"
+                         "set xlabel '" +
+                         plan.axis +
+                         "'\nset ylabel 'KL [nats]'\n"
+                         "set xtics rotate by -45\n" +
+                         plot::pictures("1600, " + std::to_string(320 * curves.size()),
+                                        panels + "unset multiplot\n"),
+                     {plan.name},
+                     folder);
 }
 
 ReportTable

@@ -111,13 +111,12 @@ plotDensities(const std::string& folder,
     }
     panels += "set xlabel '" + labelOf(k) + "'\n" + plot + '\n';
   }
-  plot::runGnuplot(
+  plot::savePictures(
       "set encoding utf8\n" + blocks +
           "set yrange [0:1.05]\nunset ytics\nset xtics autofreq rotate by -30\n"
           "set ylabel 'density, largest = 1'\n" +
-          plot::pictures(folder + "/densities_" + pair_name,
-                         "1200, 640",
-                         panels + "unset multiplot\n"),
+          plot::pictures("1200, 640", panels + "unset multiplot\n"),
+      {"densities_" + pair_name},
       folder);
 }
 
@@ -141,14 +140,13 @@ plotClouds(const std::string& folder, const ScanPair& pair, const NamedDraws& me
               " with points pointtype 7 pointsize 0.15 linecolor '#d55e00' title "
               "'source'\n";
   }
-  plot::runGnuplot(
+  plot::savePictures(
       "set encoding utf8\n" + blocks + cloudRanges(pair.target) +
           "set view equal xyz\nset view 65, 20, 1.3\nset xyplane relative 0\n"
           "unset xtics\nunset ytics\nunset ztics\nset border 0\n"
           "set key bottom center horizontal\n" +
-          plot::pictures(folder + "/clouds_" + pair.name,
-                         "1200, 360",
-                         panels + "unset multiplot\n"),
+          plot::pictures("1200, 360", panels + "unset multiplot\n"),
+      {"clouds_" + pair.name},
       folder);
 }
 
@@ -182,15 +180,14 @@ plotDivergences(const std::string& folder, const Distributions& distributions)
               std::string(coordinate_names[static_cast<std::size_t>(k)]) + "'\n" +
               plot + '\n';
   }
-  plot::runGnuplot("set encoding utf8\nset datafile missing 'nan'\n" + blocks +
-                       "set logscale y\nset format y '%.0e'\nset grid y\n"
-                       "set ylabel 'KL(baseline, method) [nats]'\nset xrange [-0.6:" +
-                       std::to_string(distributions.size()) + " - 0.4]\nset xtics (" +
-                       ticks + ") rotate by -30\n" +
-                       plot::pictures(folder + "/divergences",
-                                      "1400, 760",
-                                      panels + "unset multiplot\n"),
-                   folder);
+  plot::savePictures("set encoding utf8\nset datafile missing 'nan'\n" + blocks +
+                         "set logscale y\nset format y '%.0e'\nset grid y\n"
+                         "set ylabel 'KL(baseline, method) [nats]'\nset xrange [-0.6:" +
+                         std::to_string(distributions.size()) + " - 0.4]\nset xtics (" +
+                         ticks + ") rotate by -30\n" +
+                         plot::pictures("1400, 760", panels + "unset multiplot\n"),
+                     {"divergences"},
+                     folder);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -203,12 +203,13 @@ plotTimes(const std::vector<MethodTimes>& methods, const std::string& folder)
   }
   blocks += plot::dataBlock("paper", "1 8.88 3.59\n2 6.392 0.731\n4 3.298 0.573\n");
   plot += ", $paper with yerrorlines dashtype 2 pointtype 6 title 'the paper'\n";
-  plot::runGnuplot(
+  plot::savePictures(
       "set encoding utf8\n" + blocks +
           "set logscale y\nset grid y\nset xrange [0.5:4.5]\nset xtics (1, 2, 4)\n"
           "set xlabel 'threads'\nset ylabel 'wall time per 1000 draws [s]'\n"
           "set key outside right\n" +
-          plot::pictures(folder + "/runtime", "800, 450", plot),
+          plot::pictures("800, 450", plot),
+      {"runtime"},
       folder);
 }
 

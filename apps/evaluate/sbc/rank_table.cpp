@@ -63,7 +63,6 @@ printRankTable(const RankStudy& study, const RankFile& results, std::ostream& st
 void
 plotRanks(const RankStudy& study, const RankFile& results, const std::string& folder)
 {
-  io::makeFolder(folder);
   const std::size_t num_rows = study.samplers.size();
   std::string data;
   std::string plot = "set multiplot layout " + std::to_string(num_rows) + ", 6\n";
@@ -82,13 +81,13 @@ plotRanks(const RankStudy& study, const RankFile& results, const std::string& fo
           " linecolor 'gray'\n";
     }
   }
-  plot::runGnuplot("set encoding utf8\n" + data +
-                       "reset\nunset key\nset style fill solid 0.6 noborder\n"
-                       "set boxwidth 0.9\nset xrange [-0.5:9.5]\nset yrange [0:*]\n" +
-                       plot::pictures(folder + "/ranks",
-                                      "1200, " + std::to_string(180 * num_rows),
-                                      plot + "unset multiplot\n"),
-                   folder);
+  plot::savePictures("set encoding utf8\n" + data +
+                         "reset\nunset key\nset style fill solid 0.6 noborder\n"
+                         "set boxwidth 0.9\nset xrange [-0.5:9.5]\nset yrange [0:*]\n" +
+                         plot::pictures("1200, " + std::to_string(180 * num_rows),
+                                        plot + "unset multiplot\n"),
+                     {"ranks"},
+                     folder);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -5,6 +5,7 @@
 #include "sbc_options.h"
 
 #include <io/errors.h>
+#include <io/output_folder.h>
 #include <plot/gnuplot.h>
 
 #include <algorithm>
@@ -45,8 +46,10 @@ runSbcCommand(int argc, const char* const* argv)
     std::cout << sbcHelp();
     return 0;
   }
-  if (!options.plot_folder.empty())
+  if (!options.plot_folder.empty()) {
     plot::requireGnuplot("--plots");
+    const io::OutputFolder can_be_written(options.plot_folder);
+  }
   RankStudy study;
   study.samplers = chosenSamplers(options.samplers);
   study.num_runs = options.num_runs;
