@@ -14,7 +14,7 @@ import cloud_files
 from cli_tool import FAST, ToolTest, run, strict_json
 
 BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
-# About 0.1 s a pair.
+# About 0.3 s a pair.
 SLOW = ["--preset", "paper", "--samples", "200", "--chains", "2", "--thinning", "10"]
 SLOW += ["--step-size", "1e-6"]
 
@@ -220,26 +220,32 @@ class BatchResume(BatchTest):
     def whole_run(self, manifest, *options):
         return without_times(results_of(run_batch(manifest, *options).stdout))
 
+    def whole_lines(self):
+        content = self.results.read_bytes() if self.results.exists() else b""
+        return content[: content.rfind(b"\n") + 1]
+
     def resumed(self, manifest, *options):
         result = run_batch(manifest, *options, "--results", self.results)
         self.assertIn(result.returncode, (0, 1), result.stderr)
         return without_times(results_of(self.results.read_text()))
 
     def test_killed_again_and_again(self):
-        """Nothing is lost and nothing there twice, wherever the kills fall."""
+        """Nothing is lost and nothing there twice: each kill comes when there is a new line."""
         manifest = self.seeds(9)
-        command = [BATCH, manifest, *SLOW, "--results", self.results, "--quiet"]
-        num_lines = 0
-        for k in range(6):
+        command = [BATCH, manifest, *SLOW, "--threads", "2", "--results", self.results, "--quiet"]
+        kept = b""
+        num_lines = []
+        for _ in range(3):
             with subprocess.Popen(command) as process:
-                time.sleep(0.15 + 0.03 * k)
+                while len(self.whole_lines()) <= len(kept) and process.poll() is None:
+                    time.sleep(0.005)
                 process.kill()
-            if not self.results.exists():
-                continue
-            complete = self.results.read_bytes().count(b"\n")
-            self.assertGreaterEqual(complete, num_lines)
-            num_lines = complete
+            self.assertTrue(self.whole_lines().startswith(kept))
+            kept = self.whole_lines()
+            num_lines.append(kept.count(b"\n"))
+        self.assertGreaterEqual(len({n for n in num_lines if 0 < n < 9}), 2, num_lines)
         self.assertEqual(self.resumed(manifest, *SLOW), self.whole_run(manifest, *SLOW))
+        self.assertTrue(self.whole_lines().startswith(kept))
 
     def test_line_that_was_cut_off(self):
         manifest = self.seeds(4)

@@ -1,5 +1,6 @@
 """Full disks, folders that cannot be written, and two runs that write to one folder."""
 
+import contextlib
 import fcntl
 import os
 import pathlib
@@ -12,9 +13,11 @@ from cli_tool import FAST, SANITIZER, TOOL, strict_json
 from faults import (
     BATCH,
     EVALUATE,
+    GROWING,
     POSE_GRAPH,
     SIMULATE,
     TRANSFORM,
+    TWO_RUNS,
     VIEWER,
     FaultTest,
     call,
@@ -42,8 +45,7 @@ class FullDisk(FaultTest):
         reason = self.last_words(name_of(command[0]), result.stderr)
         self.assertIn(str(output), reason)
         self.assertIn("cannot be written", reason)
-        # A batch keeps the lines that were whole.
-        self.assertTrue(self.names_in(output) <= {"old.txt", "results.jsonl"})
+        self.assertTrue(self.names_in(output) <= {"old.txt", *GROWING})
         self.assertEqual((output / "old.txt").read_text(), "old")
 
     @unittest.skipIf(SANITIZER, "libomp, Clang's, needs a file of shared memory that is larger")
@@ -51,38 +53,55 @@ class FullDisk(FaultTest):
         """Its signal would kill a program that does not expect it."""
         for tool in self.invocations(self.folder):
             with self.subTest(tool=tool):
-                # The graph of two scans is small.
-                size = 100 if tool == "pose graph" else 1000
+                # The graph of two scans is small, and so are the tables of the studies.
+                size = 100 if tool in ("pose graph", "coverage", "sbc") else 1000
                 self.check(
                     tool, self.new_folder(), preexec_fn=limited(resource.RLIMIT_FSIZE, size)
                 )
 
     def test_disk_without_room(self):
-        """A file system in memory of three pages, two of which hold something."""
         for tool in self.invocations(self.folder):
             with self.subTest(tool=tool):
-                output = self.new_folder()
-                mount = ["mount", "-t", "tmpfs", "-o", "size=12k", "tmpfs", str(output)]
-                if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode:
-                    self.skipTest("only root can make a small disk")
-                try:
-                    (output / "filler").write_bytes(bytes(8192))
-                    self.check_small_disk(tool, output)
-                finally:
-                    subprocess.run(["umount", str(output)], check=True)
+                with self.small_disk() as output:
+                    command, _ = self.invocations(output)[tool]
+                    self.fill(output)
+                    self.check_small_disk(command, output)
 
-    def check_small_disk(self, tool, output):
-        command, _ = self.invocations(output)[tool]
+    def test_plots_on_a_disk_without_room(self):
+        """gnuplot itself says nothing of what it cannot write."""
+        with self.small_disk() as output:
+            self.fill(output)
+            command = [EVALUATE, "sbc", *TWO_RUNS, "--output", self.folder / "sbc.csv"]
+            self.check_small_disk([*command, "--plots", output], output)
+
+    @contextlib.contextmanager
+    def small_disk(self):
+        """The folder of a file system in memory of three pages, two of which hold
+        something."""
+        output = self.new_folder()
+        mount = ["mount", "-t", "tmpfs", "-o", "size=12k", "tmpfs", str(output)]
+        if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode:
+            self.skipTest("only root can make a small disk")
+        try:
+            (output / "filler").write_bytes(bytes(8192))
+            yield output
+        finally:
+            subprocess.run(["umount", str(output)], check=True)
+
+    @staticmethod
+    def fill(output):
         with open(output / "more", "wb", buffering=0) as more:
             try:
                 while more.write(bytes(512)):
                     pass
             except OSError:
                 pass
+
+    def check_small_disk(self, command, output):
         result = call(*command)
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn("cannot be written", self.last_words(name_of(command[0]), result.stderr))
-        self.assertTrue(self.names_in(output) <= {"filler", "more", "results.jsonl"})
+        self.assertTrue(self.names_in(output) <= {"filler", "more", *GROWING})
 
     def test_standard_output(self):
         for program in PROGRAMS:
@@ -96,6 +115,16 @@ class FullDisk(FaultTest):
 
 
 class Unwritable(FaultTest):
+    def rights_of_a_user(self):
+        """What to begin a command line with: root may write everything, unless that right
+        is taken away."""
+        if os.geteuid() != 0:
+            return []
+        rights = ["setpriv", "--bounding-set=-dac_override", "--inh-caps=-all", "--"]
+        if not shutil.which(rights[0]) or call(*rights, "true").returncode != 0:
+            self.skipTest("the rights of root cannot be taken away here")
+        return rights
+
     def test_places_that_are_no_folders(self):
         obstacle = self.file("obstacle", "")
         for place in (obstacle, pathlib.Path("/proc/no_such")):
@@ -108,12 +137,7 @@ class Unwritable(FaultTest):
         self.assertEqual(obstacle.read_bytes(), b"")
 
     def test_folder_that_may_not_be_written(self):
-        """Root may do everything, unless that right is taken away."""
-        rights = []
-        if os.geteuid() == 0:
-            rights = ["setpriv", "--bounding-set=-dac_override", "--inh-caps=-all", "--"]
-            if not shutil.which(rights[0]) or call(*rights, "true").returncode != 0:
-                self.skipTest("the rights of root cannot be taken away here")
+        rights = self.rights_of_a_user()
         for tool in self.invocations(self.folder):
             with self.subTest(tool=tool):
                 output = self.new_folder()
@@ -128,22 +152,25 @@ class Unwritable(FaultTest):
     def test_read_only_inputs(self):
         """Nothing is written but the output: folder and files of the inputs are read-only,
         and it is there that the tools run."""
-        pair = self.small_pair()
-        inputs = self.new_folder()
-        moved = [shutil.move(path, inputs / path.name) for path in pair]
-        for path in [*moved, inputs]:
+        rights = self.rights_of_a_user()
+        outputs, inputs = self.new_folder(), self.new_folder()
+        self.folder = inputs
+        runs = {}
+        for tool in self.invocations(outputs):
+            (outputs / tool).mkdir()
+            runs[tool] = self.invocations(outputs / tool)[tool]
+        before = {path.name: path.read_bytes() for path in inputs.iterdir()}
+        for path in [*inputs.iterdir(), inputs]:
             path.chmod(0o555)
-        for tool in self.invocations(self.folder, pair):
+        self.addCleanup(inputs.chmod, 0o755)
+        self.assertNotEqual(call(*rights, "touch", inputs / "new").returncode, 0)
+        for tool, (command, names) in runs.items():
             with self.subTest(tool=tool):
-                output = self.new_folder()
-                if tool == "batch":
-                    continue  # its manifest is beside the clouds
-                command, names = self.invocations(output, tuple(moved))[tool]
-                result = call(*command, cwd=inputs)
+                result = call(*rights, *command, cwd=inputs)
                 self.assertIn(result.returncode, (0, 1), result.stderr)
-                self.assertEqual(self.names_in(output), names)
-        self.assertEqual(self.names_in(inputs), {path.name for path in pair})
-        inputs.chmod(0o755)
+                self.assertEqual(self.names_in(outputs / tool), names)
+        after = {path.name: path.read_bytes() for path in inputs.iterdir()}
+        self.assertEqual(after, before)
 
 
 class OneFolderForTwo(FaultTest):

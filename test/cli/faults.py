@@ -1,6 +1,8 @@
 """What the tests of faults share: every tool, ways to hurt it, and what must stay whole."""
 
+import csv
 import fcntl
+import json
 import os
 import pathlib
 import re
@@ -8,8 +10,10 @@ import resource
 import subprocess
 import tempfile
 import time
+import unittest.mock
 
 import cloud_files
+import x_server
 from cli_tool import FAST, TOOL, ToolTest
 
 BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
@@ -22,8 +26,12 @@ VIEWER = os.environ["PCL_BAYESIAN_ICP_VIEWER"]  # empty where it is not built
 MOTION = "0.1,-0.2,0.3,0.02,-0.01,0.5"
 REGISTERED = {"aligned.pcd", "posterior.json", "report.html", "samples.csv"}
 SIMULATED = {"T_target_source.txt", "scene.json", "source.pcd", "target.pcd"}
+ONE_CASE = ["--methods", "calibrated", "--scenes", "can", "--conditions", "same", "--seeds", "1"]
+TWO_RUNS = ["--sampler", "exact-langevin", "--runs", "2"]
 # A temporary file of an output on its way.
 TEMPORARY = re.compile(r"\.[A-Za-z0-9]{6}$")
+# What a tool has finished stays in these, whatever becomes of the rest.
+GROWING = {"coverage.csv", "results.jsonl", "sbc.csv"}
 # Minutes of work, of which each chain keeps a draw about every 50 ms.
 ENDLESS = ["--preset", "paper", "--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
 
@@ -74,19 +82,44 @@ def wait_for(condition, process):
         time.sleep(0.01)
 
 
+def rows_of(results):
+    """The rows of a study's file, in order, without times."""
+    with open(results, encoding="ascii", newline="") as file:
+        rows = [{k: v for k, v in row.items() if k != "seconds"} for row in csv.DictReader(file)]
+    return sorted(rows, key=lambda row: list(row.values()))
+
+
 class FaultTest(ToolTest):
+    @classmethod
+    def has_display(cls):
+        """Whether the viewer is built and has an X server to draw with, which is started."""
+        if "display" not in cls.__dict__:
+            cls.display = x_server.start(cls) if VIEWER else None
+            if cls.display:
+                variables = unittest.mock.patch.dict(os.environ, DISPLAY=cls.display)
+                variables.start()
+                cls.addClassCleanup(variables.stop)
+        return cls.display is not None
+
     def invocations(self, output, pair=None):
-        """{name: (command line, names that it writes)} of the tools that register or write
-        clouds, each with its output in the folder \\p output."""
+        """{name: (command line, names that it writes)} of every tool, each with its output
+        in the folder \\p output."""
         source, target = pair or self.small_pair()
-        manifest = self.file(
-            "manifest.json",
-            f'[{{"name": "pair", "source": "{source.name}", "target": "{target.name}"}}]',
-        )
+        clouds = {"source": source.name, "target": target.name}
+        manifest = self.file("manifest.json", json.dumps([{"name": "pair", **clouds}]))
+        picture = ["--screenshot", output / "picture.png", "--size", "200x150"]
+        viewer = {
+            "viewer": ([VIEWER, source, target, *FAST, "--quiet", *picture], {"picture.png"})
+        }
+        study = ["--threads", "1", "--output"]
         return {
             "register": (
                 [TOOL, source, target, *FAST, "--quiet", "-o", output],
                 REGISTERED,
+            ),
+            "register by SGD-ICP": (
+                [TOOL, "--method", "sgd-icp", source, target, "--quiet", "-o", output],
+                {"aligned.pcd", "sgd_icp.json"},
             ),
             "simulate": (
                 [SIMULATE, "--scene", "can", "--width", "64", "--height", "48", "-o", output],
@@ -108,6 +141,15 @@ class FaultTest(ToolTest):
                 [POSE_GRAPH, source, target, *FAST, "--weak-edges", "--quiet", "-o", output / "g.g2o"],
                 {"g.g2o"},
             ),
+            "coverage": (
+                [EVALUATE, "coverage", *ONE_CASE, *study, output / "coverage.csv"],
+                {"coverage.csv"},
+            ),
+            "sbc": (
+                [EVALUATE, "sbc", *TWO_RUNS, *study, output / "sbc.csv", "--plots", output],
+                {"ranks.png", "ranks.svg", "sbc.csv"},
+            ),
+            **(viewer if self.has_display() else {}),
         }
 
     def big_pair(self, num_points):

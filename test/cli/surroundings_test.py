@@ -8,7 +8,7 @@ import shutil
 import unittest
 
 from cli_tool import DATA, FAST, TOOL, strict_json
-from faults import FaultTest, call
+from faults import FaultTest, call, rows_of
 
 ODD_NAME = "Größe 1,5 m & 'Tee' \"$HOME\" 日本"
 
@@ -27,6 +27,7 @@ class DecimalCommas(FaultTest):
             made = False
         if not made:
             self.skipTest("no sources of locales here (package locales)")
+        self.has_display()  # its name is a part of the environment
         self.german = {
             **os.environ,
             "LOCPATH": str(locales),
@@ -47,6 +48,8 @@ class DecimalCommas(FaultTest):
     @staticmethod
     def without_the_run(path, output):
         """Content without what is of this run only: times, and the output's name."""
+        if path.name == "coverage.csv":
+            return rows_of(path)
         content = path.read_bytes().replace(bytes(output), b"OUTPUT")
         content = re.sub(rb'"(\w*_s|seconds)": ?[0-9.e+-]+', rb'"\1": 0', content)
         return re.sub(rb"[0-9.]+ s\b", b"0 s", content)

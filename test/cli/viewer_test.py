@@ -11,6 +11,7 @@ import tempfile
 import pathlib
 import unittest
 
+import x_server
 from cli_tool import DATA, ToolTest, run
 from png_file import read_png
 
@@ -81,21 +82,9 @@ class ScreenTest(ViewerTest):
 
     @classmethod
     def setUpClass(cls):
-        if not shutil.which("Xvfb"):
+        cls.display = x_server.start(cls)
+        if cls.display is None:
             raise unittest.SkipTest("Xvfb is not here (see scripts/bootstrap)")
-        reading, writing = os.pipe()
-        screen = ["-screen", "0", "1280x1024x24", "-nolisten", "tcp", "-noreset"]
-        cls.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writing), *screen],
-            pass_fds=[writing],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-        cls.addClassCleanup(cls.server.wait)
-        cls.addClassCleanup(cls.server.terminate)
-        os.close(writing)
-        with os.fdopen(reading) as pipe:
-            cls.display = ":" + pipe.readline().strip()
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.results = pathlib.Path(folder.name)
