@@ -51,7 +51,7 @@ split(int argc, const char* const* argv)
   const po::options_description of_bayesian_icp = describeOptions();
   po::options_description all;
   all.add(of_bayesian_icp).add(describeSgdOptions());
-  const po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
+  po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
   for (const auto& option : of_bayesian_icp.options()) {
     const std::string& name = option->long_name();
     if (given.count(name) > 0 && !isShared(name))
