@@ -158,7 +158,7 @@ TEST_F(PluginTest, OwnEstimationIsAskedByIcpAndByEveryStep)
   EXPECT_EQ(icp.getFinalTransformation(), reference.getFinalTransformation());
   // ICP's iterations, the count at the guess, 40 mini-batches of 20.
   EXPECT_EQ(estimation->num_points,
-            static_cast<std::size_t>(reference.nr_iterations_) * n + n + 40 * 20);
+            static_cast<std::size_t>(reference.nr_iterations_) * n + n + 40UL * 20UL);
   EXPECT_EQ(icp.getSamples().rows(), 40);
 }
 
@@ -339,7 +339,7 @@ TEST_F(PluginTest, OwnSearchTreeIsAskedByEveryStep)
   icp.setSearchMethodTarget(tree);
   icp.align(output);
   const std::size_t n = scans.source->size();
-  EXPECT_EQ(tree->num_queries, n + n + 40 * 20);
+  EXPECT_EQ(tree->num_queries, n + n + 40UL * 20UL);
 }
 
 /** Runs preset exact against \p target, which holds the true target and then a decoy at

@@ -122,7 +122,7 @@ TEST(DropIn, IsHeldByThePointersOfItsBases)
 {
   const Scans<PointXYZ> scans;
   Icp::Ptr icp(new BayesianIcp);
-  static_cast<BayesianIcp&>(*icp).setNumberOfSamples(40);
+  dynamic_cast<BayesianIcp&>(*icp).setNumberOfSamples(40);
   Registration<PointXYZ, PointXYZ>::Ptr registration = icp;
   registration->setInputSource(scans.source);
   registration->setInputTarget(scans.target);
@@ -131,7 +131,7 @@ TEST(DropIn, IsHeldByThePointersOfItsBases)
   registration->align(output);
   EXPECT_TRUE(registration->hasConverged());
   EXPECT_EQ(registration->getClassName(), "BayesianIterativeClosestPoint");
-  EXPECT_EQ(static_cast<BayesianIcp&>(*icp).getSamples().rows(), 40);
+  EXPECT_EQ(dynamic_cast<BayesianIcp&>(*icp).getSamples().rows(), 40);
 }
 
 TEST(DropIn, WorksInIncrementalRegistration)
@@ -153,7 +153,7 @@ TEST(DropIn, SteppingOneIterationAtATimeWorks)
   // As in PCL's interactive_icp tutorial: the output is the source of the next align.
   const Scans<PointXYZ> scans;
   const auto step = [&](Icp& icp) {
-    const Cloud::Ptr moving(new Cloud(*scans.source));
+    Cloud::Ptr moving(new Cloud(*scans.source));
     icp.setMaximumIterations(1);
     icp.setInputTarget(scans.target);
     icp.setInputSource(moving);
@@ -230,7 +230,7 @@ using PointTypes = ::testing::Types<PointXYZ,
                                     PointNormal,
                                     PointXYZRGBNormal,
                                     PointXYZINormal>;
-TYPED_TEST_SUITE(EveryInstantiation, PointTypes);
+TYPED_TEST_SUITE(EveryInstantiation, PointTypes, );
 
 template <typename PointT, typename Scalar>
 bayesian_icp::PoseMatrix
@@ -306,7 +306,7 @@ TEST(Posterior, IsRepeatableAndIndependentOfThreads)
     icp.setInputSource(scans.source);
     icp.setInputTarget(scans.target);
     icp.align(output);
-    const auto first = icp.getSamples();
+    auto first = icp.getSamples();
     icp.align(output); // a second align is independent of the first
     EXPECT_EQ(icp.getSamples(), first);
     return (first);
@@ -669,9 +669,9 @@ TEST(BadInput, DegenerateCloudsDoNotCrash)
 {
   const QuietConsole quiet;
   const auto equal = cloudOf(std::vector<PointXYZ>(50, PointXYZ(1, 2, 3)));
-  std::vector<PointXYZ> line;
-  for (int i = 0; i < 50; ++i)
-    line.emplace_back(0.01f * static_cast<float>(i), 0.0f, 0.0f);
+  std::vector<PointXYZ> line(50, PointXYZ(0, 0, 0));
+  for (std::size_t i = 0; i < line.size(); ++i)
+    line[i].x = 0.01f * static_cast<float>(i);
   std::vector<PointXYZ> far(50, PointXYZ(1e6f, -1e6f, 1e6f));
   const Cloud::Ptr clouds[] = {
       equal, cloudOf(line), cloudOf(far), bumpySurface<PointXYZ>(3, 4)};
