@@ -4,13 +4,19 @@
  */
 #pragma once
 
-#include <bayesian_icp/pose.h>
+#include <bayesian_icp/pipeline.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp {
 namespace test {
+
+/** Points of a wavy surface of 1 x 0.6 m with noise of 3 mm. Sums and products only,
+ * which every machine rounds alike; sin() it may not. */
+Eigen::Matrix3Xd
+wavySurface(std::uint64_t seed, Eigen::Index num_points);
 
 /** How a run is made. None of it may change what comes out, rounding apart. */
 struct RunSettings {
@@ -33,7 +39,14 @@ struct RunRecord {
    * posterior; a millimetre and a milliradian where there is none. */
   Vector6d unit = Vector6d::Constant(1e-3);
   std::vector<PoseTable> tables;
+  /** What is compared between runs of one build only: all covariances and diagnostics.
+   */
+  std::vector<double> numbers;
 };
+
+/** The record of an estimate: mean, standard deviations, covariance, draws. */
+RunRecord
+recordOf(const PosteriorEstimate& estimate);
 
 /** Largest difference between two records in units of the first one; infinite if they
  * are not of the same kind, or one has a number where the other has none. */

@@ -1,7 +1,9 @@
-# Makes the Debian packages, has lintian look at them, and installs and purges them in a
-# root of their own. Arguments: cpack, build folder, work folder, lintian (may be absent).
+# Makes the Debian packages, has lintian look at them, installs them in a root of their own,
+# builds a program with them there, and purges them. Arguments: cmake, cpack, build folder,
+# work folder, lintian (may be empty), compiler, compiler launcher (may be absent).
 set -euo pipefail
-cpack=$1 build=$2 work=$3 lintian=${4-}
+cmake=$1 cpack=$2 build=$3 work=$4 lintian=$5 compiler=$6 launcher=${7-}
+here=$(dirname "$(realpath "$0")")
 rm -rf "$work"
 mkdir -p "$work"
 "$cpack" -G DEB --config "$build/CPackConfig.cmake" -B "$work/packages"
@@ -28,6 +30,16 @@ library=$(dpkg-deb -f libpcl-bayesian-icp[0-9]*.deb Package)
 dpkg-deb -f libpcl-bayesian-icp[0-9]*.deb Depends | grep -E 'libc6 .*libpcl-common.*libstdc\+\+6'
 dpkg-deb -f libpcl-bayesian-icp-dev_*.deb Depends | grep -F "$library (= $version)"
 dpkg-deb -f libpcl-bayesian-icp-dev_*.deb Depends | grep -F 'libpcl-dev (>= 1.13)'
+# Whether there are such packages, and they go together; nothing is installed.
+if command -v apt-get >/dev/null; then
+  apt-get install --simulate "${packages[@]/#/./}" >"$work/apt.log" 2>&1 || {
+    cat "$work/apt.log"
+    exit 1
+  }
+  grep -c '^Inst ' "$work/apt.log" | sed 's/$/ packages would be installed by apt/'
+else
+  echo "apt-get is not here: nobody has looked whether what the packages need is there"
+fi
 
 # An empty system of its own, whose libraries are those of this machine.
 root=$work/root
@@ -50,6 +62,10 @@ for tool in "$root"/usr/bin/*; do
   [[ -e $root/usr/share/man/man1/${tool##*/}.1.gz ]] ||
     [[ -z $(find "$build/man" -name '*.1' 2>/dev/null) ]]
 done
+diff -r "$here/../../include" "$root/usr/include"
+bash "$here/build_and_run.sh" "$here/core_consumer" "$work/core_consumer" core_consumer \
+  "$cmake" -D CMAKE_PREFIX_PATH="$root/usr" -D CMAKE_CXX_COMPILER="$compiler" \
+  -D CMAKE_CXX_COMPILER_LAUNCHER="$launcher"
 PKG_CONFIG_PATH=$(dirname "$(find "$root" -name pcl_bayesian_icp.pc)") \
   pkg-config --exists --print-errors pcl_bayesian_icp
 

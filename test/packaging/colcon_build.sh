@@ -25,7 +25,7 @@ set +u
 export COLCON_CURRENT_PREFIX=$work/install
 source "$work/install/local_setup.sh"
 set -u
-bash "$tree/test/packaging/build_and_run.sh" "$tree/test/packaging/core_consumer" \
-  "$work/core_consumer" core_consumer "$cmake" -D CMAKE_CXX_COMPILER="$compiler"
-"$cmake" -S "$tree/test/packaging/consumer" -B "$work/consumer" \
-  -D CMAKE_CXX_COMPILER="$compiler"
+for consumer in core_consumer consumer; do
+  bash "$tree/test/packaging/build_and_run.sh" "$tree/test/packaging/$consumer" \
+    "$work/$consumer" "$consumer" "$cmake" -D CMAKE_CXX_COMPILER="$compiler"
+done
