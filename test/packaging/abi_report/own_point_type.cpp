@@ -1,7 +1,11 @@
 // The part of the report that is computed by the user's code: an own point type.
 #define PCL_NO_PRECOMPILE
 
+// PCL_ADD_POINT4D has anonymous structs.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
 #include "../consumer/echo_point.h"
+#pragma GCC diagnostic pop
 #include "report.h"
 
 #include <pcl/registration/bayesian_icp.h>
