@@ -2,7 +2,9 @@
 
 import os
 import pty
+import re
 import resource
+import select
 import signal
 import subprocess
 import time
@@ -58,8 +60,8 @@ class UnwritableOutput(ToolTest):
 
 
 class Progress(ToolTest):
-    def standard_error_of(self, seconds, *options):
-        """What a terminal shows within so many seconds."""
+    def standard_error_of(self, seconds, *options, until=None):
+        """What a terminal shows within so many seconds, or until it shows this pattern."""
         try:
             controller, terminal = pty.openpty()
         except OSError as error:
@@ -67,9 +69,12 @@ class Progress(ToolTest):
         command = [TOOL, *self.small_pair(), *ENDLESS, *options]
         with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=terminal) as process:
             os.close(terminal)
-            time.sleep(seconds)
-            process.send_signal(signal.SIGINT)
             shown = b""
+            end = time.monotonic() + seconds
+            while time.monotonic() < end and not (until and re.search(until, shown)):
+                if select.select([controller], [], [], 0.1)[0]:
+                    shown += os.read(controller, 4096)
+            process.send_signal(signal.SIGINT)
             try:
                 while chunk := os.read(controller, 4096):
                     shown += chunk
@@ -80,8 +85,9 @@ class Progress(ToolTest):
         return shown.decode()
 
     def test_bar_on_a_terminal_after_two_seconds(self):
-        shown = self.standard_error_of(3.5)
-        self.assertRegex(shown, r"\rsampling \[#*\.*\] +\d+ %")
+        bar = rb"\rsampling \[#*\.*\] +\d+ %"
+        shown = self.standard_error_of(50.0, until=bar)
+        self.assertRegex(shown.encode(), bar)
         self.assertTrue(shown.rstrip().endswith("\x1b[K"), shown)
 
     def test_no_bar_before_or_when_quiet(self):
