@@ -41,9 +41,10 @@ TEST(SensorRays, OfTheLidarHaveTheStatedAngles)
   ASSERT_EQ(scan.points.cols(), 32 * 180) << "a closed room returns every ray";
   for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
     const Vector3d point = scan.points.col(i);
-    const auto ring = static_cast<double>(i / 180);
+    const Eigen::Index ring = i / 180;
     const double elevation = std::asin(point.z() / point.norm());
-    ASSERT_NEAR(elevation, (-30.0 + 40.0 / 31.0 * ring) * degree, 1e-9);
+    ASSERT_NEAR(
+        elevation, (-30.0 + 40.0 / 31.0 * static_cast<double>(ring)) * degree, 1e-9);
     const double azimuth = 2.0 * static_cast<double>(i % 180) * degree;
     const Vector3d across(-std::sin(azimuth), std::cos(azimuth), 0.0);
     ASSERT_NEAR(across.dot(point), 0.0, 1e-9);
@@ -61,8 +62,8 @@ TEST(SensorRays, OfTheCameraGoThroughThePixelsUpToTheJitter)
     Vector3d most = Vector3d::Zero();
     for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
       const std::uint32_t ray = scan.ray_indices[static_cast<std::size_t>(i)];
-      const Vector3d centre(
-          ray % 160 + 0.5 - 80.0, ray / 160 + 0.5 - 60.0, focal_length);
+      const std::uint32_t column = ray % 160, row = ray / 160;
+      const Vector3d centre(column + 0.5 - 80.0, row + 0.5 - 60.0, focal_length);
       const Vector3d pixel = scan.points.col(i) / scan.points(2, i) * focal_length;
       most = most.cwiseMax((pixel - centre).cwiseAbs());
     }

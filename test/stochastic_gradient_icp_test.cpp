@@ -197,9 +197,9 @@ TEST(StochasticGradientIcp, StopsAfterTheGivenNumberOfStillSteps)
   options.rotation_epsilon = 100.0;
   for (const double epsilon : {0.05, 0.005})
     for (const int num_still : {1, 3, 20}) {
-      std::vector<double> positions;
-      for (int t = 0; t < 1000; ++t)
-        positions.push_back(0.4 * (1.0 - std::pow(0.95, t)));
+      std::vector<double> positions(1000);
+      for (std::size_t t = 0; t < positions.size(); ++t)
+        positions[t] = 0.4 * (1.0 - std::pow(0.95, t));
       options.translation_epsilon = epsilon;
       options.num_still_iterations = num_still;
       const auto result =

@@ -54,6 +54,7 @@ ChainSet
 mixedChains(Random& random, int num_chains = 4, Eigen::Index num_draws = 500)
 {
   std::vector<PoseMatrix> chains;
+  chains.reserve(static_cast<std::size_t>(num_chains));
   for (int c = 0; c < num_chains; ++c)
     chains.push_back(gaussianDraws(random,
                                    num_draws,
