@@ -18,7 +18,7 @@ InstructionSet best_instruction_set = InstructionSet::Avx2;
 
 } // namespace
 
-#if defined(BAYESIAN_ICP_HAS_SHARED_LIBRARY)
+#if defined(BAYESIAN_ICP_CAN_BE_INTERPOSED)
 // Takes the place of the library's own function, which says what the processor can do:
 // what a program defines goes before what a shared library does. So all of the library,
 // wherever it builds a tree, searches by the instructions of this test.
@@ -58,7 +58,7 @@ TEST_P(Determinism, NumberOfThreadsChangesNoBit)
   }
 }
 
-#if defined(BAYESIAN_ICP_HAS_SHARED_LIBRARY)
+#if defined(BAYESIAN_ICP_CAN_BE_INTERPOSED)
 TEST_P(Determinism, InstructionSetChangesNoBit)
 {
   const RunRecord reference = makeRun(GetParam(), {2, false});
