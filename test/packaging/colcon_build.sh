@@ -11,6 +11,8 @@ names_in_tree() {
 }
 names_in_tree >"$work/before"
 
+# Otherwise Python sets LC_CTYPE where the locale is C, and the compiler cache finds nothing.
+export PYTHONCOERCECLOCALE=0
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2} MAKEFLAGS=-j2
 cd "$work"
 # With the flags of the tests' build, of which the compiler cache has everything.
