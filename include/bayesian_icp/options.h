@@ -61,9 +61,8 @@ struct ExactOptions {
 
 /** \brief What only preset `calibrated` has. */
 struct CalibratedOptions {
-  /** Largest number of source points that are used; of a larger source so many are
-   * chosen at random (chains.seed), since every so-manyth point of a scan would be a
-   * pattern. Time is proportional to it. At least min_calibrated_points. */
+  /** Largest number of source points that are used; of a larger source so many that
+   * cover it evenly. Time is proportional to it. At least min_calibrated_points. */
   int max_source_points = 2000;
   /** Of these, points on which the starts are followed to their modes. At least
    * min_calibrated_points; more than there are is taken as all. */

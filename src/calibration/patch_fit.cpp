@@ -21,7 +21,7 @@ constexpr int max_growth_for_noise = 4;
 constexpr int max_growth_for_width = 16;
 /** ... this ratio of its in-plane standard deviations. */
 constexpr double wanted_aspect = 0.35;
-/** Patches narrower than this ratio are not usable. */
+/** Neighbourhoods narrower than this ratio are lines. */
 constexpr double min_aspect = 0.2;
 /** A quadric that misses its points by less than this part of the radius is good
  * enough, however exact they are. */
@@ -31,6 +31,10 @@ constexpr double negligible_misfit = 1e-3;
  * surface: a ball prefers, at its rim, points whose noise brings them nearer to its
  * centre, and surfaces would look flatter than they are. */
 constexpr double ball_to_neighborhood = 1.5;
+
+/** A plane has so many points, and is thinner than this part of its radius. */
+constexpr Eigen::Index min_plane_points = 8;
+constexpr double max_thickness = 0.5;
 
 constexpr int num_quadric_terms = 6;
 constexpr int num_quartic_terms = 15;
@@ -142,7 +146,7 @@ misfit(const Regression& regression, double quadric_rss, Eigen::Index num_points
          (rss / static_cast<double>(num_points - num_quartic_terms));
 }
 
-/** Set quadric, sigma and is_usable from the neighbours in the patch's frame. */
+/** Make a patch the quadric of the neighbours in its frame, if they lie on one. */
 void
 fitQuadric(const PointRows& local,
            double aspect,
@@ -157,6 +161,18 @@ fitQuadric(const PointRows& local,
   const Vector6d moments = regression.moments.head<num_quadric_terms>();
   const Vector6d solution = matrix.ldlt().solve(moments);
   const double rss = std::max(0.0, regression.squared_heights - solution.dot(moments));
+  const double sigma =
+      std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
+  const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
+  // The test of the quadric last: it costs as much as the fit.
+  const bool is_quadric =
+      solution.allFinite() && aspect >= min_aspect &&
+      centroid_offset < options.max_centroid_offset * patch.radius &&
+      patch.radius > options.min_radius_to_noise * sigma &&
+      (sigma < negligible_misfit * patch.radius ||
+       misfit(regression, rss, num_points) < options.max_misfit);
+  if (!is_quadric)
+    return;
   const double r = 1.0 / patch.radius;
   patch.quadric = {solution[0],
                    solution[1] * r,
@@ -164,14 +180,24 @@ fitQuadric(const PointRows& local,
                    solution[3] * r * r,
                    solution[4] * r * r,
                    solution[5] * r * r};
-  patch.sigma = std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
-  const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
-  // The test of the quadric last: it costs as much as the fit.
-  patch.is_usable = solution.allFinite() && aspect >= min_aspect &&
-                    centroid_offset < options.max_centroid_offset * patch.radius &&
-                    patch.radius > options.min_radius_to_noise * patch.sigma &&
-                    (patch.sigma < negligible_misfit * patch.radius ||
-                     misfit(regression, rss, num_points) < options.max_misfit);
+  patch.sigma = sigma;
+  patch.kind = PatchKind::Quadric;
+}
+
+/** Make a patch the plane of the neighbours in its frame, if they are a surface at all.
+ */
+void
+fitPlane(const PointRows& local, const PrincipalFrame& frame, SurfacePatch& patch)
+{
+  const auto num_points = static_cast<double>(local.rows());
+  patch.quadric.fill(0.0);
+  patch.quadric[0] = local.col(2).mean();
+  patch.sigma =
+      frame.thickness * std::sqrt(num_points / std::max(1.0, num_points - 3.0));
+  const bool is_plane = local.rows() >= min_plane_points && patch.radius > 0.0 &&
+                        frame.aspect >= min_aspect &&
+                        patch.sigma < max_thickness * patch.radius;
+  patch.kind = is_plane ? PatchKind::Plane : PatchKind::None;
 }
 
 /** The \p count points around \p point that are nearest to it in the plane of the
@@ -217,7 +243,6 @@ fitPatch(const PointNeighbors& cloud,
   const int num_points = static_cast<int>(cloud.points().cols());
   SurfacePatch patch;
   patch.origin = patch.centre = point.cast<double>();
-  patch.quadric.fill(0.0);
   for (int growth = 1;; growth *= 2) {
     const int count = std::min(growth * options.num_neighbors, num_points);
     gatherNeighbors(cloud, point, count, workspace);
@@ -236,8 +261,7 @@ fitPatch(const PointNeighbors& cloud,
     const auto& squared_distances = workspace.nearest.squared_distances;
     spacing =
         squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
-    patch.sigma = frame.thickness;
-    patch.is_usable = false;
+    fitPlane(local, frame, patch);
     if (neighbors.rows() >= min_points && patch.radius > 0.0)
       fitQuadric(local, frame.aspect, options, patch);
     return patch;

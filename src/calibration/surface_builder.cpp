@@ -1,16 +1,15 @@
 #include "surface_builder.h"
 
 #include "../num_threads.h"
+#include "even_choice.h"
 #include "median.h"
 #include "patch_fit.h"
 
 #include <bayesian_icp/first_exception.h>
-#include <bayesian_icp/random.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 namespace bayesian_icp {
@@ -29,21 +28,6 @@ constexpr double max_takeover_residual = 2.5;
  * without noise. */
 constexpr double min_sigma_to_median = 0.3;
 constexpr double min_sigma_to_spacing = 1e-4;
-
-/** Columns that get a patch: all, or \p max_patches chosen at random, ascending. */
-std::vector<Index>
-chosenColumns(Index num_points, Index max_patches)
-{
-  if (num_points <= max_patches) {
-    std::vector<Index> columns(static_cast<std::size_t>(num_points));
-    std::iota(columns.begin(), columns.end(), Index(0));
-    return columns;
-  }
-  Random random(1, 0);
-  std::vector<Index> columns = randomChoice(num_points, max_patches, random);
-  std::sort(columns.begin(), columns.end());
-  return columns;
-}
 
 /** Indices that a thread takes at a time. */
 constexpr int share_size = 64;
@@ -66,6 +50,12 @@ forEachIndex(const std::vector<std::uint32_t>& order, int num_threads, const Wor
   failure.rethrow();
 }
 
+bool
+isQuadric(const SurfacePatch& patch)
+{
+  return patch.kind == PatchKind::Quadric;
+}
+
 } // namespace
 
 SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
@@ -74,7 +64,7 @@ SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
 : options_(options)
 , num_threads_(numThreadsFor(num_threads, points.cols() / share_size))
 , points_(points)
-, columns_(chosenColumns(points.cols(), options.max_patches))
+, columns_(evenChoice(points, options.max_patches))
 , patch_of_(static_cast<std::size_t>(points.cols()), KdTree::none)
 , patches_(columns_.size())
 , neighbors_(columns_.size())
@@ -117,7 +107,7 @@ SurfaceBuilder::noteNeighbors(const std::vector<std::uint32_t>& points,
 bool
 SurfaceBuilder::lacksNeighbors(std::size_t patch) const
 {
-  const std::size_t wanted = patches_[patch].is_usable ? num_pooled : num_donors;
+  const std::size_t wanted = isQuadric(patches_[patch]) ? num_pooled : num_donors;
   return neighbors_[patch].count < std::min(wanted, patches_.size());
 }
 
@@ -146,8 +136,8 @@ SurfaceBuilder::completeNeighbors()
   forEachIndex<NeighborList>(centres.alongTree(), num_threads_, searchAt);
 }
 
-/** Root mean square of the noise of usable patches around one, its own if there is
- * none. */
+/** Root mean square of the noise of quadrics around a patch, its own if there is none.
+ */
 double
 SurfaceBuilder::pooledNoise(std::size_t patch) const
 {
@@ -157,7 +147,7 @@ SurfaceBuilder::pooledNoise(std::size_t patch) const
   int used = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const SurfacePatch& neighbor = patches_[nearest.patches[k]];
-    if (neighbor.is_usable) {
+    if (isQuadric(neighbor)) {
       sum += neighbor.sigma * neighbor.sigma;
       ++used;
     }
@@ -168,22 +158,25 @@ SurfaceBuilder::pooledNoise(std::size_t patch) const
 void
 SurfaceBuilder::poolNoise()
 {
-  std::vector<double> pooled(patches_.size());
+  std::vector<double> noise(patches_.size());
   const auto count = static_cast<std::ptrdiff_t>(patches_.size());
 #pragma omp parallel for num_threads(num_threads_) schedule(static)
-  for (std::ptrdiff_t j = 0; j < count; ++j)
-    pooled[static_cast<std::size_t>(j)] = pooledNoise(static_cast<std::size_t>(j));
-  std::vector<double> usable;
+  for (std::ptrdiff_t j = 0; j < count; ++j) {
+    const auto patch = static_cast<std::size_t>(j);
+    noise[patch] =
+        isQuadric(patches_[patch]) ? pooledNoise(patch) : patches_[patch].sigma;
+  }
+  std::vector<double> of_quadrics;
   for (std::size_t j = 0; j < patches_.size(); ++j)
-    if (patches_[j].is_usable)
-      usable.push_back(pooled[j]);
-  median_sigma_ = medianOf(usable.empty() ? pooled : usable);
+    if (isQuadric(patches_[j]))
+      of_quadrics.push_back(noise[j]);
+  median_sigma_ = medianOf(of_quadrics.empty() ? noise : of_quadrics);
   const double least =
       std::max({min_sigma_to_median * median_sigma_,
                 min_sigma_to_spacing * spacing(),
                 static_cast<double>(std::numeric_limits<float>::min())});
   for (std::size_t j = 0; j < patches_.size(); ++j)
-    patches_[j].sigma = std::max(pooled[j], least);
+    patches_[j].sigma = std::max(noise[j], least);
   median_sigma_ = std::max(median_sigma_, least);
 }
 
@@ -194,9 +187,9 @@ SurfaceBuilder::takeOver()
   const auto count = static_cast<std::ptrdiff_t>(patches_.size());
 #pragma omp parallel for num_threads(num_threads_) schedule(dynamic, 1024)
   for (std::ptrdiff_t j = 0; j < count; ++j)
-    if (!patches_[static_cast<std::size_t>(j)].is_usable)
+    if (!isQuadric(patches_[static_cast<std::size_t>(j)]))
       donors[static_cast<std::size_t>(j)] = donorOf(static_cast<std::size_t>(j));
-  // Donors are usable, so none of them is overwritten.
+  // Donors are quadrics, so none of them is overwritten.
   for (std::size_t j = 0; j < patches_.size(); ++j)
     if (donors[j] != KdTree::none) {
       const Vector3d centre = patches_[j].centre;
@@ -205,7 +198,7 @@ SurfaceBuilder::takeOver()
     }
 }
 
-/** The usable patch on whose surface a point lies, or KdTree::none. */
+/** The quadric on which a point lies, or KdTree::none. */
 std::uint32_t
 SurfaceBuilder::donorOf(std::size_t patch) const
 {
@@ -214,7 +207,7 @@ SurfaceBuilder::donorOf(std::size_t patch) const
   for (std::size_t k = 0; k < neighbors_[patch].count; ++k) {
     const std::uint32_t index = neighbors_[patch].patches[k];
     const SurfacePatch& donor = patches_[index];
-    if (!donor.is_usable)
+    if (!isQuadric(donor))
       continue;
     const SurfaceOffset offset = offsetFrom(donor, patches_[patch].centre);
     const double residual = std::abs(offset.distance) / donor.sigma;

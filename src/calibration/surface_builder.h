@@ -28,16 +28,16 @@ public:
   void
   fitPatches();
 
-  /** \brief Noise of every patch from those around it. */
+  /** \brief Noise of every quadric from those around it. */
   void
   poolNoise();
 
-  /** \brief Points at edges take over the patch of a neighbour whose surface they lie
-   * on. */
+  /** \brief Points without a quadric take over that of a neighbour on which they lie.
+   */
   void
   takeOver();
 
-  /** \brief The patches' points, on their quadrics. */
+  /** \brief The patches' points, on their surface. */
   Eigen::Matrix3Xf
   projectedPoints() const;
 

@@ -1,3 +1,4 @@
+#include "even_choice.h"
 #include "surface_builder.h"
 
 #include <bayesian_icp/calibration/surface_model.h>
@@ -13,6 +14,9 @@ using Eigen::Matrix3Xf;
 using Eigen::Vector3d;
 
 namespace {
+
+/** Points of neighbourhoods, for each patch. */
+constexpr Index points_to_patches = 4;
 
 Matrix3Xd
 finiteColumns(const Matrix3Xd& points)
@@ -58,7 +62,9 @@ SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
     return;
   origin_ = finite.rowwise().mean();
   finite.colwise() -= origin_;
-  const Matrix3Xf points = finite.cast<float>();
+  const Matrix3Xf all = finite.cast<float>();
+  const Matrix3Xf points =
+      all(Eigen::all, evenChoice(all, points_to_patches * Index(options.max_patches)));
   SurfaceBuilder builder(points, options, num_threads);
   builder.fitPatches();
   builder.poolNoise();
@@ -70,7 +76,7 @@ SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
   patches_ = builder.takePatches();
   const auto num_usable =
       std::count_if(patches_.begin(), patches_.end(), [](const SurfacePatch& p) {
-        return p.is_usable;
+        return p.isUsable();
       });
   usable_fraction_ =
       static_cast<double>(num_usable) / static_cast<double>(patches_.size());

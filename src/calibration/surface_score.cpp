@@ -59,7 +59,7 @@ struct Placement {
     if (neighbor.index == KdTree::none)
       return contact;
     const SurfacePatch& patch = model.patches()[neighbor.index];
-    if (!patch.is_usable)
+    if (!patch.isUsable())
       return contact;
     const SurfaceOffset offset = offsetFrom(patch, point);
     if (offset.in_plane > SurfaceScorer::max_in_plane * patch.radius)

@@ -1,5 +1,5 @@
 /** \file
- * \brief The target as a surface: a quadric at every target point, with its noise.
+ * \brief The target as a surface: patches that cover it evenly, each with its noise.
  */
 #pragma once
 
@@ -13,8 +13,18 @@
 
 namespace bayesian_icp {
 
+/** \brief What is known of the surface around a point. */
+enum class PatchKind {
+  /** Nothing: too few points, a line, or a tangle. */
+  None,
+  /** A plane, and how rough it is: no quadric fits, or the point is at an edge. */
+  Plane,
+  /** A quadric to within the noise. */
+  Quadric
+};
+
 /** \brief A piece of surface z = a0 + a1 x + a2 y + a3 x^2 + a4 x y + a5 y^2 in its own
- * frame. */
+ * frame; a3 to a5 of a plane are zero. */
 struct SurfacePatch {
   /** Origin of the frame [m]. */
   Eigen::Vector3d origin;
@@ -27,10 +37,17 @@ struct SurfacePatch {
   Eigen::Vector3d centre;
   /** Radius of the neighbourhood that was fitted, in the plane of x and y [m]. */
   double radius;
-  /** Noise of target points across the surface, pooled over the neighbourhood [m]. */
+  /** Standard deviation of target points across the surface [m]: of a quadric their
+   * noise, pooled over neighbouring quadrics; of a plane its own roughness. */
   double sigma;
-  /** Whether distances to it mean something: not at an edge, not in a tangle. */
-  bool is_usable;
+  PatchKind kind;
+
+  /** \brief Whether distances to it mean something. */
+  bool
+  isUsable() const
+  {
+    return kind != PatchKind::None;
+  }
 };
 
 /** \brief Where a point is with respect to a patch. */
@@ -54,23 +71,24 @@ struct SurfaceModelOptions {
   /** Points of a neighbourhood; doubled where the noise or a scan line makes it thin.
    */
   int num_neighbors = 30;
-  /** Smallest ratio of radius to noise of a usable patch. */
+  /** Smallest ratio of radius to noise of a quadric. */
   double min_radius_to_noise = 3.0;
   /** Largest F statistic of a quartic against the quadric, where this misses its points
    * by more than a thousandth of the radius. */
   double max_misfit = 2.2;
   /** Largest distance of the neighbours' centroid from the point, in radii: beyond, the
-   * point is at an edge. */
+   * point is at an edge and has no quadric. */
   double max_centroid_offset = 0.28;
-  /** In-plane distance, in radii of the donor, within which a point that has no usable
-   * patch takes over its neighbour's; 0 for never. */
+  /** In-plane distance, in radii of the donor, within which a point that has no quadric
+   * takes over its neighbour's; 0 for never. */
   double takeover_radius = 0.5;
-  /** Largest number of patches; of larger targets, points evenly chosen get one (their
-   * neighbourhoods are of all points). */
+  /** Largest number of patches. Of a larger target, so many points that cover it evenly
+   * get one. Their neighbourhoods are of four times as many points, so that patches are
+   * about as wide as they are apart, whatever the density of the target. */
   int max_patches = 20000;
 };
 
-/** \brief Quadric patches of a target cloud and the tree to find them.
+/** \brief Patches that cover a target cloud evenly and the tree to find them.
  *
  * Coordinates inside are relative to origin(), so that scans far from the origin of
  * their frame (UTM) lose nothing. Building is parallel and gives the same bits for
@@ -97,29 +115,31 @@ public:
     return patches_;
   }
 
-  /** \brief Over the points of patches(), projected to their quadrics, in this order
-   * and in the model's frame. */
+  /** \brief Over the points of patches(), projected to them, in this order and in the
+   * model's frame. */
   const KdTree&
   tree() const
   {
     return tree_;
   }
 
-  /** \brief Median noise of the usable patches [m]; 0 if there is none. */
+  /** \brief Median noise of the quadrics, or of all patches if there is none [m]; 0
+   * without points. */
   double
   medianSigma() const
   {
     return median_sigma_;
   }
 
-  /** \brief Median distance of a target point to its nearest other one [m]. */
+  /** \brief Median distance of a patch's point to the nearest other one of those that
+   * neighbourhoods are of [m]. */
   double
   spacing() const
   {
     return spacing_;
   }
 
-  /** \brief Share of patches that are usable, those taken over included, in [0, 1]. */
+  /** \brief Share of patches that are usable, in [0, 1]. */
   double
   usableFraction() const
   {
