@@ -92,12 +92,12 @@ debitedInformation(const Secants& secants,
     const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
     const Vector6d step = secants.steps.col(k);
     const double mean_noise = J.solve(noise).trace();
-    const double kept =
-        result.raw[k] - (mean_noise > 0.0
+    const double debit = mean_noise > 0.0
                              ? noiseDebit(result.raw[k],
                                           mean_noise,
                                           noiseThreshold(score_covariance, noise))
-                             : 0.0);
+                             : 0.0;
+    const double kept = secants.trust[k] * (result.raw[k] - debit);
     bool& is_held = held[static_cast<std::size_t>(k)];
     is_held = kept > 0.0 &&
               kept >= min_relative_information * step.dot(prior_precision * step);

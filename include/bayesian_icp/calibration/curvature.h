@@ -13,18 +13,18 @@ namespace bayesian_icp {
 /** \brief Where and how far the curvature is measured. Twists about \p centre. */
 struct SecantPlan {
   /** Directions are the principal axes of this covariance in the displacement metric,
-   * and three of its standard deviations the length of the steps. */
+   * and three of its standard deviations the length of the steps, as far as that
+   * changes the residuals of the points that hold a direction by 0.7 to 2 of their
+   * scale. */
   Matrix6d covariance;
   /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
   Matrix6d displacement_metric;
   /** No step is longer than 1.5 prior standard deviations, 0.3 rad, or 0.6 of the
    * source's root mean square radius. */
   Matrix6d prior_precision;
-  /** Least root mean squared displacement of a step [m]: below, neighbouring patches
-   * are not told apart. */
+  /** Steps are not shortened below a fifth of this root mean squared displacement [m],
+   * unless a half of what changes the residuals by their scale is less. */
   double min_displacement;
-  /** J: a step is shortened until its secant is above its noise in this metric. */
-  Matrix6d score_covariance;
 };
 
 /** \brief Central differences of the total score along six steps. */
@@ -38,8 +38,14 @@ struct Secants {
   Vector6d unclear_displacement = Vector6d::Zero();
   /** Half the difference of the scores at +step and -step. */
   Matrix6d differences = Matrix6d::Zero();
-  /** Covariance of each difference, without what Gauss-Newton predicts of it. */
+  /** Covariance of each difference, without what the correspondences of the mode
+   * predict of it. */
   std::array<Matrix6d, 6> noise = {};
+  /** Share of each step's information that is to be trusted, in [0, 1]: less where
+   * points that hold the direction move along their surface, so that only its slopes
+   * speak of it, and nothing is left of their scores once they have met other patches.
+   */
+  Vector6d trust = Vector6d::Ones();
   /** H: symmetric, in the twists' coordinates. */
   Matrix6d curvature = Matrix6d::Zero();
   /** Evaluations of all points that were needed. */
@@ -78,9 +84,9 @@ noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise);
 
 /** \brief What is left of the curvature after its noise is debited. */
 struct DebitedInformation {
-  /** keep_k = max(0, 1 - d_k / info_k), one a step: d_k is c tr(J^-1 N_k), c of
+  /** keep_k = trust_k max(0, 1 - d_k / info_k), one a step: d_k is c tr(J^-1 N_k), c of
    * noiseThreshold(), where info_k is no more than that, falling to the noise's mean
-   * tr(J^-1 N_k) where it is three times that. */
+   * tr(J^-1 N_k) where it is three times that; trust_k is that of the secant. */
   Vector6d keep = Vector6d::Zero();
   /** info_k: information of the data along each step before the debit. */
   Vector6d raw = Vector6d::Zero();
