@@ -1,6 +1,7 @@
 #include "calibrated_pipeline.h"
 
 #include "calibration/distinct_points.h"
+#include "calibration/even_choice.h"
 #include "pipeline_parts.h"
 #include "plain_text.h"
 
@@ -21,8 +22,8 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Stream of the random choice of source points; those of chains count from 0. */
-constexpr std::uint64_t choice_stream = std::uint64_t(1) << 40;
+/** Stream of the random order of source points; those of chains count from 0. */
+constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
 /** Narrower than this, in standard deviations of the noise, a target is a line: patches
  * that are fitted to its noise would hold motions along it. */
@@ -53,6 +54,19 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   if (num_finite < min_calibrated_points)
     return failure(Status::InvalidInput, "the target has " + textOfCount(num_finite));
   return checked;
+}
+
+/** At most \p count points that cover the source evenly, in a random order. Near the
+ * sensor most points repeat each other; rotations are held by those that are far. */
+Eigen::Matrix3Xd
+evenSource(const Eigen::Matrix3Xd& points, Eigen::Index count, Random& random)
+{
+  const Eigen::Vector3d centroid = points.rowwise().mean();
+  std::vector<Eigen::Index> columns =
+      evenChoice((points.colwise() - centroid).cast<float>(), count);
+  for (std::size_t i = columns.size(); i > 1; --i)
+    std::swap(columns[i - 1], columns[random.index(i)]);
+  return points(Eigen::all, columns);
 }
 
 /** Tells that something is under way of which the length is not known. */
@@ -111,6 +125,18 @@ complaintAbout(const CalibratedEstimate& estimate, Eigen::Index num_source_point
   return std::string();
 }
 
+/** The motions that the prior alone holds, for the message; empty if there are none. */
+std::string
+whatThePriorHolds(const std::vector<DataDirection>& directions)
+{
+  std::string text;
+  for (const DataDirection& direction : directions)
+    if (direction.observability == Observability::PriorOnly)
+      text +=
+          (text.empty() ? "; held by the prior alone: " : ", ") + direction.description;
+  return text;
+}
+
 PosteriorEstimate
 estimateAndDraw(const SurfaceScorer& scorer,
                 const Prior& prior,
@@ -137,6 +163,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
     result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data =
       dataReportOf(heaviest, static_cast<std::size_t>(num_points), scorer.model());
+  result.summary.message += whatThePriorHolds(result.summary.data.directions);
   addDoubts(describeFlags(result.summary.data), result.summary);
   return result;
 }
@@ -167,13 +194,9 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
   const std::string no_surface = complaintAbout(model, distinct_points);
   if (!no_surface.empty())
     return failure(Status::TooFewCorrespondences, no_surface);
-  Random random(options.chains.seed, choice_stream);
+  Random random(options.chains.seed, order_stream);
   const SurfaceScorer scorer(
-      source_points(Eigen::all,
-                    randomChoice(source_points.cols(),
-                                 options.calibrated.max_source_points,
-                                 random)),
-      model);
+      evenSource(source_points, options.calibrated.max_source_points, random), model);
   const Prior prior = makePrior(options, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }

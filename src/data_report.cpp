@@ -96,7 +96,8 @@ flagsOf(const DataReport& report)
                         report.other_cost_ratio > max_other_cost_ratio);
   flags.low_support = !(report.active_fraction >= min_active_fraction);
   flags.few_patches = !(report.effective_patches >= min_effective_patches);
-  flags.misfit = !(report.residual_scale <= max_residual_scale);
+  flags.misfit = !(report.residual_scale <= max_residual_scale &&
+                   report.mean_cost_ratio <= max_mean_cost_ratio);
   flags.no_information =
       std::all_of(report.directions.begin(),
                   report.directions.end(),
@@ -150,11 +151,18 @@ describeFlags(const DataReport& report)
         "the pose is held by about %.0f independent patches of surface (at least %.0f)",
         report.effective_patches,
         min_effective_patches));
-  if (report.flags.misfit)
+  if (report.flags.misfit && !(report.residual_scale <= max_residual_scale))
     texts.push_back(formatted("the surfaces disagree by more than the noise: residuals "
                               "of %.1f times the target's noise (at most %.0f)",
                               report.residual_scale,
                               max_residual_scale));
+  if (report.flags.misfit && !(report.mean_cost_ratio <= max_mean_cost_ratio))
+    texts.push_back(
+        formatted("residuals at the mean are %.2f times those at the best pose "
+                  "(at most %.2f): the data may hold a motion that is left "
+                  "to the prior",
+                  report.mean_cost_ratio,
+                  max_mean_cost_ratio));
   if (report.flags.no_information)
     texts.push_back(formatted(
         "the data hold none of the six motions: along each the posterior is at least "

@@ -31,8 +31,7 @@ constexpr double icp_to_prior_scale = 0.25;
  * which the first secants are planned. */
 constexpr double points_to_prior = 0.2;
 
-/** Least displacement of a secant's steps, in the target's noise: more of it flattens
- * Tukey's score, less makes the secants noisy. */
+/** SecantPlan::min_displacement in the target's noise. */
 constexpr double min_step_to_noise = 0.5;
 
 /** Directions with less information, in units of the prior's, are held by the prior
@@ -167,6 +166,8 @@ atMode(const SurfaceScorer& scorer,
   PatchHints hints;
   scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
   e.prior = twistPrior(prior, e.mode, e.centre);
+  e.prior_about_origin =
+      twistPrior(Prior(prior.mean(), prior.variance()), e.mode, e.centre);
   e.displacement_metric = displacementMetric(scorer, e.mode);
   return e;
 }
@@ -204,8 +205,7 @@ measureCurvature(const SurfaceScorer& scorer,
     const SecantPlan plan = {e.covariance,
                              e.displacement_metric,
                              e.prior.precision,
-                             min_step_to_noise * noise,
-                             J};
+                             min_step_to_noise * noise};
     secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
     num_evaluations += secants.num_evaluations;
     debited = debit(secants, J, e);
@@ -237,8 +237,12 @@ estimateCalibrated(const SurfaceScorer& scorer,
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
   const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
+  PatchHints hints;
+  SurfaceScores at_mean;
+  scorer.evaluate(movedBy(e.mean, e.centre, e.mode), e.centre, tau, hints, at_mean);
+  e.mean_cost_ratio = meanCappedResidual(at_mean) / e.cost;
   e.num_queries =
-      ends.num_queries + num_points * (mode.num_evaluations + 1 + num_evaluations);
+      ends.num_queries + num_points * (mode.num_evaluations + 2 + num_evaluations);
   return e;
 }
 

@@ -106,6 +106,31 @@ directionsOf(const CalibratedEstimate& estimate)
   return directions;
 }
 
+/** Motions that the prior alone holds, one a column. */
+Axes
+freeAxes(const std::vector<DataDirection>& directions)
+{
+  Axes free(6, 0);
+  for (const DataDirection& direction : directions)
+    if (direction.observability == Observability::PriorOnly) {
+      free.conservativeResize(6, free.cols() + 1);
+      free.rightCols<1>() = direction.twist;
+    }
+  return free;
+}
+
+/** Least squared length of \p twist in \p metric after any motion along \p free. */
+double
+squaredLengthBeyond(const Axes& free, const Vector6d& twist, const Matrix6d& metric)
+{
+  double squared = twist.dot(metric * twist);
+  if (free.cols() > 0) {
+    const Eigen::VectorXd part = free.transpose() * metric * twist;
+    squared -= part.dot((free.transpose() * metric * free).ldlt().solve(part));
+  }
+  return squared < 0.0 ? 0.0 : squared;
+}
+
 /** Mahalanobis distance of the two ends: they may differ by a part of the noise, and
  * freely along what is held by the prior only. */
 double
@@ -115,20 +140,8 @@ basinDistance(const CalibratedEstimate& estimate, const DataReport& report)
   const Matrix6d spread =
       estimate.covariance +
       tolerance * tolerance * estimate.displacement_metric.inverse();
-  const Vector6d whitened = spread.ldlt().solve(estimate.other_end);
-  double squared = estimate.other_end.dot(whitened);
-  Axes free(6, 0);
-  for (const DataDirection& direction : report.directions)
-    if (direction.observability == Observability::PriorOnly) {
-      free.conservativeResize(6, free.cols() + 1);
-      free.rightCols<1>() = direction.twist;
-    }
-  if (free.cols() > 0) {
-    const Eigen::MatrixXd weight = free.transpose() * spread.ldlt().solve(free);
-    const Eigen::VectorXd part = free.transpose() * whitened;
-    squared -= part.dot(weight.ldlt().solve(part));
-  }
-  return squared < 0.0 ? 0.0 : std::sqrt(squared);
+  return std::sqrt(squaredLengthBeyond(
+      freeAxes(report.directions), estimate.other_end, spread.inverse()));
 }
 
 /** Probability that a chi-square variate of \p degrees of freedom is above \p x. */
@@ -147,19 +160,18 @@ double
 priorProbability(const CalibratedEstimate& estimate,
                  const std::vector<DataDirection>& directions)
 {
-  const Vector6d deviation = estimate.prior.deviation + estimate.mean;
-  int num_held = 0;
-  double squared_distance = 0.0;
-  for (const DataDirection& direction : directions) {
-    if (direction.observability == Observability::PriorOnly)
-      continue;
-    // Directions are independent in the prior.
-    const double part = direction.prior_standard_deviation *
-                        direction.twist.dot(estimate.prior.precision * deviation);
-    squared_distance += part * part;
-    ++num_held;
-  }
-  return num_held == 0 ? 1.0 : chiSquareTail(num_held, squared_distance);
+  const Axes free = freeAxes(directions);
+  const auto num_held = static_cast<int>(6 - free.cols());
+  if (num_held == 0)
+    return 1.0;
+  const auto probability = [&](const TwistPrior& prior) {
+    const Vector6d deviation = prior.deviation + estimate.mean;
+    return chiSquareTail(num_held,
+                         squaredLengthBeyond(free, deviation, prior.precision));
+  };
+  // In this order, what is not a number stays.
+  return std::max(probability(estimate.prior),
+                  probability(estimate.prior_about_origin));
 }
 
 } // namespace
@@ -180,6 +192,7 @@ dataReportOf(const CalibratedEstimate& estimate,
   report.correlation_factor = estimate.kappa_inf;
   report.degrees_of_freedom = estimate.degrees_of_freedom;
   report.other_cost_ratio = estimate.other_cost_ratio;
+  report.mean_cost_ratio = estimate.mean_cost_ratio;
   report.centre = estimate.centre;
   report.directions = directionsOf(estimate);
   report.basin_distance = basinDistance(estimate, report);

@@ -36,6 +36,9 @@ struct CalibratedEstimate {
   /** Lambda = T^T H J^-1 H T. */
   Matrix6d information = Matrix6d::Zero();
   TwistPrior prior;
+  /** The same numbers about the origin of the source frame: a guess is often wrong by
+   * an error of the sensor's pose. */
+  TwistPrior prior_about_origin;
   /** Sigma = (Lambda + P)^-1. */
   Matrix6d covariance = Matrix6d::Identity();
   /** Twist from the mode to the posterior mean. */
@@ -55,6 +58,8 @@ struct CalibratedEstimate {
   /** meanCappedResidual() at the other start's end, in units of that at the better one;
    * at least 1. */
   double other_cost_ratio = 1.0;
+  /** meanCappedResidual() at the posterior mean, in units of that at the mode. */
+  double mean_cost_ratio = 1.0;
   /** Nearest-neighbour queries used. */
   long num_queries = 0;
 };
