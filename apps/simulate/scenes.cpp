@@ -38,7 +38,12 @@ sceneMakers()
       {"room", makeRoom},
       {"ground", makeGround},
       {"car", makeCar},
-      {"tree", makeTree}};
+      {"tree", makeTree},
+      {"street", makeStreet},
+      {"office_floor", makeOfficeFloor},
+      {"forest", makeForest},
+      {"bare_ground", makeBareGround},
+      {"tunnel", makeTunnel}};
   return makers;
 }
 
