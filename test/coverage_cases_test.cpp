@@ -146,6 +146,17 @@ TEST(LidarCases, MoveDuringTheScansThatSaySo)
   EXPECT_LT(distance, 0.5) << "at most a quarter of a way of 2 m";
 }
 
+TEST(LidarCases, HaveAnotherStartForEverySeed)
+{
+  const CoverageCase first = makeCoverageCase("tunnel", "lidar16", 1);
+  const CoverageCase again = makeCoverageCase("tunnel", "lidar16", 1);
+  const CoverageCase other = makeCoverageCase("tunnel", "lidar16", 2);
+  EXPECT_TRUE(first.source == again.source && first.target == again.target);
+  EXPECT_EQ(first.truth.matrix(), again.truth.matrix());
+  EXPECT_GT((first.target.rowwise().mean() - other.target.rowwise().mean()).norm(),
+            0.1);
+}
+
 TEST(LidarCases, GoOnByTheStatedWay)
 {
   const CoverageSetup setup = coverageSetup("street");

@@ -73,8 +73,9 @@ TEST(CarLidar, HasEvenlySpreadRings)
     for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
       const Vector3d point = scan.points.col(i);
       const double elevation = std::asin(point.z() / point.norm()) / degree;
-      const auto ring = static_cast<double>(i / 180);
-      ASSERT_NEAR(elevation, lowest + 30.0 * ring / (rings - 1), 1e-9);
+      const Eigen::Index ring = i / 180;
+      ASSERT_NEAR(
+          elevation, lowest + 30.0 / (rings - 1) * static_cast<double>(ring), 1e-9);
     }
   }
   EXPECT_THROW(carLidar(17), std::invalid_argument);

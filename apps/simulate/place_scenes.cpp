@@ -77,8 +77,9 @@ void
 addFurniture(std::vector<ScenePart>& parts)
 {
   for (int room = 0; room < 18; ++room) {
-    const double x = 4.0 * (room / 2) - 16.0;
-    const double side = room % 2 == 0 ? 1.0 : -1.0;
+    const bool is_right = room % 2 == 1;
+    const double side = is_right ? -1.0 : 1.0;
+    const double x = 2.0 * (is_right ? room - 1 : room) - 16.0;
     const Vector3d desk(
         x - 0.8 + 0.3 * (room % 5), side * (3.2 + 0.4 * (room % 4)), 0.74);
     parts.push_back(plateOnLegs("desk", desk, 0.8, 0.4));
