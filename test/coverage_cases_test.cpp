@@ -124,6 +124,55 @@ TEST_P(EveryCoverageScene, LiesOnItsSurfacesAtTheTruth)
   }
 }
 
+TEST(LidarCases, LieOnTheirSurfacesAtTheTruth)
+{
+  for (const std::string& scene_name : lidarScenes()) {
+    const simulator::Scene scene = simulator::makeScene(scene_name);
+    const CoverageCase made = makeCoverageCase(scene_name, "lidar16", 1);
+    EXPECT_GT(made.source.cols(), 8000) << scene_name;
+    // Noise grows at a slant as the distance shrinks, so half are below 0.67 standard
+    // deviations of noise and offset together, 0.022 m.
+    EXPECT_LT(medianDistance(scene, made.truth * made.source), 0.02) << scene_name;
+    EXPECT_LT(medianDistance(scene, made.target), 0.02) << scene_name;
+  }
+}
+
+TEST(LidarCases, MoveDuringTheScansThatSaySo)
+{
+  const simulator::Scene scene = simulator::makeScene("street");
+  const CoverageCase made = makeCoverageCase("street", "lidar64_sweep", 1);
+  const double distance = medianDistance(scene, made.truth * made.source);
+  EXPECT_GT(distance, 0.02);
+  EXPECT_LT(distance, 0.5) << "at most a quarter of a way of 2 m";
+}
+
+TEST(LidarCases, HaveAnotherStartForEverySeed)
+{
+  const CoverageCase first = makeCoverageCase("tunnel", "lidar16", 1);
+  const CoverageCase again = makeCoverageCase("tunnel", "lidar16", 1);
+  const CoverageCase other = makeCoverageCase("tunnel", "lidar16", 2);
+  EXPECT_TRUE(first.source == again.source && first.target == again.target);
+  EXPECT_EQ(first.truth.matrix(), again.truth.matrix());
+  EXPECT_GT((first.target.rowwise().mean() - other.target.rowwise().mean()).norm(),
+            0.1);
+}
+
+TEST(LidarCases, GoOnByTheStatedWay)
+{
+  const CoverageSetup setup = coverageSetup("street");
+  Random random(1, 0);
+  for (int i = 0; i < 1000; ++i) {
+    const DrivenViews views = drivenViews(setup, random);
+    const Vector3d way = views.source.eye - views.target.eye;
+    EXPECT_GE(way.norm(), 0.5);
+    EXPECT_LE(way.norm(), 2.0);
+    EXPECT_LE(std::abs(views.target.eye.x() - setup.view.eye.x()), 8.0);
+    const Vector3d before = views.target.look_at - views.target.eye;
+    const Vector3d after = views.source.look_at - views.source.eye;
+    EXPECT_LE(std::acos(std::min(before.dot(after), 1.0)), 0.07 + 1e-7);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          EveryCoverageScene,
                          testing::ValuesIn(allScenes()),
@@ -158,6 +207,8 @@ TEST(CoverageCases, AreRefusedIfUnknown)
   EXPECT_THROW(makeCoverageCase("moon", "same", 1), std::invalid_argument);
   EXPECT_THROW(makeCoverageCase("corridor", "same", 1), std::invalid_argument);
   EXPECT_THROW(makeCoverageCase("bowl", "rain", 1), std::invalid_argument);
+  EXPECT_THROW(makeCoverageCase("bowl", "lidar16", 1), std::invalid_argument);
+  EXPECT_THROW(makeCoverageCase("street", "same", 1), std::invalid_argument);
 }
 
 TEST(CoverageCases, DrawTheTruthFromThePrior)

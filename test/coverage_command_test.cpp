@@ -42,10 +42,21 @@ TEST_F(CoverageCommand, RunsOnceAndDrawsThePlots)
   }
 }
 
+TEST_F(CoverageCommand, RunsScenesWithTheirOwnConditions)
+{
+  const CommandResult result = run("--scenes street,tool --conditions lidar16,same "
+                                   "--seeds 1 --methods prior --output a.csv");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("2 of 2 cases"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("street, lidar16\n"), std::string::npos);
+  EXPECT_NE(result.output.find("tool, same\n"), std::string::npos);
+}
+
 TEST_F(CoverageCommand, BadOptionsExitWithTwo)
 {
   for (const char* arguments : {"--scenes nowhere",
                                 "--conditions sunny",
+                                "--scenes street --conditions same",
                                 "--methods guessing",
                                 "--seeds 0",
                                 "--seeds x",

@@ -118,6 +118,9 @@ TEST_F(SimulateCommand, RefusesBadArgumentsAndWritesNothing)
                                 "--scene can --target-look-at 0,-0.62,0.32",
                                 "--scene can --target-look-at 0,-5,0",
                                 "--scene can --sensor sonar",
+                                "--scene street --sensor lidar12",
+                                "--scene street --sweep-motion 2",
+                                "--scene can --sweep-motion 0.5",
                                 "--scene can --frame world",
                                 "--scene can --quantisation fine",
                                 "--scene room --quantisation kinect",
@@ -179,6 +182,8 @@ TEST_F(SimulateCommand, RecordsACommandLineThatMakesThePairAgain)
         "--scene room --range-noise 0.01 --noise 2 --rings 8 --min-elevation -20 "
         "--max-elevation 5 --azimuth-step 1.5 --max-range 4 --same-view --frame object "
         "--offset 0.1,0,-0.05,0,0.02,-0.3 --dropout-from 70",
+        "--scene street --sensor lidar64 --azimuth-step 2 --sweep-motion 1 "
+        "--ring-offset 0.02 --sensor-seed 7 --incidence-noise 0",
         "--scene carton --noise-correlation 0.5 --noise-correlation-pixels 4 "
         "--incidence-noise 1.5"}) {
     ASSERT_EQ(simulate(arguments + " -o " + first).exit_code, 0);

@@ -11,7 +11,7 @@
 /** \brief One degree [rad]. */
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-/** \brief Default options of a scene, without noise and with few rays. */
+/** \brief Default options of a scene, without noise or offsets and with few rays. */
 inline bayesian_icp::simulator::SimulationOptions
 cleanOptions(const std::string& scene)
 {
@@ -20,6 +20,7 @@ cleanOptions(const std::string& scene)
   options.sensor.camera.width = 160;
   options.sensor.camera.height = 120;
   options.sensor.lidar.azimuth_step = 2.0;
+  options.sensor.lidar.ring_offset = 0.0;
   return options;
 }
 

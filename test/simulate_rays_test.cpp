@@ -85,6 +85,8 @@ TEST(SensorOptions, OutsideTheirRangeAreRefusedByName)
       {"max-elevation", [](SensorOptions& o) { o.lidar.max_elevation = -20.0; }},
       {"azimuth-step", [](SensorOptions& o) { o.lidar.azimuth_step = 0.0; }},
       {"range-noise", [](SensorOptions& o) { o.lidar.range_noise = NAN; }},
+      {"ring-offset", [](SensorOptions& o) { o.lidar.ring_offset = -0.01; }},
+      {"azimuth-phase", [](SensorOptions& o) { o.lidar.azimuth_phase = 1.5; }},
       {"noise", [](SensorOptions& o) { o.noise = INFINITY; }},
       {"noise-correlation", [](SensorOptions& o) { o.noise_correlation = 1.1; }},
       {"noise-correlation-pixels",

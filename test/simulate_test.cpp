@@ -26,13 +26,16 @@ class EveryScene : public testing::TestWithParam<std::string> {};
 TEST_P(EveryScene, DistanceNeverReachesBeyondASurface)
 {
   const Scene scene = makeScene(GetParam());
-  const Vector3d eye = defaultOptions(GetParam()).target_view.eye;
+  const SimulationOptions options = defaultOptions(GetParam());
+  const Vector3d eye = options.target_view.eye;
+  // Scenes to drive through are wider than the eye is high.
+  const double spread = options.sensor.max_range > 50.0 ? 8.0 : 0.2 * eye.norm();
   Random random(1, 0);
   const auto normals = [&random] {
     return Vector3d(random.normal(), random.normal(), random.normal());
   };
   for (int trial = 0; trial < 20000; ++trial) {
-    const Vector3d point = eye * random.uniform() + 0.2 * eye.norm() * normals();
+    const Vector3d point = eye * random.uniform() + spread * normals();
     const double distance = scene.distance(point);
     if (distance <= 0.0)
       continue;
@@ -102,6 +105,9 @@ TEST(SimulatedScenes, HaveTheirStatedSizes)
   EXPECT_NEAR(makeScene("car").distance({1.35, 0.0, 0.2}), 0.1, 1e-15);
   EXPECT_NEAR(makeScene("car").distance({1.35, 0.5, 0.2}), 0.1, 1e-15);
   EXPECT_NEAR(makeScene("tree").distance({0.0, 1.0, 2.0}), 0.8, 1e-15);
+  EXPECT_NEAR(makeScene("tunnel").distance({7.0, 3.0, 1.5}), 1.5, 1e-15);
+  EXPECT_NEAR(makeScene("office_floor").distance({2.0, 0.5, 1.0}), 0.7, 1e-15);
+  EXPECT_NEAR(makeScene("office_floor").distance({0.0, 1.26, 1.0}), 0.45, 1e-15);
   EXPECT_THROW(makeScene("moon"), std::invalid_argument);
 }
 

@@ -52,12 +52,10 @@ RayDraws::RayDraws(Random& random)
 , outlier_offset(2.0 * random.uniform() - 1.0)
 {}
 
-Beams::Beams(const Scene& scene,
-             const SensorOptions& options,
-             const Eigen::Isometry3d& T_world_sensor)
+Beams::Beams(const Scene& scene, const SensorOptions& options, const ScanState& state)
 : scene_(scene)
 , options_(options)
-, T_world_sensor_(T_world_sensor)
+, state_(state)
 {}
 
 std::optional<Vector3d>
@@ -68,26 +66,27 @@ Beams::measure(int row, int column, const RayDraws& draws) const
   const bool is_camera = options_.kind == SensorKind::DepthCamera;
   // The centre of pixel 0 lies half a pixel inside the image; a ring is never
   // displaced.
-  const Vector3d direction = is_camera
-                                 ? cameraDirection(options_.camera, x + 0.5, y + 0.5)
-                                 : lidarDirection(options_.lidar, x, row);
+  const Vector3d direction =
+      is_camera ? cameraDirection(options_.camera, x + 0.5, y + 0.5)
+                : lidarDirection(options_.lidar, x + state_.azimuth_phase, row);
   const bool is_displaced = is_camera && options_.camera.lateral_noise > 0.0;
-  const auto hit =
-      is_displaced ? castDisplaced(x + 0.5, y + 0.5, draws) : cast(direction);
+  const auto hit = is_displaced ? castDisplaced(x + 0.5, y + 0.5, column, draws)
+                                : cast(direction, column);
   if (!hit)
     return std::nullopt;
-  const auto reading = disturbed(*hit, draws);
+  const auto reading = disturbed(*hit, row, draws);
   if (!reading)
     return std::nullopt;
   return *reading * direction;
 }
 
 std::optional<Beams::Hit>
-Beams::cast(const Vector3d& direction) const
+Beams::cast(const Vector3d& direction, int column) const
 {
+  const Eigen::Isometry3d& T_world_sensor = state_.T_world_sensor[column];
   const double length = direction.norm();
-  const Ray ray{T_world_sensor_.translation(),
-                T_world_sensor_.linear() * (direction / length)};
+  const Ray ray{T_world_sensor.translation(),
+                T_world_sensor.linear() * (direction / length)};
   const auto range = castRay(scene_, ray, options_.max_range * length);
   if (!range)
     return std::nullopt;
@@ -97,27 +96,28 @@ Beams::cast(const Vector3d& direction) const
 }
 
 std::optional<Beams::Hit>
-Beams::castDisplaced(double x, double y, const RayDraws& draws) const
+Beams::castDisplaced(double x, double y, int column, const RayDraws& draws) const
 {
   const DepthCameraOptions& camera = options_.camera;
-  const auto undisplaced = cast(cameraDirection(camera, x, y));
+  const auto undisplaced = cast(cameraDirection(camera, x, y), column);
   const double angle = undisplaced ? undisplaced->angle_of_incidence : 0.0;
   // The formula has a pole at 90 degrees, far beyond what was measured.
   const double clipped = std::min(angle, 80.0 * radians_per_degree);
   const double sigma =
       camera.lateral_noise * (0.8 + 0.035 * clipped / (0.5 * pi - clipped));
-  return cast(cameraDirection(
-      camera, x + sigma * draws.lateral_x, y + sigma * draws.lateral_y));
+  return cast(
+      cameraDirection(camera, x + sigma * draws.lateral_x, y + sigma * draws.lateral_y),
+      column);
 }
 
 std::optional<double>
-Beams::disturbed(const Hit& hit, const RayDraws& draws) const
+Beams::disturbed(const Hit& hit, int row, const RayDraws& draws) const
 {
   if (isLost(hit.angle_of_incidence, draws))
     return std::nullopt;
   const double sigma = readingSigma(options_, hit.reading) *
                        incidenceFactor(options_, hit.angle_of_incidence);
-  double reading = hit.reading + sigma * draws.reading;
+  double reading = hit.reading + sigma * draws.reading + state_.offsets[row];
   if (draws.outlier < options_.outliers)
     reading += options_.outlier_spread * draws.outlier_offset;
   reading = quantised(reading);

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <optional>
+#include <vector>
 
 namespace bayesian_icp {
 namespace simulator {
@@ -34,12 +35,20 @@ struct RayDraws {
   double outlier_offset;
 };
 
-/** \brief The rays of a sensor at a pose in a scene. Keeps references to all three. */
+/** \brief What the rays of one scan have in common. */
+struct ScanState {
+  /** Pose of the sensor as it takes each column. */
+  std::vector<Eigen::Isometry3d> T_world_sensor;
+  /** Added to the readings of each row [m]. */
+  std::vector<double> offsets;
+  /** Turns all rays of a LiDAR [azimuth steps]. */
+  double azimuth_phase = 0.0;
+};
+
+/** \brief The rays of a sensor in a scene. Keeps references to all three. */
 class Beams {
 public:
-  Beams(const Scene& scene,
-        const SensorOptions& options,
-        const Eigen::Isometry3d& T_world_sensor);
+  Beams(const Scene& scene, const SensorOptions& options, const ScanState& state);
 
   /** \brief The measured point of one ray in the sensor frame [m], if there is one. */
   std::optional<Eigen::Vector3d>
@@ -55,14 +64,14 @@ private:
   /** \param[in] direction in the sensor frame, scaled such that the reading times the
    *            direction is the point: of unit depth (camera) or unit length (LiDAR) */
   std::optional<Hit>
-  cast(const Eigen::Vector3d& direction) const;
+  cast(const Eigen::Vector3d& direction, int column) const;
 
   /** \brief Where the ray that belongs to a pixel hits after lateral noise. */
   std::optional<Hit>
-  castDisplaced(double x, double y, const RayDraws& draws) const;
+  castDisplaced(double x, double y, int column, const RayDraws& draws) const;
 
   std::optional<double>
-  disturbed(const Hit& hit, const RayDraws& draws) const;
+  disturbed(const Hit& hit, int row, const RayDraws& draws) const;
 
   bool
   isLost(double angle_of_incidence, const RayDraws& draws) const;
@@ -72,7 +81,7 @@ private:
 
   const Scene& scene_;
   const SensorOptions& options_;
-  const Eigen::Isometry3d& T_world_sensor_;
+  const ScanState& state_;
 };
 
 } // namespace simulator

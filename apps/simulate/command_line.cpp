@@ -68,14 +68,23 @@ takeKindOfSensor(const GivenOptions& given, SensorOptions& sensor)
 {
   if (!given.has("sensor"))
     return;
-  const SensorKind default_kind = sensor.kind;
   const std::string name = given.text("sensor");
+  for (const int rings : {16, 32, 64, 128})
+    if (name == "lidar" + std::to_string(rings)) {
+      sensor = carLidar(rings);
+      return;
+    }
   if (name != "depth-camera" && name != "lidar")
-    throw std::invalid_argument("--sensor is depth-camera or lidar, not '" + name +
-                                "'");
-  sensor.kind = name == "lidar" ? SensorKind::Lidar : SensorKind::DepthCamera;
-  if (sensor.kind != default_kind)
-    sensor.max_range = sensor.kind == SensorKind::Lidar ? 30.0 : 5.0;
+    throw std::invalid_argument("--sensor is depth-camera, lidar, lidar16, lidar32, "
+                                "lidar64 or lidar128, not '" +
+                                name + "'");
+  const SensorKind kind = name == "lidar" ? SensorKind::Lidar : SensorKind::DepthCamera;
+  if (sensor.kind == kind)
+    return;
+  sensor = SensorOptions();
+  sensor.kind = kind;
+  if (kind == SensorKind::Lidar)
+    sensor.max_range = 30.0;
 }
 
 void
@@ -108,6 +117,9 @@ takeSensor(const GivenOptions& given, SensorOptions& sensor)
   given.takeNumber("max-elevation", sensor.lidar.max_elevation);
   given.takeNumber("azimuth-step", sensor.lidar.azimuth_step);
   given.takeNumber("range-noise", sensor.lidar.range_noise);
+  given.takeNumber("ring-offset", sensor.lidar.ring_offset);
+  given.takeNumber("sensor-seed", sensor.lidar.sensor_seed);
+  given.takeNumber("azimuth-phase", sensor.lidar.azimuth_phase);
   given.takeNumber("noise", sensor.noise);
   given.takeNumber("noise-correlation", sensor.noise_correlation);
   given.takeNumber("noise-correlation-pixels", sensor.noise_correlation_pixels);
@@ -130,6 +142,7 @@ takeViews(const GivenOptions& given, SimulationOptions& options)
   given.takeVector("source-eye", options.source_view.eye);
   given.takeVector("source-look-at", options.source_view.look_at);
   given.takeVector("offset", options.offset);
+  given.takeNumber("sweep-motion", options.sweep_motion);
   if (!given.has("frame"))
     return;
   const std::string frame = given.text("frame");

@@ -44,6 +44,21 @@ movingLidar(const std::string& scene, const View& target_view, const View& sourc
   return options;
 }
 
+/** \brief A LiDAR of 16 rings on a roof that goes on along the x axis by 1 m and turns
+ * a little to the left. */
+SimulationOptions
+drivenLidar(const std::string& scene, const Vector3d& eye)
+{
+  SimulationOptions options;
+  options.scene = scene;
+  options.sensor = carLidar(16);
+  options.target_view = {eye, eye + Vector3d::UnitX()};
+  options.source_view = {eye + Vector3d(1.0, 0.02, 0.0),
+                         eye + Vector3d(2.0, 0.06, 0.0)};
+  options.frame = CloudFrame::Sensor;
+  return options;
+}
+
 /** \brief A camera carried on a little between target and source. */
 SimulationOptions
 movingCamera(const std::string& scene, const View& target_view, const View& source_view)
@@ -81,6 +96,12 @@ defaultOptions(const std::string& scene)
     return movingLidar(scene,
                        {{-3.5, -3.0, 1.8}, {-2.5, -2.0, 1.8}},
                        {{-3.1, -2.9, 1.8}, {-2.2, -1.8, 1.8}});
+  if (scene == "street" || scene == "tunnel")
+    return drivenLidar(scene, {0.0, -1.5, 1.8});
+  if (scene == "forest" || scene == "bare_ground")
+    return drivenLidar(scene, {0.0, 0.0, 2.0});
+  if (scene == "office_floor")
+    return drivenLidar(scene, {0.0, 0.0, 1.0});
   if (scene == "table_top")
     return cameraOnObject(scene, {0.0, -0.2, 0.5}, {0.04, -0.22, 0.5});
   if (scene == "table" || scene == "table_plate")

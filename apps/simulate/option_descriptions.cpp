@@ -52,6 +52,13 @@ viewOptions()
       text("X,Y,Z,ROLL,PITCH,YAW"),
       "pose [m, rad] whose inverse moves the source before it is written; "
       "with --frame object it is the true source-to-target pose");
+  group.add_options()(
+      "sweep-motion",
+      text("PART"),
+      "lidar: part of the motion from the target's to the source's view, 0 to 1, that "
+      "the sensor makes at constant velocity while it turns once, from the back to the "
+      "back; nothing corrects the points, and the true pose is that of the middle of "
+      "both turns. 1: the two scans follow each other at once (default 0)");
   return group;
 }
 
@@ -60,26 +67,40 @@ sensorOptions()
 {
   po::options_description group("Sensor");
   group.add_options()(
-      "sensor", text("KIND"), "depth-camera or lidar (default depends on the scene)");
+      "sensor",
+      text("KIND"),
+      "depth-camera, lidar, or a spinning lidar as on a car's roof: lidar16, lidar32 "
+      "(-15 to 15 degrees, every 0.2), lidar64, lidar128 (-25 to 5 degrees, every "
+      "0.25), 1 to 80 m, --incidence-noise 1 --ring-offset 0.01 --azimuth-phase 1; the "
+      "other "
+      "options change each of these (default depends on the scene)");
   group.add_options()("width", text("N"), "camera: columns [pixels] (default 640)");
   group.add_options()("height", text("N"), "camera: rows [pixels] (default 480)");
   group.add_options()(
       "fov", text("DEG"), "camera: horizontal field of view [degrees] (default 57)");
   group.add_options()(
-      "rings", text("N"), "lidar: rings (default 16; scenes with a lidar 32)");
+      "rings", text("N"), "lidar: rings (default 16; most scenes with a lidar 32)");
   group.add_options()(
       "min-elevation",
       text("DEG"),
-      "lidar: lowest ring [degrees] (default -15; scenes with a lidar -30)");
+      "lidar: lowest ring [degrees] (default -15; most scenes with a lidar -30)");
   group.add_options()(
       "max-elevation",
       text("DEG"),
-      "lidar: highest ring [degrees] (default 15; scenes with a lidar 10)");
+      "lidar: highest ring [degrees] (default 15; most scenes with a lidar 10)");
   group.add_options()(
       "azimuth-step", text("DEG"), "lidar: between rays [degrees] (default 0.4)");
-  group.add_options()("min-range", text("M"), "nearest reading [m] (default 0.3)");
+  group.add_options()("azimuth-phase",
+                      text("PART"),
+                      "lidar: turn all rays of a scan by a random part of an azimuth "
+                      "step, up to this one, 0 to 1 (default 0)");
+  group.add_options()("min-range",
+                      text("M"),
+                      "nearest reading [m] (default 0.3; lidar16 to lidar128 1)");
   group.add_options()(
-      "max-range", text("M"), "farthest reading [m] (default: camera 5, lidar 30)");
+      "max-range",
+      text("M"),
+      "farthest reading [m] (default: camera 5, lidar 30, lidar16 to lidar128 80)");
   return group;
 }
 
@@ -117,6 +138,13 @@ po::options_description
 errorOptions()
 {
   po::options_description group("Other errors of the sensor");
+  group.add_options()("ring-offset",
+                      text("M"),
+                      "lidar: standard deviation of the rings' constant offsets of the "
+                      "range [m], the same in both scans (default 0)");
+  group.add_options()("sensor-seed",
+                      text("N"),
+                      "lidar: seed of these offsets, 0 .. 2^64-1 (default 1)");
   group.add_options()("lateral-noise",
                       text("FACTOR"),
                       "camera: factor on the noise across the ray, about 0.8 pixels "

@@ -13,6 +13,12 @@ using Eigen::Vector3d;
 
 namespace {
 
+double
+bodyDistance(const Vector3d& point)
+{
+  return boxDistance(point, {-2.2, -0.9, 0.3}, {2.2, 0.9, 0.8});
+}
+
 /** \brief Cabin of the car: a prism along y whose front and rear windows slope. */
 double
 cabinDistance(const Vector3d& point)
@@ -37,13 +43,19 @@ wheelDistance(const Vector3d& point)
 
 } // namespace
 
+double
+carDistance(const Vector3d& point)
+{
+  return std::min({bodyDistance(point), cabinDistance(point), wheelDistance(point)});
+}
+
 Scene
 makeCar()
 {
   return {"a car, 4.4 m x 1.8 m x 1.45 m, on the ground",
           "nothing",
           {floorPart("ground"),
-           box("body", {-2.2, -0.9, 0.3}, {2.2, 0.9, 0.8}),
+           {"body", bodyDistance},
            {"cabin", cabinDistance},
            {"wheels", wheelDistance}}};
 }

@@ -34,6 +34,64 @@ plateOnLegs(const std::string& name,
   return {name, distance};
 }
 
+/** \brief Moves the point to the half room that stands for all rooms of office_floor.
+ */
+Vector3d
+foldedIntoRoom(const Vector3d& point)
+{
+  constexpr double room_width = 4.0;
+  const double along = point.x() - room_width * std::round(point.x() / room_width);
+  return {std::abs(along), std::abs(point.y()), point.z()};
+}
+
+/** \brief The empty space of a door of office_floor. */
+double
+doorwayDistance(const Vector3d& folded)
+{
+  return boxDistance(folded, {-0.45, 0.0, -1.0}, {0.45, 2.0, 2.1});
+}
+
+/** \brief The walls of office_floor along its corridor, with a door to each room, and
+ * between its rooms. */
+double
+partitionDistance(const Vector3d& point)
+{
+  const Vector3d folded = foldedIntoRoom(point);
+  const double beside_corridor =
+      boxDistance(folded, {-1.0, 1.2, 0.0}, {2.0, 1.32, 2.8});
+  const double between_rooms = boxDistance(folded, {1.94, 1.2, 0.0}, {2.06, 6.3, 2.8});
+  return std::min(std::max(beside_corridor, -doorwayDistance(folded)), between_rooms);
+}
+
+/** \brief The frames of its doors, which stand out by 0.03 m. */
+double
+doorFrameDistance(const Vector3d& point)
+{
+  const Vector3d folded = foldedIntoRoom(point);
+  const double outside = boxDistance(folded, {-0.53, 1.17, 0.0}, {0.53, 1.35, 2.18});
+  return std::max(outside, -doorwayDistance(folded));
+}
+
+/** \brief A desk and a pillar in every room, in different places. */
+void
+addFurniture(std::vector<ScenePart>& parts)
+{
+  for (int room = 0; room < 18; ++room) {
+    const bool is_right = room % 2 == 1;
+    const double side = is_right ? -1.0 : 1.0;
+    const double x = 2.0 * (is_right ? room - 1 : room) - 16.0;
+    const Vector3d desk(
+        x - 0.8 + 0.3 * (room % 5), side * (3.2 + 0.4 * (room % 4)), 0.74);
+    parts.push_back(plateOnLegs("desk", desk, 0.8, 0.4));
+    parts.back().bounds = {desk - Vector3d(0.8, 0.4, 0.74),
+                           desk + Vector3d(0.8, 0.4, 0.0)};
+    const Vector3d pillar(x + 1.5, side * (1.7 + 0.5 * (room % 3)), 0.0);
+    parts.push_back(standing("pillar", pillar, {0.4, 0.4, 2.8}, [](const Vector3d& p) {
+      return boxDistance(p, {-0.2, -0.2, 0.0}, {0.2, 0.2, 2.8});
+    }));
+  }
+}
+
 } // namespace
 
 Scene
@@ -104,6 +162,24 @@ makeRoom()
            box("bed", {-2.5, -2.0, 0.0}, {-0.5, -1.1, 0.5}),
            box("shelf", {0.6, -2.0, 1.3}, {2.1, -1.7, 1.34}),
            {"bin", movedTo(Vector3d(2.2, -1.6, 0.0), bin)}}};
+}
+
+Scene
+makeOfficeFloor()
+{
+  const Vector3d half_size(18.0, 6.3, 1.4);
+  const auto walls = [half_size](const Vector3d& point) {
+    return -boxDistance(point - Vector3d(0.0, 0.0, 1.4), half_size);
+  };
+  Scene scene{
+      "a floor of 36 m x 12.6 m: a corridor 2.4 m wide, on each side nine rooms "
+      "with open doors, pillars and desks",
+      "nothing, but a shift by one room is nearly as good",
+      {{"outer walls", walls},
+       {"partitions", partitionDistance},
+       {"door frames", doorFrameDistance}}};
+  addFurniture(scene.parts);
+  return scene;
 }
 
 Scene

@@ -46,10 +46,14 @@ addKindOfSensor(const SensorOptions& sensor, Json& options)
   options["min-elevation"] = sensor.lidar.min_elevation;
   options["max-elevation"] = sensor.lidar.max_elevation;
   options["azimuth-step"] = sensor.lidar.azimuth_step;
+  options["azimuth-phase"] = sensor.lidar.azimuth_phase;
   options["range-noise"] = sensor.lidar.range_noise;
+  options["ring-offset"] = sensor.lidar.ring_offset;
+  options["sensor-seed"] = sensor.lidar.sensor_seed;
 }
 
-/** \brief What changes the noise of the reading, where it is switched on. */
+/** \brief What changes the noise of the reading, where it is switched on; of a LiDAR
+ * also its incidence-noise of zero, as some scenes have another one. */
 void
 addOptionalNoise(const SensorOptions& sensor, Json& options)
 {
@@ -57,7 +61,7 @@ addOptionalNoise(const SensorOptions& sensor, Json& options)
     options["noise-correlation"] = sensor.noise_correlation;
     options["noise-correlation-pixels"] = sensor.noise_correlation_pixels;
   }
-  if (sensor.incidence_noise > 0.0)
+  if (sensor.incidence_noise > 0.0 || sensor.kind == SensorKind::Lidar)
     options["incidence-noise"] = sensor.incidence_noise;
 }
 
@@ -75,8 +79,9 @@ quantisationOf(const SensorOptions& sensor)
   return "none";
 }
 
-/** \brief Every option under its name on the command line; of the noise that is
- * correlated or grows with the angle of incidence only what is switched on. */
+/** \brief Every option under its name on the command line; of a
+ * camera's noise that is correlated or grows with the angle of incidence, and of the
+ * motion during a scan, only what is switched on. */
 Json
 optionsRecord(const SimulationOptions& simulation)
 {
@@ -90,6 +95,8 @@ optionsRecord(const SimulationOptions& simulation)
   options["source-look-at"] = arrayOf(simulation.source_view.look_at);
   options["frame"] = simulation.frame == CloudFrame::Sensor ? "sensor" : "object";
   options["offset"] = arrayOf(simulation.offset);
+  if (simulation.sweep_motion > 0.0)
+    options["sweep-motion"] = simulation.sweep_motion;
   addKindOfSensor(sensor, options);
   options["min-range"] = sensor.min_range;
   options["max-range"] = sensor.max_range;

@@ -22,6 +22,22 @@ movedTo(const Eigen::Vector3d& origin, DistanceFunction distance)
   };
 }
 
+/** \brief A solid whose foot is at \p origin: \p size says how long, wide and high it
+ * is, and \p distance gives its distances in the frame of its foot. Rays skip it by its
+ * size. */
+inline ScenePart
+standing(const std::string& name,
+         const Eigen::Vector3d& origin,
+         const Eigen::Vector3d& size,
+         DistanceFunction distance)
+{
+  const Eigen::Vector3d half(0.5 * size.x(), 0.5 * size.y(), 0.0);
+  const Eigen::Vector3d height(0.0, 0.0, size.z());
+  return {name,
+          movedTo(origin, std::move(distance)),
+          {origin - half, origin + half + height}};
+}
+
 /** \brief A box between two opposite corners. */
 inline ScenePart
 box(const std::string& name,
@@ -39,6 +55,10 @@ floorPart(const std::string& name = "floor")
 {
   return {name, [](const Eigen::Vector3d& point) { return point.z(); }};
 }
+
+/** \brief A car on the ground, 4.4 m x 1.8 m x 1.45 m, its front towards +x. */
+double
+carDistance(const Eigen::Vector3d& point);
 
 Scene
 makeBowl();
@@ -100,6 +120,22 @@ makeCar();
 
 Scene
 makeTree();
+
+Scene
+makeStreet();
+
+Scene
+makeOfficeFloor();
+
+Scene
+makeForest();
+
+Scene
+makeBareGround();
+
+/** \brief A straight tube with a flat floor. */
+Scene
+makeTunnel();
 
 } // namespace simulator
 } // namespace bayesian_icp

@@ -38,18 +38,30 @@ sceneMakers()
       {"room", makeRoom},
       {"ground", makeGround},
       {"car", makeCar},
-      {"tree", makeTree}};
+      {"tree", makeTree},
+      {"street", makeStreet},
+      {"office_floor", makeOfficeFloor},
+      {"forest", makeForest},
+      {"bare_ground", makeBareGround},
+      {"tunnel", makeTunnel}};
   return makers;
 }
 
 } // namespace
 
 double
+ScenePart::distanceIfBelow(double other, const Vector3d& point) const
+{
+  const bool is_far = bounds.squaredExteriorDistance(point) > other * other;
+  return is_far ? other : std::min(other, distance(point));
+}
+
+double
 Scene::distance(const Vector3d& point) const
 {
   double nearest = std::numeric_limits<double>::infinity();
   for (const ScenePart& part : parts)
-    nearest = std::min(nearest, part.distance(point));
+    nearest = part.distanceIfBelow(nearest, point);
   return nearest;
 }
 

@@ -8,8 +8,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,10 +21,25 @@ namespace simulator {
 /** \brief Signed distance [m] of a point of the world frame [m] to a surface. */
 using DistanceFunction = std::function<double(const Eigen::Vector3d&)>;
 
+/** \brief All of space. */
+inline Eigen::AlignedBox3d
+unbounded()
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {Eigen::Vector3d::Constant(-infinity), Eigen::Vector3d::Constant(infinity)};
+}
+
 /** \brief A named piece of a scene, such as the handle of a mug. */
 struct ScenePart {
   std::string name;
   DistanceFunction distance;
+  /** Holds all of the part [m]: what is far from it need not ask for the distance. */
+  Eigen::AlignedBox3d bounds = unbounded();
+
+  /** \brief The smaller one of \p other and the distance of \p point to the part [m].
+   */
+  double
+  distanceIfBelow(double other, const Eigen::Vector3d& point) const;
 };
 
 /** \brief The union of its parts. */

@@ -60,9 +60,32 @@ validateLidar(const LidarOptions& lidar)
   requireWithin("max-elevation", lidar.max_elevation, lidar.min_elevation, 90.0);
   requireWithin("azimuth-step", lidar.azimuth_step, 0.01, 180.0);
   requireNotNegative("range-noise", lidar.range_noise);
+  requireNotNegative("ring-offset", lidar.ring_offset);
+  requireWithin("azimuth-phase", lidar.azimuth_phase, 0.0, 1.0);
 }
 
 } // namespace
+
+SensorOptions
+carLidar(int rings)
+{
+  require(rings == 16 || rings == 32 || rings == 64 || rings == 128,
+          "rings",
+          rings,
+          "16, 32, 64 or 128");
+  SensorOptions options;
+  options.kind = SensorKind::Lidar;
+  options.lidar.rings = rings;
+  options.lidar.min_elevation = rings < 64 ? -15.0 : -25.0;
+  options.lidar.max_elevation = rings < 64 ? 15.0 : 5.0;
+  options.lidar.azimuth_step = rings < 64 ? 0.2 : 0.25;
+  options.lidar.ring_offset = 0.01;
+  options.lidar.azimuth_phase = 1.0;
+  options.incidence_noise = 1.0;
+  options.min_range = 1.0;
+  options.max_range = 80.0;
+  return options;
+}
 
 int
 numRows(const SensorOptions& options)

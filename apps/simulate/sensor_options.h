@@ -6,6 +6,8 @@
  */
 #pragma once
 
+#include <cstdint>
+
 namespace bayesian_icp {
 namespace simulator {
 
@@ -35,6 +37,14 @@ struct LidarOptions {
   double azimuth_step = 0.4;
   /** Standard deviation of the range [m]. */
   double range_noise = 0.02;
+  /** Standard deviation of the offsets of the rings [m]: each ring of one sensor adds a
+   * number of its own to all its ranges, the same in every scan. */
+  double ring_offset = 0.0;
+  /** Which sensor: determines the offsets of the rings. */
+  std::uint64_t sensor_seed = 1;
+  /** All rays of a scan are turned about the sensor's axis by a random number, uniform
+   * between 0 and this part of an azimuth step. */
+  double azimuth_phase = 0.0;
 };
 
 enum class Quantisation {
@@ -79,6 +89,14 @@ struct SensorOptions {
   double min_range = 0.3;
   double max_range = 5.0;
 };
+
+/** \brief A spinning LiDAR as on the roof of a car: 16 or 32 rings between -15 and 15
+ * degrees every 0.2 degrees, or 64 or 128 between -25 and 5 every 0.25 degrees; 1 to
+ * 80 m. Noise grows with the angle of incidence, rings have offsets of 0.01 m, and the
+ * azimuths of two scans have nothing in common.
+ * \throws std::invalid_argument of another number of rings */
+SensorOptions
+carLidar(int rings);
 
 /** \brief Number of image rows or rings. */
 int

@@ -6,9 +6,12 @@
 #include <bayesian_icp/first_exception.h>
 #include <bayesian_icp/random.h>
 
+#include <cmath>
+
 namespace bayesian_icp {
 namespace simulator {
 
+using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 namespace {
@@ -35,6 +38,50 @@ joinRows(const std::vector<ScanRow>& rows, int rays_per_row)
   return scan;
 }
 
+/** \brief Streams of random numbers apart from those of rows and of NoiseField. */
+constexpr std::uint64_t offset_stream = std::uint64_t{1} << 62;
+constexpr std::uint64_t phase_stream = std::uint64_t{3} << 61;
+
+/** \brief The pose of the sensor at each column; see scanScene(). */
+std::vector<Isometry3d>
+posesOfSweep(const SensorOptions& options,
+             const Isometry3d& T_world_sensor,
+             const Vector6d& sweep_motion,
+             double azimuth_phase)
+{
+  const int num_columns = raysPerRow(options);
+  std::vector<Isometry3d> poses(static_cast<std::size_t>(num_columns), T_world_sensor);
+  if (options.kind != SensorKind::Lidar || sweep_motion.isZero(0.0))
+    return poses;
+  for (int column = 0; column < num_columns; ++column) {
+    const double turn = (column + azimuth_phase) / num_columns;
+    const double time = turn - std::round(turn);
+    poses[column] = T_world_sensor * Isometry3d(expSE3(time * sweep_motion));
+  }
+  return poses;
+}
+
+ScanState
+stateOf(const SensorOptions& options,
+        const Isometry3d& T_world_sensor,
+        const Vector6d& sweep_motion,
+        std::uint64_t seed,
+        std::uint32_t scan_number)
+{
+  ScanState state;
+  state.offsets.resize(static_cast<std::size_t>(numRows(options)));
+  if (options.kind == SensorKind::Lidar) {
+    Random offsets(options.lidar.sensor_seed, offset_stream);
+    for (double& offset : state.offsets)
+      offset = options.lidar.ring_offset * offsets.normal();
+    Random phase(seed, phase_stream + scan_number);
+    state.azimuth_phase = options.lidar.azimuth_phase * phase.uniform();
+  }
+  state.T_world_sensor =
+      posesOfSweep(options, T_world_sensor, sweep_motion, state.azimuth_phase);
+  return state;
+}
+
 } // namespace
 
 Scan
@@ -42,11 +89,14 @@ scanScene(const Scene& scene,
           const SensorOptions& options,
           const Eigen::Isometry3d& T_world_sensor,
           std::uint64_t seed,
-          std::uint32_t scan_number)
+          std::uint32_t scan_number,
+          const Vector6d& sweep_motion)
 {
   validate(options);
   const int rays_per_row = raysPerRow(options);
-  const Beams beams(scene, options, T_world_sensor);
+  const ScanState state =
+      stateOf(options, T_world_sensor, sweep_motion, seed, scan_number);
+  const Beams beams(scene, options, state);
   const NoiseField noise_field(options, seed, scan_number);
   std::vector<ScanRow> rows(static_cast<std::size_t>(numRows(options)));
   FirstException failure;

@@ -9,6 +9,8 @@
 #include "scenes.h"
 #include "sensor_options.h"
 
+#include <bayesian_icp/pose.h>
+
 #include <Eigen/Geometry>
 
 #include <cstdint>
@@ -29,13 +31,18 @@ struct Scan {
  * threads.
  * \param[in] T_world_sensor pose of the sensor
  * \param[in] seed,scan_number determine the noise: another scan number, other noise
+ * \param[in] sweep_motion twist (v, w) in the sensor frame [m, rad]: how far the sensor
+ *            moves while a LiDAR turns once, at constant velocity. It starts to turn at
+ *            the back and is at \p T_world_sensor when it looks along its x axis.
+ * Points are in the frame of the sensor at their own time; nothing corrects them.
  * \throws std::invalid_argument if validate() refuses the options */
 Scan
 scanScene(const Scene& scene,
           const SensorOptions& options,
           const Eigen::Isometry3d& T_world_sensor,
           std::uint64_t seed,
-          std::uint32_t scan_number);
+          std::uint32_t scan_number,
+          const Vector6d& sweep_motion = Vector6d::Zero());
 
 } // namespace simulator
 } // namespace bayesian_icp

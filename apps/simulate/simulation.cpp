@@ -13,6 +13,16 @@ namespace {
 constexpr std::uint32_t target_scan_number = 0;
 constexpr std::uint32_t source_scan_number = 1;
 
+/** \brief Twist of the sensor during one turn, in its own frame [m, rad]. */
+Vector6d
+sweepMotion(const SimulationOptions& options)
+{
+  const SensorKind kind = options.sensor.kind;
+  const Isometry3d T_target_source = sensorPose(kind, options.target_view).inverse() *
+                                     sensorPose(kind, options.source_view);
+  return options.sweep_motion * logSE3(T_target_source.matrix());
+}
+
 Scan
 scanView(const Scene& scene,
          const SimulationOptions& options,
@@ -21,8 +31,12 @@ scanView(const Scene& scene,
          const std::string& name)
 {
   const Isometry3d T_world_sensor = sensorPose(options.sensor.kind, view);
-  Scan scan =
-      scanScene(scene, options.sensor, T_world_sensor, options.seed, scan_number);
+  Scan scan = scanScene(scene,
+                        options.sensor,
+                        T_world_sensor,
+                        options.seed,
+                        scan_number,
+                        sweepMotion(options));
   if (scan.points.cols() == 0)
     throw std::invalid_argument("the " + name + " view sees nothing of scene '" +
                                 options.scene + "'");
@@ -59,6 +73,10 @@ validate(const SimulationOptions& options)
   validateView(scene, options.source_view, "source");
   if (!options.offset.allFinite())
     throw std::invalid_argument("offset must be six finite numbers");
+  if (!(options.sweep_motion >= 0.0 && options.sweep_motion <= 1.0))
+    throw std::invalid_argument("sweep-motion must be within 0 and 1");
+  if (options.sweep_motion > 0.0 && options.sensor.kind != SensorKind::Lidar)
+    throw std::invalid_argument("sweep-motion is for a lidar, not a depth-camera");
 }
 
 Isometry3d

@@ -39,6 +39,10 @@ struct SimulationOptions {
    * rad] before it is written, so with CloudFrame::Object it is the true
    * source-to-target pose. */
   Vector6d offset = Vector6d::Zero();
+  /** What part of the motion from the target's to the source's view a LiDAR makes while
+   * it turns once, at constant velocity: 1 if the two scans follow each other at once.
+   * The true transform is between its poses in the middle of both turns. */
+  double sweep_motion = 0.0;
   std::uint64_t seed = 1;
 };
 

@@ -26,6 +26,8 @@ struct ScanPlan {
   View source_view;
   View target_view;
   double lost_part = 0.0;
+  /** Motion during each scan; see scanScene(). */
+  Vector6d sweep_motion = Vector6d::Zero();
 };
 
 void
@@ -55,6 +57,13 @@ addOutliers(SensorOptions& sensor)
   sensor.outlier_spread = 0.1 * std::sqrt(3.0);
 }
 
+[[noreturn]] void
+refuseCondition(const std::string& condition)
+{
+  throw std::invalid_argument("the coverage study has no condition '" + condition +
+                              "' of such a scene");
+}
+
 ScanPlan
 planScans(const CoverageSetup& setup, const std::string& condition, Random& random)
 {
@@ -78,8 +87,27 @@ planScans(const CoverageSetup& setup, const std::string& condition, Random& rand
     plan.lost_part = condition == "lost20" ? 0.2 : 0.5;
   }
   else if (condition != "same")
-    throw std::invalid_argument("the coverage study has no condition '" + condition +
-                                "'");
+    refuseCondition(condition);
+  return plan;
+}
+
+ScanPlan
+planDrive(const CoverageSetup& setup, const std::string& condition, Random& random)
+{
+  const auto& known = lidarConditions();
+  if (std::count(known.begin(), known.end(), condition) == 0)
+    refuseCondition(condition);
+  const bool is_sweep = condition == "lidar64_sweep";
+  SensorOptions sensor = simulator::carLidar(
+      condition == "lidar16" ? 16 : (condition == "lidar32" ? 32 : 64));
+  sensor.lidar.sensor_seed = random.index(std::size_t{1} << 62);
+  const DrivenViews views = drivenViews(setup, random);
+  ScanPlan plan{sensor, sensor, views.source, views.target};
+  if (is_sweep) {
+    const Isometry3d T_target_source = sensorPose(sensor.kind, views.target).inverse() *
+                                       sensorPose(sensor.kind, views.source);
+    plan.sweep_motion = logSE3(T_target_source.matrix());
+  }
   return plan;
 }
 
@@ -145,6 +173,14 @@ coverageConditions()
   return names;
 }
 
+const std::vector<std::string>&
+lidarConditions()
+{
+  static const std::vector<std::string> names = {
+      "lidar16", "lidar32", "lidar64", "lidar64_sweep"};
+  return names;
+}
+
 CoverageCase
 makeCoverageCase(const std::string& scene,
                  const std::string& condition,
@@ -153,7 +189,10 @@ makeCoverageCase(const std::string& scene,
   const CoverageSetup setup = coverageSetup(scene);
   // Cases of one seed share no random numbers.
   Random random(seed, io::hashOf(scene + '/' + condition));
-  const ScanPlan plan = planScans(setup, condition, random);
+  const bool is_drive =
+      std::count(lidarScenes().begin(), lidarScenes().end(), scene) > 0;
+  const ScanPlan plan = is_drive ? planDrive(setup, condition, random)
+                                 : planScans(setup, condition, random);
   const std::uint64_t scan_seed = random.index(std::size_t{1} << 62);
   const simulator::Scene solids = simulator::makeScene(setup.simulated_scene);
   const Isometry3d target_pose = sensorPose(plan.target_sensor.kind, plan.target_view);
@@ -164,10 +203,19 @@ makeCoverageCase(const std::string& scene,
   made.condition = condition;
   made.seed = seed;
   made.prior_sd = setup.prior_sd;
-  made.target = target_pose *
-                scanScene(solids, plan.target_sensor, target_pose, scan_seed, 0).points;
-  made.source = source_pose *
-                scanScene(solids, plan.source_sensor, source_pose, scan_seed, 1).points;
+  const auto scan = [&](const SensorOptions& sensor,
+                        const Isometry3d& T_world_sensor,
+                        std::uint32_t scan_number) -> Matrix3Xd {
+    return T_world_sensor * scanScene(solids,
+                                      sensor,
+                                      T_world_sensor,
+                                      scan_seed,
+                                      scan_number,
+                                      plan.sweep_motion)
+                                .points;
+  };
+  made.target = scan(plan.target_sensor, target_pose, 0);
+  made.source = scan(plan.source_sensor, source_pose, 1);
   if (plan.lost_part > 0.0)
     made.target =
         withoutLostPart(made.target, made.source, target_pose, plan.lost_part, random);

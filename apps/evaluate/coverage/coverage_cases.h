@@ -30,10 +30,21 @@ namespace bayesian_icp::evaluate {
 const std::vector<std::string>&
 coverageConditions();
 
-/** \brief Simulate a case; all of it depends on the three arguments only. The target
- * frame is the scene's world frame. The true pose is drawn from the prior (angles from
- * a Gaussian), and the source is not thinned.
- * \throws std::invalid_argument if there is no such scene or condition */
+/** \brief What lidarScenes() are seen with: carLidar(), whose rings have other offsets
+ * in every case, from both of drivenViews(). No ray is jittered.
+ *
+ * - lidar16, lidar32, lidar64: the number of rings; the sensor stands still in each
+ * scan.
+ * - lidar64_sweep: the scans are turns that follow each other at once while the sensor
+ *   moves at constant velocity. The truth is between the middles of both turns. */
+const std::vector<std::string>&
+lidarConditions();
+
+/** \brief Simulate a case: a scene of lidarScenes() under one of lidarConditions(), or
+ * another one under one of coverageConditions(); all of it depends on the three
+ * arguments only. The target frame is the scene's world frame. The true pose is drawn
+ * from the prior (angles from a Gaussian), and the source is not thinned. \throws
+ * std::invalid_argument if there is no such scene or condition */
 CoverageCase
 makeCoverageCase(const std::string& scene,
                  const std::string& condition,

@@ -27,10 +27,19 @@ using Names = std::vector<std::string>;
 
 constexpr std::size_t num_quick_scenes = 2;
 
-/** What is there to choose from, and how it is made. */
-struct Offer {
+/** Scenes that are seen under the same conditions. */
+struct SceneSet {
+  /** Stands for all of them on the command line, unless it is empty. */
+  std::string name;
   Names scenes;
   Names conditions;
+  /** Whether they are run where none are asked for. */
+  bool is_default;
+};
+
+/** What is there to choose from, and how it is made. */
+struct Offer {
+  std::vector<SceneSet> sets;
   CoverageCaseMaker make_case;
 };
 
@@ -38,10 +47,9 @@ Offer
 simulatedOffer()
 {
   Offer offer;
-  offer.scenes = tunedScenes();
-  for (const std::string& scene : newScenes())
-    offer.scenes.push_back(scene);
-  offer.conditions = coverageConditions();
+  offer.sets = {{"tuned", tunedScenes(), coverageConditions(), true},
+                {"new", newScenes(), coverageConditions(), true},
+                {"lidar", lidarScenes(), lidarConditions(), false}};
   offer.make_case = [](const CoverageCaseName& name) {
     return makeCoverageCase(name.scene, name.condition, name.seed);
   };
@@ -53,8 +61,7 @@ realOffer(const std::string& folder)
 {
   const auto pairs = std::make_shared<const RealPairs>(folder);
   Offer offer;
-  offer.scenes = pairs->names();
-  offer.conditions = {"real"};
+  offer.sets = {{"", pairs->names(), {"real"}, true}};
   offer.make_case = [pairs](const CoverageCaseName& name) {
     return pairs->makeCase(name.scene, name.seed);
   };
@@ -76,20 +83,87 @@ chosen(const Names& asked, const Names& known, const std::string& option)
   return asked.empty() ? known : asked;
 }
 
-/** The scenes asked for, `tuned` and `new` replaced by their scenes. */
+/** Append those of \p more that \p names does not have yet. */
+void
+addMissing(Names& names, const Names& more)
+{
+  for (const std::string& name : more)
+    if (std::count(names.begin(), names.end(), name) == 0)
+      names.push_back(name);
+}
+
+/** The scenes asked for, the name of a set replaced by its scenes. */
 Names
-expanded(const CoverageOptions& options)
+expanded(const Names& asked, const Offer& offer)
 {
   Names scenes;
-  for (const std::string& name : options.scenes) {
-    const bool is_set =
-        options.real_folder.empty() && (name == "tuned" || name == "new");
-    const Names set = !is_set         ? Names{name}
-                      : name == "new" ? newScenes()
-                                      : tunedScenes();
-    scenes.insert(scenes.end(), set.begin(), set.end());
+  for (const std::string& name : asked) {
+    const auto set = std::find_if(
+        offer.sets.begin(), offer.sets.end(), [&name](const SceneSet& candidate) {
+          return candidate.name == name && !name.empty();
+        });
+    addMissing(scenes, set == offer.sets.end() ? Names{name} : set->scenes);
   }
   return scenes;
+}
+
+/** The scenes asked for; without any, those of the default sets, or the first few. */
+Names
+scenesOf(const CoverageOptions& options, const Offer& offer)
+{
+  Names known;
+  Names usual;
+  for (const SceneSet& set : offer.sets) {
+    addMissing(known, set.scenes);
+    if (set.is_default)
+      addMissing(usual, set.scenes);
+  }
+  if (!options.scenes.empty())
+    return chosen(expanded(options.scenes, offer), known, "scenes");
+  if (options.is_quick)
+    usual.resize(std::min(usual.size(), num_quick_scenes));
+  return usual;
+}
+
+/** The conditions asked for that \p scene is seen under; without any, all of them, or
+ * the first.
+ * \throws io::UsageError if there is none */
+Names
+conditionsOf(const CoverageOptions& options,
+             const Offer& offer,
+             const std::string& scene)
+{
+  const auto set =
+      std::find_if(offer.sets.begin(), offer.sets.end(), [&scene](const SceneSet& s) {
+        return std::count(s.scenes.begin(), s.scenes.end(), scene) > 0;
+      });
+  Names conditions = set->conditions;
+  if (!options.conditions.empty()) {
+    conditions.clear();
+    for (const std::string& name : options.conditions)
+      if (std::count(set->conditions.begin(), set->conditions.end(), name) > 0)
+        conditions.push_back(name);
+    if (conditions.empty())
+      throw io::UsageError("--conditions: " + io::quoted(scene) + " has only " +
+                           boost::algorithm::join(set->conditions, " "));
+  }
+  else if (options.is_quick)
+    conditions.resize(1);
+  return conditions;
+}
+
+std::vector<CoverageMethod>
+methodsOf(const CoverageOptions& options)
+{
+  Names known;
+  for (const CoverageMethod& method : coverageMethods())
+    known.push_back(method.name);
+  const Names names = chosen(options.methods, known, "methods");
+  std::vector<CoverageMethod> methods;
+  for (const CoverageMethod& method : coverageMethods())
+    if (std::count(names.begin(), names.end(), method.name) > 0)
+      methods.push_back(method);
+  return methods;
 }
 
 CoverageStudy
@@ -97,24 +171,17 @@ studyOf(const CoverageOptions& options)
 {
   const Offer offer =
       options.real_folder.empty() ? simulatedOffer() : realOffer(options.real_folder);
-  Names scenes = chosen(expanded(options), offer.scenes, "scenes");
-  Names conditions = chosen(options.conditions, offer.conditions, "conditions");
-  if (options.is_quick && options.scenes.empty())
-    scenes.resize(std::min(scenes.size(), num_quick_scenes));
-  if (options.is_quick && options.conditions.empty())
-    conditions.resize(1);
+  const Names scenes = scenesOf(options, offer);
+  Names known_conditions;
+  for (const SceneSet& set : offer.sets)
+    addMissing(known_conditions, set.conditions);
+  chosen(options.conditions, known_conditions, "conditions");
   CoverageStudy study;
   study.make_case = offer.make_case;
   study.num_threads = options.num_threads;
-  Names known;
-  for (const CoverageMethod& method : coverageMethods())
-    known.push_back(method.name);
-  const Names methods = chosen(options.methods, known, "methods");
-  for (const CoverageMethod& method : coverageMethods())
-    if (std::count(methods.begin(), methods.end(), method.name) > 0)
-      study.methods.push_back(method);
+  study.methods = methodsOf(options);
   for (const std::string& scene : scenes)
-    for (const std::string& condition : conditions)
+    for (const std::string& condition : conditionsOf(options, offer, scene))
       for (int i = 0; i < options.num_seeds; ++i)
         study.cases.push_back(
             {scene, condition, options.first_seed + static_cast<std::uint64_t>(i)});

@@ -21,9 +21,13 @@ description()
   // clang-format off
   options.add_options()
     ("scenes", textOption(""),
-     "simulated scenes: tuned (on which the method was tuned), new (all others), or names with "
-     "commas between; with --real, names of pairs. Without it, all")
-    ("conditions", textOption(""), "conditions with commas between; without it, all")
+     "simulated scenes: tuned (on which the method was tuned), new (not tuned on), lidar (a car's "
+     "or robot's spinning lidar of up to 64 rings, 80 m), or names with commas between; with "
+     "--real, names of pairs. Without it, tuned and new, or all pairs")
+    ("conditions", textOption(""),
+     "conditions with commas between, of which every scene takes its own: lidar scenes have "
+     "lidar16, lidar32, lidar64 (rings) and lidar64_sweep (moving during each scan); without it, "
+     "all")
     ("methods", textOption(""), "methods with commas between; without it, all")
     ("seeds", intOption(20), "cases of each scene and condition")
     ("first-seed", intOption(1), "seed of the first of them")

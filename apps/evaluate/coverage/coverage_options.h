@@ -12,7 +12,7 @@ namespace bayesian_icp::evaluate {
 /** \brief What is run, and where it is kept. */
 struct CoverageOptions {
   bool show_help = false;
-  /** Names as given; empty: all there are. */
+  /** Names as given; empty: all there are, but for the scenes of the set lidar. */
   std::vector<std::string> scenes;
   std::vector<std::string> conditions;
   std::vector<std::string> methods;

@@ -132,6 +132,17 @@ makeNewSetup(const std::string& scene)
   return lidar(-30.0, 0.0, {{0.0, 0.0, 1.8}, {1.0, 0.0, 1.8}});
 }
 
+CoverageSetup
+makeLidarSetup(const std::string& scene)
+{
+  const simulator::SimulationOptions usual = simulator::defaultOptions(scene);
+  CoverageSetup setup;
+  setup.sensor = usual.sensor;
+  setup.view = usual.target_view;
+  setup.prior_sd = standardDeviations(0.3, 0.03);
+  return setup;
+}
+
 bool
 contains(const std::vector<std::string>& names, const std::string& name)
 {
@@ -170,13 +181,26 @@ newScenes()
   return names;
 }
 
+const std::vector<std::string>&
+lidarScenes()
+{
+  static const std::vector<std::string> names = {
+      "street", "office_floor", "forest", "bare_ground", "tunnel"};
+  return names;
+}
+
 CoverageSetup
 coverageSetup(const std::string& scene)
 {
-  const bool is_tuned = contains(tunedScenes(), scene);
-  if (!is_tuned && !contains(newScenes(), scene))
+  CoverageSetup setup;
+  if (contains(tunedScenes(), scene))
+    setup = makeTunedSetup(scene);
+  else if (contains(newScenes(), scene))
+    setup = makeNewSetup(scene);
+  else if (contains(lidarScenes(), scene))
+    setup = makeLidarSetup(scene);
+  else
     throw std::invalid_argument("the coverage study has no scene '" + scene + "'");
-  CoverageSetup setup = is_tuned ? makeTunedSetup(scene) : makeNewSetup(scene);
   // The study's table top has its edges in view.
   setup.simulated_scene = scene == "table_top" ? "table_plate" : scene;
   return setup;
@@ -196,6 +220,21 @@ secondView(const CoverageSetup& setup, double scale, Random& random)
   }
   const Vector3d eye = setup.view.eye + scale * setup.step;
   return {eye, eye + turnedAboutVertical(forward, scale * side * 0.2)};
+}
+
+DrivenViews
+drivenViews(const CoverageSetup& setup, Random& random)
+{
+  const double start = 8.0 * (2.0 * random.uniform() - 1.0);
+  const double heading = 0.05 * (2.0 * random.uniform() - 1.0);
+  const double way = 0.5 + 1.5 * random.uniform();
+  const double turn = 0.07 * (2.0 * random.uniform() - 1.0);
+  const Vector3d forward = setup.view.look_at - setup.view.eye;
+  const Vector3d eye = setup.view.eye + start * forward;
+  // The chord of an arc points half of its turn aside.
+  const Vector3d next = eye + way * turnedAboutVertical(forward, heading + 0.5 * turn);
+  return {{eye, eye + turnedAboutVertical(forward, heading)},
+          {next, next + turnedAboutVertical(forward, heading + turn)}};
 }
 
 } // namespace bayesian_icp::evaluate

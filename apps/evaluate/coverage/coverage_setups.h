@@ -36,10 +36,16 @@ tunedScenes();
 const std::vector<std::string>&
 newScenes();
 
+/** \brief Scenes to drive through with a LiDAR on the roof; no constant was chosen on
+ * them. */
+const std::vector<std::string>&
+lidarScenes();
+
 /** \brief Sensor, view and prior of a scene. Things of the size of a hand or a table,
  * the corridor and the stairs have the prior of 0.03 m and 0.06 rad (one standard
  * deviation); places seen by a LiDAR, whose points are up to 10 m from their centroid,
- * of 0.1 m and 0.03 rad.
+ * of 0.1 m and 0.03 rad; lidarScenes() of 0.3 m and 0.03 rad. The sensor of these is
+ * carLidar(16), and the view where the drive begins.
  * \throws std::invalid_argument if the study has no scene of this name */
 CoverageSetup
 coverageSetup(const std::string& scene);
@@ -49,5 +55,18 @@ coverageSetup(const std::string& scene);
  * \param[in] scale factor on all of that */
 simulator::View
 secondView(const CoverageSetup& setup, double scale, Random& random);
+
+/** \brief Both views of a drive. */
+struct DrivenViews {
+  simulator::View target;
+  simulator::View source;
+};
+
+/** \brief A drive in one of lidarScenes(): the target is seen up to 8 m before or
+ * behind CoverageSetup::view and from a heading up to 0.05 rad beside it; then the
+ * sensor goes on by 0.5 to 2 m along an arc that turns by up to 0.07 rad to either
+ * side. All uniform, on level ground. */
+DrivenViews
+drivenViews(const CoverageSetup& setup, Random& random);
 
 } // namespace bayesian_icp::evaluate
