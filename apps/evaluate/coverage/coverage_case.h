@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace bayesian_icp::evaluate {
@@ -33,6 +34,9 @@ struct CoverageCase {
    * simulation. */
   double truth_sd_translation = 0.0;
   double truth_sd_rotation = 0.0;
+  /** Of recordings: mean displacement of the source's points beyond which a pose is
+   * lost [m]. NaN: no pose is. */
+  double lost_displacement = std::numeric_limits<double>::quiet_NaN();
 };
 
 /** \brief What a method makes of a case. */
@@ -41,6 +45,8 @@ struct MethodResult {
   bool is_valid = false;
   /** T_target_source. */
   Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
+  /** There is a pose, \p mean, but no posterior. */
+  bool is_pose_only = false;
   /** Of left twists (v, w) about \p centre, target frame [m, rad]. */
   Matrix6d covariance = Matrix6d::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();

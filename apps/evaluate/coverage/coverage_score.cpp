@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
 
 namespace bayesian_icp::evaluate {
@@ -109,29 +110,56 @@ addGaussianScores(const CoverageCase& problem,
   score.region = regionOf(score.nees, shape);
   score.relative_sd = sd.cwiseQuotient(problem.prior_sd);
   score.z = deviation.cwiseQuotient(sd);
-  const double log_determinant =
-      factor.diagonal().cwiseQuotient(problem.prior_sd).array().log().sum();
-  score.log_score =
-      -0.5 * score.nees - 3.0 * std::log(2.0 * std::acos(-1.0)) - log_determinant;
+  const double log_density = -0.5 * score.nees - 3.0 * std::log(2.0 * std::acos(-1.0)) -
+                             factor.diagonal().array().log().sum();
+  score.log_score = score.hasLimit()
+                        ? std::max(log_density, min_log_score)
+                        : log_density + problem.prior_sd.array().log().sum();
 }
 
 void
 addErrors(const CoverageCase& problem,
-          const MethodResult& result,
-          const Vector6d& mean_twist,
+          const Eigen::Isometry3d& pose,
           CoverageScore& score)
 {
-  const Eigen::Isometry3d mean = movedBy(mean_twist, result.centre, result.mean);
   const Eigen::Vector3d centroid = problem.source.rowwise().mean();
-  score.translation_error = (mean * centroid - problem.truth * centroid).norm();
+  score.translation_error = (pose * centroid - problem.truth * centroid).norm();
   score.rotation_error =
-      logSO3(problem.truth.linear() * mean.linear().transpose()).norm();
+      logSO3(problem.truth.linear() * pose.linear().transpose()).norm();
+  score.displacement =
+      (pose * problem.source - problem.truth * problem.source).colwise().norm().mean();
 }
 
 void
 addNote(const std::string& note, std::string& notes)
 {
   notes += (notes.empty() ? "" : ";") + note;
+}
+
+/** Scores of a posterior; score.is_valid says whether it is one. */
+void
+addPosterior(const CoverageCase& problem,
+             const MethodResult& result,
+             CoverageScore& score)
+{
+  if (result.draws.rows() > 0 && result.draws.rows() < min_draws) {
+    addNote("too few draws", score.notes);
+    return;
+  }
+  const TwistPosterior posterior = posteriorOf(problem, result);
+  const auto factor = factorOf(posterior.moments.covariance);
+  if (!factor || !posterior.truth.allFinite() || !posterior.moments.mean.allFinite()) {
+    addNote("not a posterior", score.notes);
+    return;
+  }
+  score.is_valid = true;
+  addGaussianScores(problem, posterior, *factor, result.shape, score);
+  score.pit = pitOf(posterior);
+  const auto scale = problem.prior_sd.cwiseInverse().asDiagonal();
+  score.energy_score =
+      energyScore(scoredDraws(posterior, *factor, problem.seed) * scale,
+                  (scale * posterior.truth).transpose());
+  addErrors(problem, result.mean, score);
 }
 
 } // namespace
@@ -146,29 +174,18 @@ CoverageScore
 coverageScoreOf(const CoverageCase& problem, const MethodResult& result)
 {
   CoverageScore score;
+  score.lost_displacement = problem.lost_displacement;
   score.seconds = result.seconds;
   score.num_queries = result.num_queries;
   score.notes = result.notes;
-  if (!result.is_valid)
-    return score;
-  if (result.draws.rows() > 0 && result.draws.rows() < min_draws) {
-    addNote("too few draws", score.notes);
-    return score;
+  if (result.is_valid && !result.is_pose_only)
+    addPosterior(problem, result, score);
+  else if (result.is_valid && result.mean.matrix().allFinite())
+    addErrors(problem, result.mean, score);
+  if (score.hasLimit() && !score.hasPose()) {
+    score.region = 1.0;
+    score.log_score = min_log_score;
   }
-  const TwistPosterior posterior = posteriorOf(problem, result);
-  const auto factor = factorOf(posterior.moments.covariance);
-  if (!factor || !posterior.truth.allFinite() || !posterior.moments.mean.allFinite()) {
-    addNote("not a posterior", score.notes);
-    return score;
-  }
-  score.is_valid = true;
-  addGaussianScores(problem, posterior, *factor, result.shape, score);
-  score.pit = pitOf(posterior);
-  const auto scale = problem.prior_sd.cwiseInverse().asDiagonal();
-  score.energy_score =
-      energyScore(scoredDraws(posterior, *factor, problem.seed) * scale,
-                  (scale * posterior.truth).transpose());
-  addErrors(problem, result, posterior.moments.mean, score);
   return score;
 }
 
