@@ -4,6 +4,7 @@
 #include "coverage_options.h"
 #include "coverage_plots.h"
 #include "coverage_real.h"
+#include "coverage_sequences.h"
 #include "coverage_study.h"
 #include "coverage_table.h"
 #include "formatted_text.h"
@@ -16,8 +17,10 @@
 #include <plot/gnuplot.h>
 
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 namespace bayesian_icp::evaluate {
 
@@ -30,36 +33,10 @@ constexpr std::size_t num_quick_scenes = 2;
 /** What is there to choose from, and how it is made. */
 struct Offer {
   Names scenes;
-  Names conditions;
+  /** The cases of a scene. */
+  std::function<std::vector<CoverageCaseName>(const std::string& scene)> cases;
   CoverageCaseMaker make_case;
 };
-
-Offer
-simulatedOffer()
-{
-  Offer offer;
-  offer.scenes = tunedScenes();
-  for (const std::string& scene : newScenes())
-    offer.scenes.push_back(scene);
-  offer.conditions = coverageConditions();
-  offer.make_case = [](const CoverageCaseName& name) {
-    return makeCoverageCase(name.scene, name.condition, name.seed);
-  };
-  return offer;
-}
-
-Offer
-realOffer(const std::string& folder)
-{
-  const auto pairs = std::make_shared<const RealPairs>(folder);
-  Offer offer;
-  offer.scenes = pairs->names();
-  offer.conditions = {"real"};
-  offer.make_case = [pairs](const CoverageCaseName& name) {
-    return pairs->makeCase(name.scene, name.seed);
-  };
-  return offer;
-}
 
 /** The names asked for, all of \p known if none are.
  * \throws io::UsageError of one that is not known */
@@ -74,6 +51,77 @@ chosen(const Names& asked, const Names& known, const std::string& option)
     throw io::UsageError("--" + option + ": there is no " + io::quoted(*unknown) +
                          ", but " + boost::algorithm::join(known, " "));
   return asked.empty() ? known : asked;
+}
+
+/** Every seed in each of the conditions. */
+auto
+seedsIn(const Names& conditions, const CoverageOptions& options)
+{
+  return [conditions, num_seeds = options.num_seeds, first_seed = options.first_seed](
+             const std::string& scene) {
+    std::vector<CoverageCaseName> cases;
+    for (const std::string& condition : conditions)
+      for (int i = 0; i < num_seeds; ++i)
+        cases.push_back({scene, condition, first_seed + static_cast<std::uint64_t>(i)});
+    return cases;
+  };
+}
+
+Offer
+simulatedOffer(const CoverageOptions& options)
+{
+  Offer offer;
+  offer.scenes = tunedScenes();
+  for (const std::string& scene : newScenes())
+    offer.scenes.push_back(scene);
+  Names conditions = chosen(options.conditions, coverageConditions(), "conditions");
+  if (options.is_quick && options.conditions.empty())
+    conditions.resize(1);
+  offer.cases = seedsIn(conditions, options);
+  offer.make_case = [](const CoverageCaseName& name) {
+    return makeCoverageCase(name.scene, name.condition, name.seed);
+  };
+  return offer;
+}
+
+Offer
+realOffer(const CoverageOptions& options)
+{
+  const auto pairs = std::make_shared<const RealPairs>(options.real_folder);
+  Offer offer;
+  offer.scenes = pairs->names();
+  offer.cases = seedsIn({"real"}, options);
+  offer.make_case = [pairs](const CoverageCaseName& name) {
+    return pairs->makeCase(name.scene, name.seed);
+  };
+  return offer;
+}
+
+Offer
+sequenceOffer(const CoverageOptions& options)
+{
+  const auto pairs =
+      std::make_shared<const SequencePairs>(options.real_folder, options.sequences);
+  Offer offer;
+  offer.scenes = pairs->names();
+  offer.cases = [pairs](const std::string& scene) {
+    std::vector<CoverageCaseName> cases;
+    for (const std::uint64_t pair : pairs->pairs(scene))
+      cases.push_back({scene, pairs->condition(scene), pair});
+    return cases;
+  };
+  offer.make_case = [pairs](const CoverageCaseName& name) {
+    return pairs->makeCase(name.scene, name.seed);
+  };
+  return offer;
+}
+
+Offer
+offerOf(const CoverageOptions& options)
+{
+  if (options.real_folder.empty())
+    return simulatedOffer(options);
+  return options.has_sequences ? sequenceOffer(options) : realOffer(options);
 }
 
 /** The scenes asked for, `tuned` and `new` replaced by their scenes. */
@@ -95,14 +143,10 @@ expanded(const CoverageOptions& options)
 CoverageStudy
 studyOf(const CoverageOptions& options)
 {
-  const Offer offer =
-      options.real_folder.empty() ? simulatedOffer() : realOffer(options.real_folder);
+  const Offer offer = offerOf(options);
   Names scenes = chosen(expanded(options), offer.scenes, "scenes");
-  Names conditions = chosen(options.conditions, offer.conditions, "conditions");
   if (options.is_quick && options.scenes.empty())
     scenes.resize(std::min(scenes.size(), num_quick_scenes));
-  if (options.is_quick && options.conditions.empty())
-    conditions.resize(1);
   CoverageStudy study;
   study.make_case = offer.make_case;
   study.num_threads = options.num_threads;
@@ -114,10 +158,8 @@ studyOf(const CoverageOptions& options)
     if (std::count(methods.begin(), methods.end(), method.name) > 0)
       study.methods.push_back(method);
   for (const std::string& scene : scenes)
-    for (const std::string& condition : conditions)
-      for (int i = 0; i < options.num_seeds; ++i)
-        study.cases.push_back(
-            {scene, condition, options.first_seed + static_cast<std::uint64_t>(i)});
+    for (CoverageCaseName& name : offer.cases(scene))
+      study.cases.push_back(std::move(name));
   return study;
 }
 
