@@ -31,7 +31,8 @@ struct CoverageCase {
   Vector6d prior_mean = Vector6d::Zero();
   Vector6d prior_sd = Vector6d::Zero();
   /** Accuracy of the truth itself [m, rad], root mean square over three axes; zero in
-   * simulation. */
+   * simulation. Of the source's centroid and the rotation, of recordings of its origin
+   * and the rotation. */
   double truth_sd_translation = 0.0;
   double truth_sd_rotation = 0.0;
   /** Of recordings: mean displacement of the source's points beyond which a pose is

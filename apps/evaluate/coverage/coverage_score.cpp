@@ -27,8 +27,8 @@ struct TwistPosterior {
   /** Draws of the method, one a row; none if it is a Gaussian. */
   PoseMatrix draws;
   Vector6d truth;
-  /** Standard deviations of the truth itself. */
-  Vector6d truth_sd;
+  /** F, where F F^T is the covariance of the truth itself. */
+  Matrix6d truth_factor;
 };
 
 double
@@ -37,13 +37,27 @@ normalProbability(double x)
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
 }
 
+/** F of the truth. Recordings state how accurately T_target_source is known: the turn,
+ * and where it puts the source's origin. */
+Matrix6d
+truthFactor(const CoverageCase& problem, const MethodResult& result)
+{
+  Vector6d sd;
+  sd << Eigen::Vector3d::Constant(problem.truth_sd_translation),
+      Eigen::Vector3d::Constant(problem.truth_sd_rotation);
+  Matrix6d factor = sd.asDiagonal();
+  const Eigen::Vector3d origin = result.mean.translation() - result.centre;
+  for (int k = 0; k < 3 && !std::isnan(problem.lost_displacement); ++k)
+    factor.col(3 + k).head<3>() = sd[3 + k] * origin.cross(Eigen::Vector3d::Unit(k));
+  return factor;
+}
+
 TwistPosterior
 posteriorOf(const CoverageCase& problem, const MethodResult& result)
 {
   TwistPosterior posterior;
   posterior.truth = twistBetween(result.mean, problem.truth, result.centre);
-  posterior.truth_sd << Eigen::Vector3d::Constant(problem.truth_sd_translation),
-      Eigen::Vector3d::Constant(problem.truth_sd_rotation);
+  posterior.truth_factor = truthFactor(problem, result);
   posterior.draws.resize(result.draws.rows(), 6);
   for (Eigen::Index i = 0; i < result.draws.rows(); ++i)
     posterior.draws.row(i) = twistBetween(result.mean,
@@ -54,7 +68,8 @@ posteriorOf(const CoverageCase& problem, const MethodResult& result)
     posterior.moments.covariance = result.covariance;
   else
     posterior.moments = momentsOf(posterior.draws);
-  posterior.moments.covariance.diagonal() += posterior.truth_sd.cwiseAbs2();
+  posterior.moments.covariance +=
+      posterior.truth_factor * posterior.truth_factor.transpose();
   return posterior;
 }
 
@@ -63,7 +78,8 @@ pitOf(const TwistPosterior& posterior)
 {
   Vector6d pit;
   for (int k = 0; k < 6; ++k) {
-    const double truth = posterior.truth[k], sd = posterior.truth_sd[k];
+    const double truth = posterior.truth[k];
+    const double sd = posterior.truth_factor.row(k).norm();
     if (posterior.draws.rows() == 0) {
       pit[k] = normalProbability((truth - posterior.moments.mean[k]) /
                                  std::sqrt(posterior.moments.covariance(k, k)));
@@ -91,9 +107,9 @@ scoredDraws(const TwistPosterior& posterior, const Matrix6d& factor, std::uint64
   }
   PoseMatrix draws = posterior.draws;
   Random random(seed, truth_stream);
-  if (posterior.truth_sd.maxCoeff() > 0.0)
+  if (!posterior.truth_factor.isZero(0.0))
     for (Eigen::Index i = 0; i < draws.rows(); ++i)
-      draws.row(i) += posterior.truth_sd.cwiseProduct(random.normal6()).transpose();
+      draws.row(i) += (posterior.truth_factor * random.normal6()).transpose();
   return draws;
 }
 
