@@ -200,6 +200,22 @@ TEST(CoverageScore, AddsTheTruthsOwnAccuracy)
   EXPECT_NEAR(smeared.pit[0], 0.5 * (1.0 + std::erf(2.5 / std::sqrt(2.0))), 1e-9);
 }
 
+TEST(CoverageScore, OfARecordingHasTheTruthsAccuracyAtTheSourcesOrigin)
+{
+  RightPosterior right = rightPosterior(1, 0);
+  right.problem.lost_displacement = 10.0;
+  right.problem.truth_sd_translation = 4e-4;
+  right.problem.truth_sd_rotation = 1.2e-3;
+  right.result.covariance = 1e-14 * Matrix6d::Identity();
+  // A turn about the origin, then a shift of it: each in its own unit.
+  const Eigen::Isometry3d& mean = right.result.mean;
+  const Eigen::Vector3d turn(1.2e-3, 0.0, 2.4e-3);
+  right.problem.truth = mean;
+  right.problem.truth.linear() = expSO3(turn) * mean.linear();
+  right.problem.truth.translation() += Eigen::Vector3d(0.0, 4e-4, 0.0);
+  EXPECT_NEAR(coverageScoreOf(right.problem, right.result).nees, 1.0 + 1.0 + 4.0, 0.2);
+}
+
 TEST(CoverageScore, MeasuresErrorsAtTheCentroidOfTheSource)
 {
   RightPosterior right = rightPosterior(1, 0);
@@ -231,6 +247,72 @@ TEST(CoverageScore, RefusesWhatIsNoPosterior)
   }
 }
 
+TEST(CoverageScore, OfARecordingIsInMetresAndBounded)
+{
+  RightPosterior right = rightPosterior(1, 0);
+  const double log_score = coverageScoreOf(right.problem, right.result).log_score;
+  right.problem.lost_displacement = 0.1;
+  EXPECT_NEAR(coverageScoreOf(right.problem, right.result).log_score,
+              log_score - right.problem.prior_sd.array().log().sum(),
+              1e-9);
+  right.result.mean = Eigen::Translation3d(0.0, 0.0, 3.0) * right.problem.truth;
+  const CoverageScore lost = coverageScoreOf(right.problem, right.result);
+  EXPECT_NEAR(lost.displacement, 3.0, 1e-9);
+  EXPECT_TRUE(lost.isLost());
+  EXPECT_EQ(lost.log_score, min_log_score);
+  right.problem.lost_displacement = 3.1;
+  EXPECT_FALSE(coverageScoreOf(right.problem, right.result).isLost());
+  right.result.is_valid = false;
+  const CoverageScore missing = coverageScoreOf(right.problem, right.result);
+  EXPECT_TRUE(missing.isLost());
+  EXPECT_EQ(missing.log_score, min_log_score);
+  EXPECT_EQ(missing.region, 1.0);
+}
+
+TEST(CoverageScore, OfAPoseAloneHasErrorsOnly)
+{
+  RightPosterior right = rightPosterior(1, 0);
+  right.problem.lost_displacement = 0.1;
+  right.result.is_pose_only = true;
+  right.result.mean = Eigen::Translation3d(0.0, 0.0, 0.2) * right.problem.truth;
+  const CoverageScore score = coverageScoreOf(right.problem, right.result);
+  EXPECT_FALSE(score.is_valid);
+  EXPECT_TRUE(score.isLost());
+  EXPECT_NEAR(score.translation_error, 0.2, 1e-9);
+  EXPECT_TRUE(std::isnan(score.nees));
+  EXPECT_TRUE(std::isnan(score.log_score));
+}
+
+TEST(CoverageSummary, CountsAlarmsAndMisses)
+{
+  // NEES, displacement, flagged: good, an alarm, neither, bad but told, lost and
+  // missed, without a result.
+  std::vector<CoverageRun> runs(6);
+  const double nees[] = {1.0, 16.8, 20.0, 28.0, 1.0, std::nan("")};
+  const double displacement[] = {0.1, 0.1, 0.1, 0.1, 0.3, std::nan("")};
+  const bool is_flagged[] = {false, true, false, true, false, false};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    CoverageScore& score = runs[i].score;
+    score.lost_displacement = 0.2;
+    score.nees = nees[i];
+    score.displacement = displacement[i];
+    score.is_valid = !std::isnan(nees[i]);
+    score.notes = is_flagged[i] ? "flag:misfit" : "";
+  }
+  CoverageRun pose_only;
+  pose_only.score.lost_displacement = 0.2;
+  pose_only.score.displacement = 0.3;
+  runs.push_back(pose_only);
+  const CoverageSummary summary = summaryOf(runs);
+  EXPECT_TRUE(summary.has_limit);
+  EXPECT_EQ(summary.num_lost, 3u);
+  EXPECT_EQ(summary.num_good, 2u);
+  EXPECT_EQ(summary.num_alarms, 1u);
+  EXPECT_EQ(summary.num_bad, 3u);
+  EXPECT_EQ(summary.num_misses, 1u);
+  EXPECT_DOUBLE_EQ(summary.anees, (1.0 + 16.8 + 20.0 + 28.0) / 24.0);
+}
+
 TEST(CoverageSummary, IntervalIsWilsons)
 {
   // Newcombe (1998), table I, method 3: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
@@ -254,6 +336,7 @@ TEST(CoverageSummary, CountsFlagsAmongRunsOutside)
     run.score.is_valid = true;
     run.score.nees = 1.0;
     run.score.region = 0.1;
+    run.score.displacement = 0.0;
   }
   runs[0].score.nees = 13.0;
   runs[0].score.region = 0.97;
@@ -262,7 +345,7 @@ TEST(CoverageSummary, CountsFlagsAmongRunsOutside)
   runs[1].score.region = 0.9501;
   runs[2].score.notes = "flag:few_patches";
   runs[3].score.notes = "no flag:here";
-  runs[4].score.is_valid = false;
+  runs[4].score = CoverageScore();
   const CoverageSummary summary = summaryOf(runs);
   EXPECT_EQ(summary.num_runs, 5u);
   EXPECT_EQ(summary.num_valid, 4u);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 namespace bayesian_icp::evaluate {
 
@@ -37,6 +38,12 @@ entryOf(const nlohmann::json& json)
 }
 
 } // namespace
+
+bool
+hasManifest(const std::string& folder)
+{
+  return std::filesystem::exists(folder + "/" + manifest_name);
+}
 
 std::vector<ManifestEntry>
 readManifest(const std::string& folder)

@@ -30,6 +30,10 @@ struct ManifestEntry {
   AxisDeviation truth_sd;
 };
 
+/** \brief Whether there is FOLDER/manifest.json. */
+bool
+hasManifest(const std::string& folder);
+
 /** \brief Read FOLDER/manifest.json.
  * \throws io::FileError */
 std::vector<ManifestEntry>

@@ -8,7 +8,6 @@
 #include <io/errors.h>
 
 #include <algorithm>
-#include <filesystem>
 
 namespace bayesian_icp::evaluate {
 
@@ -19,12 +18,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint64_t thinning_stream = 0x7061697273;
-
-bool
-hasManifest(const std::string& folder)
-{
-  return std::filesystem::exists(folder + "/" + manifest_name);
-}
 
 /** Make \p guess the identity and the target's centroid the origin. */
 void

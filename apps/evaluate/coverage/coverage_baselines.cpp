@@ -15,6 +15,9 @@ using Eigen::Vector3d;
 
 namespace {
 
+using Baseline =
+    std::function<MethodResult(const CoverageCase&, const BaselineProblem&)>;
+
 MethodResult
 naive(const BaselineProblem& problem)
 {
@@ -57,7 +60,7 @@ pclProblem(const CoverageCase& coverage_case, const BaselineProblem& problem)
 }
 
 MethodResult
-gicp(const CoverageCase& coverage_case, const BaselineProblem& problem)
+gicpWithHessian(const CoverageCase& coverage_case, const BaselineProblem& problem)
 {
   const GicpFit gicp = fitPclGicp(pclProblem(coverage_case, problem));
   MethodResult result;
@@ -75,19 +78,20 @@ gicp(const CoverageCase& coverage_case, const BaselineProblem& problem)
   return result;
 }
 
-MethodResult
-icp(const CoverageCase& coverage_case, const BaselineProblem& problem)
+/** A registration that says nothing about its error. */
+Baseline
+poseOnly(PclFit (*fit)(const PclProblem&))
 {
-  const PclFit fit = fitPclIcp(pclProblem(coverage_case, problem));
-  MethodResult result = problem.combineWithPrior(fit.pose, GaussianInformation());
-  result.mean = fit.pose;
-  result.num_queries = -1;
-  result.notes = fit.has_converged ? "pose only" : "pose only;not converged";
-  return result;
+  return [fit](const CoverageCase& coverage_case, const BaselineProblem& problem) {
+    const PclFit found = fit(pclProblem(coverage_case, problem));
+    MethodResult result;
+    result.is_valid = result.is_pose_only = true;
+    result.mean = found.pose;
+    result.num_queries = -1;
+    result.notes = found.has_converged ? "pose only" : "pose only;not converged";
+    return result;
+  };
 }
-
-using Baseline =
-    std::function<MethodResult(const CoverageCase&, const BaselineProblem&)>;
 
 /** \p baseline for clouds that are not empty. */
 CoverageMethod
@@ -120,8 +124,9 @@ baselineMethods()
   return {method("naive", ofProblem(naive)),
           method("closed-form", ofProblem(closedForm)),
           method("point-to-point-sandwich", ofProblem(sandwich)),
-          method("gicp", gicp),
-          method("icp", icp)};
+          method("gicp-hessian", gicpWithHessian),
+          method("gicp", poseOnly(fitPclGicpAsIs)),
+          method("icp", poseOnly(fitPclIcp))};
 }
 
 } // namespace bayesian_icp::evaluate

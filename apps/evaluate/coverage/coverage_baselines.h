@@ -1,11 +1,11 @@
 /** \file
  * \brief What others make of a registration's uncertainty, for the coverage study.
  *
- * All combine with the case's prior as a calibrated user would: the method's
- * information and the prior's add up in twists about the moved source's centroid, and
- * the mean is one Newton step from the method's pose. At most 2000 source points are
- * registered, a random choice. All use one thread and leave MethodResult::seconds to
- * the caller.
+ * All that have a covariance combine with the case's prior as a calibrated user would:
+ * the method's information and the prior's add up in twists about the moved source's
+ * centroid, and the mean is one Newton step from the method's pose. At most 2000 source
+ * points are registered, a random choice, unless said otherwise. All use one thread and
+ * leave MethodResult::seconds to the caller.
  */
 #pragma once
 
@@ -22,10 +22,11 @@ namespace bayesian_icp::evaluate {
  *   sigma from the residuals' median;
  * - `point-to-point-sandwich`: the pose of `naive`; scores clustered in space and
  *   curvature by secants;
- * - `gicp`: PCL's GICP from the prior's mean; the inverse of its Hessian, in which a
- *   point is known to 1 m in its plane and 0.03 m across, whatever the scene;
- * - `icp`: PCL's ICP from the prior's mean, for its pose: the covariance is the
- *   prior's, and the notes say so. */
+ * - `gicp-hessian`: PCL's GICP from the prior's mean; the inverse of its Hessian, in
+ * which a point is known to 1 m in its plane and 0.03 m across, whatever the scene;
+ * - `gicp`: PCL's GICP as it comes, but with 50 iterations, from the prior's mean and
+ *   with all source points; a pose only;
+ * - `icp`: PCL's ICP from the prior's mean; a pose only. */
 std::vector<CoverageMethod>
 baselineMethods();
 

@@ -3,9 +3,8 @@
 #include "coverage_methods.h"
 #include "formatted_text.h"
 
-#include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
-#include <bayesian_icp/summary.h>
+#include <bayesian_icp/random.h>
 
 #include <algorithm>
 
@@ -13,23 +12,34 @@ namespace bayesian_icp::evaluate {
 
 namespace {
 
-constexpr Eigen::Index max_source_points = 2000;
-constexpr std::uint64_t thinning_stream = 0x7468696e;
+/** The preset's own. */
+constexpr std::uint64_t thinning_stream = std::uint64_t(1) << 40;
 
-/** At most max_source_points of the points, in random order, as the preset has them:
- * the first of them are searched with. */
+/** The points that the preset chooses, in its order: the first of them are searched
+ * with. */
 Eigen::Matrix3Xd
 thinnedSource(const CoverageCase& problem)
 {
   Random random(problem.seed, thinning_stream);
   return problem.source(Eigen::all,
-                        randomChoice(problem.source.cols(), max_source_points, random));
+                        randomChoice(problem.source.cols(),
+                                     CalibratedOptions().max_source_points,
+                                     random));
 }
 
 std::string
 numberNote(const char* name, double value)
 {
   return format(";%s=%.3g", name, value);
+}
+
+long
+numPriorOnly(const DataReport& report)
+{
+  return std::count_if(
+      report.directions.begin(), report.directions.end(), [](const auto& direction) {
+        return direction.observability == Observability::PriorOnly;
+      });
 }
 
 /** The raised flags, how many directions the data say nothing about, and the
@@ -48,11 +58,7 @@ notesOf(const DataReport& report)
   flag(report.flags.misfit, "misfit");
   flag(report.flags.no_information, "no_information");
   flag(report.flags.prior_conflict, "prior_conflict");
-  const auto num_free = std::count_if(
-      report.directions.begin(), report.directions.end(), [](const auto& direction) {
-        return direction.observability == Observability::PriorOnly;
-      });
-  return notes + "prior_only=" + std::to_string(num_free) +
+  return notes + "prior_only=" + std::to_string(numPriorOnly(report)) +
          numberNote("basin_distance", report.basin_distance) +
          numberNote("active", report.active_fraction) +
          numberNote("other_cost_ratio", report.other_cost_ratio) +
@@ -113,18 +119,14 @@ runCalibrated(const CoverageCase& problem)
 MethodResult
 runCalibratedDraws(const CoverageCase& problem)
 {
-  const Registration registration(problem);
-  const SurfaceScorer& scorer = registration.scorer;
-  const Prior& prior = registration.prior;
-  const std::vector<CalibratedMode> modes = calibratedModes(scorer, prior);
-  MethodResult result = resultOf(modes.front().estimate, scorer);
-  ChainOptions options;
-  options.seed = problem.seed;
-  options.num_threads = 1;
-  result.draws = pooledDraws(sampleCalibrated(scorer, prior, modes, options).chains);
-  // Those of the draws are not counted.
-  result.num_queries = -1;
-  result.is_valid = result.draws.rows() > 0;
+  const PosteriorEstimate estimate = presetEstimate(problem, Preset::Calibrated);
+  MethodResult result = resultOf(problem, estimate);
+  const DataReport& report = estimate.summary.data;
+  if (report.is_available) {
+    result.shape = {report.degrees_of_freedom,
+                    static_cast<int>(6 - numPriorOnly(report))};
+    result.notes += (result.notes.empty() ? "" : ";") + notesOf(report);
+  }
   return result;
 }
 

@@ -19,7 +19,8 @@ calibratedEstimateOf(const CoverageCase& problem);
 MethodResult
 runCalibrated(const CoverageCase& problem);
 
-/** \brief The same and 2000 draws. */
+/** \brief What a user gets: 2000 draws of the preset, from all modes, with its status
+ * as a flag. */
 MethodResult
 runCalibratedDraws(const CoverageCase& problem);
 

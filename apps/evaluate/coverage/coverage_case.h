@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace bayesian_icp::evaluate {
@@ -30,9 +31,13 @@ struct CoverageCase {
   Vector6d prior_mean = Vector6d::Zero();
   Vector6d prior_sd = Vector6d::Zero();
   /** Accuracy of the truth itself [m, rad], root mean square over three axes; zero in
-   * simulation. */
+   * simulation. Of the source's centroid and the rotation, of recordings of its origin
+   * and the rotation. */
   double truth_sd_translation = 0.0;
   double truth_sd_rotation = 0.0;
+  /** Of recordings: mean displacement of the source's points beyond which a pose is
+   * lost [m]. NaN: no pose is. */
+  double lost_displacement = std::numeric_limits<double>::quiet_NaN();
 };
 
 /** \brief What a method makes of a case. */
@@ -41,6 +46,8 @@ struct MethodResult {
   bool is_valid = false;
   /** T_target_source. */
   Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
+  /** There is a pose, \p mean, but no posterior. */
+  bool is_pose_only = false;
   /** Of left twists (v, w) about \p centre, target frame [m, rad]. */
   Matrix6d covariance = Matrix6d::Zero();
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();

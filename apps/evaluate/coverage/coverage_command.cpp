@@ -4,6 +4,7 @@
 #include "coverage_options.h"
 #include "coverage_plots.h"
 #include "coverage_real.h"
+#include "coverage_sequences.h"
 #include "coverage_study.h"
 #include "coverage_table.h"
 #include "formatted_text.h"
@@ -16,8 +17,12 @@
 #include <plot/gnuplot.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <iostream>
 #include <memory>
+#include <numeric>
+#include <utility>
 
 namespace bayesian_icp::evaluate {
 
@@ -40,13 +45,25 @@ struct SceneSet {
 /** What is there to choose from, and how it is made. */
 struct Offer {
   std::vector<SceneSet> sets;
+  /** The seeds of a scene's cases, in each of its conditions. */
+  std::function<std::vector<std::uint64_t>(const std::string& scene)> seeds;
   CoverageCaseMaker make_case;
 };
 
+/** Those asked for, whatever the scene. */
+auto
+seedsOf(const CoverageOptions& options)
+{
+  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(options.num_seeds));
+  std::iota(seeds.begin(), seeds.end(), options.first_seed);
+  return [seeds](const std::string&) { return seeds; };
+}
+
 Offer
-simulatedOffer()
+simulatedOffer(const CoverageOptions& options)
 {
   Offer offer;
+  offer.seeds = seedsOf(options);
   offer.sets = {{"tuned", tunedScenes(), coverageConditions(), true},
                 {"new", newScenes(), coverageConditions(), true},
                 {"lidar", lidarScenes(), lidarConditions(), false}};
@@ -57,15 +74,40 @@ simulatedOffer()
 }
 
 Offer
-realOffer(const std::string& folder)
+realOffer(const CoverageOptions& options)
 {
-  const auto pairs = std::make_shared<const RealPairs>(folder);
+  const auto pairs = std::make_shared<const RealPairs>(options.real_folder);
   Offer offer;
   offer.sets = {{"", pairs->names(), {"real"}, true}};
+  offer.seeds = seedsOf(options);
   offer.make_case = [pairs](const CoverageCaseName& name) {
     return pairs->makeCase(name.scene, name.seed);
   };
   return offer;
+}
+
+/** Of recordings: the seed of a case is the number of its pair. */
+Offer
+sequenceOffer(const CoverageOptions& options)
+{
+  const auto pairs =
+      std::make_shared<const SequencePairs>(options.real_folder, options.sequences);
+  Offer offer;
+  for (const std::string& name : pairs->names())
+    offer.sets.push_back({"", {name}, {pairs->condition(name)}, true});
+  offer.seeds = [pairs](const std::string& scene) { return pairs->pairs(scene); };
+  offer.make_case = [pairs](const CoverageCaseName& name) {
+    return pairs->makeCase(name.scene, name.seed);
+  };
+  return offer;
+}
+
+Offer
+offerOf(const CoverageOptions& options)
+{
+  if (options.real_folder.empty())
+    return simulatedOffer(options);
+  return options.has_sequences ? sequenceOffer(options) : realOffer(options);
 }
 
 /** The names asked for, all of \p known if none are.
@@ -169,8 +211,7 @@ methodsOf(const CoverageOptions& options)
 CoverageStudy
 studyOf(const CoverageOptions& options)
 {
-  const Offer offer =
-      options.real_folder.empty() ? simulatedOffer() : realOffer(options.real_folder);
+  const Offer offer = offerOf(options);
   const Names scenes = scenesOf(options, offer);
   Names known_conditions;
   for (const SceneSet& set : offer.sets)
@@ -182,9 +223,8 @@ studyOf(const CoverageOptions& options)
   study.methods = methodsOf(options);
   for (const std::string& scene : scenes)
     for (const std::string& condition : conditionsOf(options, offer, scene))
-      for (int i = 0; i < options.num_seeds; ++i)
-        study.cases.push_back(
-            {scene, condition, options.first_seed + static_cast<std::uint64_t>(i)});
+      for (const std::uint64_t seed : offer.seeds(scene))
+        study.cases.push_back({scene, condition, seed});
   return study;
 }
 

@@ -14,7 +14,8 @@ constexpr char columns[] =
     "pit_vx,pit_vy,pit_vz,pit_wx,pit_wy,pit_wz,z_vx,z_vy,z_vz,z_wx,z_wy,z_wz,"
     "relative_sd_vx,relative_sd_vy,relative_sd_vz,"
     "relative_sd_wx,relative_sd_wy,relative_sd_wz,"
-    "translation_error_m,rotation_error_rad,seconds,queries,notes";
+    "translation_error_m,rotation_error_rad,displacement_m,lost_displacement_m,"
+    "seconds,queries,notes";
 
 /** Numbers of a score in the order of the columns from nees to queries. */
 template <typename ScoreType, typename Visit>
@@ -30,6 +31,8 @@ forEachNumber(ScoreType& score, const Visit& visit)
       visit((*vector)[k]);
   visit(score.translation_error);
   visit(score.rotation_error);
+  visit(score.displacement);
+  visit(score.lost_displacement);
   visit(score.seconds);
   visit(score.num_queries);
 }

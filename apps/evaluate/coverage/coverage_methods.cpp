@@ -4,7 +4,6 @@
 #include "coverage_calibrated.h"
 
 #include <bayesian_icp/calibration/twist.h>
-#include <bayesian_icp/pipeline.h>
 
 #include <Eigen/LU>
 
@@ -39,26 +38,8 @@ runPrior(const CoverageCase& problem)
 MethodResult
 runPaperPreset(const CoverageCase& problem)
 {
-  Options options;
-  options.preset = Preset::Paper;
-  options.prior.mean = problem.prior_mean;
-  options.prior.variance = problem.prior_sd.cwiseAbs2();
-  options.prior.frame = PriorFrame::SourceCentroid;
-  options.chains.seed = problem.seed;
-  options.chains.num_threads = 1;
-  const PosteriorEstimate estimate =
-      estimatePosterior(problem.source,
-                        KdTree(problem.target.cast<float>(), 1),
-                        problem.prior_mean,
-                        options);
-  MethodResult result;
-  result.notes = toString(estimate.summary.status);
-  result.is_valid = estimate.samples.rows() > 0;
-  if (!result.is_valid)
-    return result;
-  result.mean = isometryOf(estimate.summary.mean);
-  result.centre = result.mean * centroidOf(problem);
-  result.draws = estimate.samples;
+  MethodResult result = resultOf(problem, presetEstimate(problem, Preset::Paper));
+  const Options options;
   const ChainOptions& chains = options.chains;
   result.num_queries =
       (static_cast<long>(chains.num_chains) * chains.num_burn_in +
@@ -99,6 +80,36 @@ timedResult(const CoverageMethod& method, const CoverageCase& problem)
     result.notes = std::string("exception: ") + error.what();
   }
   result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  return result;
+}
+
+PosteriorEstimate
+presetEstimate(const CoverageCase& problem, Preset preset)
+{
+  Options options;
+  options.preset = preset;
+  options.prior.mean = problem.prior_mean;
+  options.prior.variance = problem.prior_sd.cwiseAbs2();
+  options.prior.frame = PriorFrame::SourceCentroid;
+  options.chains.seed = problem.seed;
+  options.chains.num_threads = 1;
+  return estimatePosterior(problem.source, problem.target, problem.prior_mean, options);
+}
+
+MethodResult
+resultOf(const CoverageCase& problem, const PosteriorEstimate& estimate)
+{
+  const Summary& summary = estimate.summary;
+  MethodResult result;
+  if (summary.status != Status::Ok)
+    result.notes = std::string("flag:") + toString(summary.status);
+  result.is_valid = estimate.samples.rows() > 0;
+  if (!result.is_valid)
+    return result;
+  result.mean = isometryOf(summary.mean);
+  result.centre = result.mean * centroidOf(problem);
+  result.draws = estimate.samples;
+  result.num_queries = -1;
   return result;
 }
 

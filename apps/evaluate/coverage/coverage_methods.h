@@ -5,7 +5,7 @@
 
 #include "coverage_case.h"
 
-#include <bayesian_icp/prior.h>
+#include <bayesian_icp/pipeline.h>
 
 #include <functional>
 #include <string>
@@ -29,6 +29,16 @@ coverageMethods();
  * valid, with its message as the note. */
 MethodResult
 timedResult(const CoverageMethod& method, const CoverageCase& problem);
+
+/** \brief What the library makes of a case with a preset's defaults and the case's
+ * prior and seed, in one thread. */
+PosteriorEstimate
+presetEstimate(const CoverageCase& problem, Preset preset);
+
+/** \brief Its draws as a result; a status that is not Ok is a flag. Queries are not
+ * counted. */
+MethodResult
+resultOf(const CoverageCase& problem, const PosteriorEstimate& estimate);
 
 /** \brief The case's prior, about the source's centroid. */
 Prior

@@ -3,6 +3,8 @@
  */
 #pragma once
 
+#include "coverage_sequences.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -19,8 +21,11 @@ struct CoverageOptions {
   int num_seeds = 20;
   std::uint64_t first_seed = 1;
   std::string result_file;
-  /** Folder of real pairs with a manifest.json; empty: simulated scenes. */
+  /** Folder of real pairs with a manifest.json, or of recordings; empty: simulated
+   * scenes. */
   std::string real_folder;
+  bool has_sequences = false;
+  SequenceOptions sequences;
   /** Empty: no plots. */
   std::string plot_folder;
   int num_threads = 1;

@@ -24,11 +24,28 @@ struct Share {
 Share
 shareOf(std::size_t num_hits, std::size_t num_trials);
 
-/** \brief Shares, means and medians are over the valid runs; NaN without any. */
+/** \brief Squared Mahalanobis distances of the truth (NEES) beyond which a Gaussian has
+ * 1 % and 0.01 %. A run below the first that is not lost is good, one that is lost or
+ * above the second is bad. */
+constexpr double max_good_nees = 16.812;
+constexpr double min_bad_nees = 27.856;
+
+/** \brief Shares, means and medians are over the runs that have the number; NaN without
+ * any. */
 struct CoverageSummary {
   std::size_t num_runs = 0;
   std::size_t num_valid = 0;
-  /** Mean of nees / 6; 1 if the posteriors are right. */
+  /** Whether the runs are of recordings, whose poses can be lost; and those that are.
+   */
+  bool has_limit = false;
+  std::size_t num_lost = 0;
+  /** Good runs, and those of them that their method doubts; bad ones, and those that it
+   * does not doubt. Poses alone are neither. */
+  std::size_t num_good = 0;
+  std::size_t num_alarms = 0;
+  std::size_t num_bad = 0;
+  std::size_t num_misses = 0;
+  /** Mean of nees / 6 of the runs that are not lost; 1 if the posteriors are right. */
   double anees;
   /** Shares of runs with the truth within the region of each of coverage_levels. */
   std::array<Share, coverage_levels.size()> coverage;

@@ -12,6 +12,7 @@ namespace bayesian_icp::evaluate {
 namespace {
 
 constexpr double mm = 1e3;
+constexpr double mrad = 1e3;
 constexpr double degree = 180.0 / 3.14159265358979323846;
 
 using Runs = std::vector<CoverageRun>;
@@ -43,6 +44,33 @@ numberText(double value, int width, int num_decimals)
              : format("%*.1e", width, value);
 }
 
+/** "2/31" */
+std::string
+countText(std::size_t count, std::size_t of, int width)
+{
+  return format(
+      "%*s", width, (std::to_string(count) + '/' + std::to_string(of)).c_str());
+}
+
+/** A line of recordings. */
+void
+printSequenceLine(const std::string& method,
+                  const CoverageSummary& summary,
+                  std::ostream& stream)
+{
+  stream << format(
+                "  %-23s %5zu %5zu", method.c_str(), summary.num_runs, summary.num_lost)
+         << numberText(summary.anees, 9, 2) << "  "
+         << shareText(summary.coverage.front()) << "  "
+         << shareText(summary.coverage.back())
+         << numberText(summary.mean_log_score, 8, 2)
+         << numberText(mm * summary.translation_error, 10, 2)
+         << numberText(mrad * summary.rotation_error, 9, 3)
+         << countText(summary.num_alarms, summary.num_good, 10)
+         << countText(summary.num_misses, summary.num_bad, 9)
+         << numberText(summary.median_seconds, 9, 3) << '\n';
+}
+
 void
 printLine(const std::string& method,
           const CoverageSummary& summary,
@@ -72,8 +100,10 @@ printBlock(const std::string& title, const Runs& runs, std::ostream& stream)
   if (runs.empty())
     return;
   stream << title << '\n';
-  for (const auto& [method, of_method] : runsByMethod(runs))
-    printLine(method, summaryOf(of_method), stream);
+  for (const auto& [method, of_method] : runsByMethod(runs)) {
+    const CoverageSummary summary = summaryOf(of_method);
+    (summary.has_limit ? printSequenceLine : printLine)(method, summary, stream);
+  }
 }
 
 Runs
@@ -95,6 +125,16 @@ namesOf(const Runs& runs, std::string CoverageRunName::*member)
     if (std::find(names.begin(), names.end(), run.name.*member) == names.end())
       names.push_back(run.name.*member);
   return names;
+}
+
+void
+printSequenceHeader(std::ostream& stream)
+{
+  stream
+      << "                                            mean  share of truths within the "
+         "region of ...      mean   median   median    alarms   misses   median\n"
+         "  method                  pairs  lost   NEES/6              50 %        "
+         "      95 %   log p       mm     mrad     /good     /bad        s\n";
 }
 
 void
@@ -133,18 +173,21 @@ printCoverageTable(const Runs& runs, std::ostream& stream)
 {
   const auto scenes = namesOf(runs, &CoverageRunName::scene);
   const auto conditions = namesOf(runs, &CoverageRunName::condition);
-  printHeader(stream);
+  const bool has_limit = !runs.empty() && runs.front().score.hasLimit();
+  (has_limit ? printSequenceHeader : printHeader)(stream);
   for (const std::string& scene : scenes)
     for (const std::string& condition : conditions)
       printBlock(std::string(scene).append(", ").append(condition),
                  select(runs, scene, condition),
                  stream);
-  if (conditions.size() > 1)
-    for (const std::string& scene : scenes)
-      printBlock(scene + ", all conditions", select(runs, scene, ""), stream);
-  if (scenes.size() > 1 && conditions.size() > 1)
-    for (const std::string& condition : conditions)
-      printBlock("all scenes, " + condition, select(runs, "", condition), stream);
+  for (const std::string& scene : scenes)
+    if (const Runs pool = select(runs, scene, "");
+        namesOf(pool, &CoverageRunName::condition).size() > 1)
+      printBlock(scene + ", all conditions", pool, stream);
+  for (const std::string& condition : conditions)
+    if (const Runs pool = select(runs, "", condition);
+        conditions.size() > 1 && namesOf(pool, &CoverageRunName::scene).size() > 1)
+      printBlock("all scenes, " + condition, pool, stream);
   if (scenes.size() * conditions.size() > 1)
     printBlock("all", runs, stream);
 }

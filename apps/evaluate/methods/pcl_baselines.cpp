@@ -3,6 +3,8 @@
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
 
+#include <algorithm>
+
 namespace bayesian_icp::evaluate {
 
 using Eigen::Index;
@@ -74,9 +76,10 @@ struct CentredClouds {
 PclFit
 align(pcl::Registration<Point, Point>& registration,
       const CentredClouds& clouds,
-      const Isometry3d& guess)
+      const Isometry3d& guess,
+      int max_iterations = max_steps)
 {
-  registration.setMaximumIterations(max_steps);
+  registration.setMaximumIterations(max_iterations);
   Cloud aligned;
   registration.align(aligned, clouds.centred(guess));
   PclFit fit;
@@ -98,6 +101,14 @@ public:
     return planes;
   }
 };
+
+/** Fewer than the neighbourhood of a plane has. */
+bool
+hasTooFewPoints(const OpenGicp& gicp, const PclProblem& problem)
+{
+  return std::min(problem.source.cols(), problem.target.cols()) <
+         gicp.getCorrespondenceRandomness();
+}
 
 /** Planes at the source points that are registered. */
 OpenGicp::MatricesVectorPtr
@@ -145,13 +156,25 @@ fitPclIcp(const PclProblem& problem)
   return align(icp, clouds, problem.guess);
 }
 
+PclFit
+fitPclGicpAsIs(const PclProblem& problem)
+{
+  constexpr int max_iterations = 50;
+  OpenGicp gicp;
+  if (hasTooFewPoints(gicp, problem))
+    return {false, problem.guess};
+  const CentredClouds clouds(problem);
+  gicp.setInputSource(clouds.whole_source);
+  gicp.setInputTarget(clouds.target);
+  return align(gicp, clouds, problem.guess, max_iterations);
+}
+
 GicpFit
 fitPclGicp(const PclProblem& problem)
 {
   GicpFit result;
   OpenGicp gicp;
-  const Index least = gicp.getCorrespondenceRandomness();
-  if (problem.source.cols() < least || problem.target.cols() < least)
+  if (hasTooFewPoints(gicp, problem))
     return result;
   const CentredClouds clouds(problem);
   const auto source_planes =

@@ -29,6 +29,13 @@ struct PclFit {
 PclFit
 fitPclIcp(const PclProblem& problem);
 
+/** \brief pcl::GeneralizedIterativeClosestPoint with its defaults, but 50 iterations,
+ * on the whole source.
+ * \return the guess, not converged, if a cloud has fewer points than a plane's
+ *         neighbourhood */
+PclFit
+fitPclGicpAsIs(const PclProblem& problem);
+
 struct GicpFit {
   PclFit fit;
   /** The source points that were registered, moved, target frame [m]. */
