@@ -11,9 +11,10 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Draws that are turned further from their mean have no barycentre on SE(3) [rad]: at
- * half a turn the rotation vector jumps. */
+/** Draws that are turned further from their mean have no barycentre on SE(3) [rad]: any
+ * of them, as the rotation vector jumps at half a turn, and in root mean square. */
 constexpr double max_turn = 3.0;
+constexpr double max_rms_turn = 1.0;
 /** Steps towards the barycentre, and the last one: in radians, and in metres as a share
  * of the lengths that it is made of. */
 constexpr int max_steps = 30;
@@ -48,8 +49,10 @@ moveToBarycentre(const PoseMatrix& draws, Vector6d& mean)
   constexpr auto convention = CovarianceConvention::RightSE3;
   for (int i = 0; i < max_steps; ++i) {
     const PoseMatrix errors = errorsAbout(mean, draws, convention);
-    if (!(errors.rightCols<3>().rowwise().norm().array() <= max_turn).all())
-      return false; // NaN, too
+    const Eigen::VectorXd squared_turns = errors.rightCols<3>().rowwise().squaredNorm();
+    if (!(squared_turns.mean() <= max_rms_turn * max_rms_turn && // nor for NaN
+          squared_turns.maxCoeff() <= max_turn * max_turn))
+      return false;
     const Vector6d step = errors.colwise().mean().transpose();
     const double length =
         mean.head<3>().norm() + errors.leftCols<3>().rowwise().norm().mean();

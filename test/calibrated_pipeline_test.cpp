@@ -210,8 +210,6 @@ TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
         4.0 *
             std::sqrt(2.0 * (2.0 * near_error * near_error + 4.0 * near_error) / 400.0))
         << toString(convention);
-    std::cout << places.offset << ' ' << places.spread << ' ' << near_error << ' '
-              << squaredErrorOf(scans.truth, there.summary, convention) << std::endl;
   }
 }
 

@@ -139,8 +139,8 @@ coordinateMeans(const PoseMatrix& draws);
  * The pose M for which the sum of log(M^-1 X) over the draws X is zero: the
  * bi-invariant mean on SE(3) (Pennec and Arsigny 2012). It is the same motion of the
  * points whatever the frames: draws A X B have the mean A M B. Draws that spread too
- * far to have one (a draw is turned by more than 3 rad from it, or it is not found)
- * have their coordinateMeans() instead. */
+ * far to have one (turned from it by 1 rad in root mean square, or one of them by 3
+ * rad) have their coordinateMeans() instead. */
 BAYESIAN_ICP_EXPORT Vector6d
 meanPose(const PoseMatrix& draws);
 
