@@ -11,6 +11,15 @@ namespace bayesian_icp {
 
 namespace {
 
+/** Draws that are turned further from their mean have no barycentre on SE(3) [rad]: any
+ * of them, as the rotation vector jumps at half a turn, and in root mean square. */
+constexpr double max_turn = 3.0;
+constexpr double max_rms_turn = 1.0;
+/** Steps towards the barycentre, and the last one: in radians, and in metres as a share
+ * of the lengths that it is made of. */
+constexpr int max_steps = 30;
+constexpr double max_last_step = 1e-12;
+
 PoseMatrix
 errorsAbout(const Vector6d& mean,
             const PoseMatrix& draws,
@@ -20,6 +29,39 @@ errorsAbout(const Vector6d& mean,
   for (Eigen::Index i = 0; i < draws.rows(); ++i)
     errors.row(i) = poseError(draws.row(i).transpose(), mean, convention).transpose();
   return errors;
+}
+
+/** The pose of the draws' mean matrix. */
+Vector6d
+chordalMean(const PoseMatrix& draws)
+{
+  Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    sum += matrixOf(draws.row(i).transpose());
+  return poseOf(sum / static_cast<double>(draws.rows()));
+}
+
+/** Move \p mean to the pose about which the draws' twists have the mean zero.
+ * \return whether there is one */
+bool
+moveToBarycentre(const PoseMatrix& draws, Vector6d& mean)
+{
+  constexpr auto convention = CovarianceConvention::RightSE3;
+  for (int i = 0; i < max_steps; ++i) {
+    const PoseMatrix errors = errorsAbout(mean, draws, convention);
+    const Eigen::VectorXd squared_turns = errors.rightCols<3>().rowwise().squaredNorm();
+    if (!(squared_turns.mean() <= max_rms_turn * max_rms_turn && // nor for NaN
+          squared_turns.maxCoeff() <= max_turn * max_turn))
+      return false;
+    const Vector6d step = errors.colwise().mean().transpose();
+    const double length =
+        mean.head<3>().norm() + errors.leftCols<3>().rowwise().norm().mean();
+    mean = poseFromError(step, mean, convention);
+    if (step.head<3>().norm() <= max_last_step * length &&
+        step.tail<3>().norm() <= max_last_step)
+      return true;
+  }
+  return false;
 }
 
 std::vector<const Chain*>
@@ -32,9 +74,10 @@ usableChains(const std::vector<Chain>& chains)
   return usable;
 }
 
-/** Errors of coordinate \p k about \p mean, (draws that every chain has) x (chains). */
+/** Errors of coordinate \p k about \p means, (draws that every chain has) x (chains).
+ */
 Eigen::MatrixXd
-coordinateErrors(const Vector6d& mean, const std::vector<const Chain*>& chains, int k)
+coordinateErrors(const Vector6d& means, const std::vector<const Chain*>& chains, int k)
 {
   Eigen::Index num_draws = chains.empty() ? 0 : chains.front()->draws.rows();
   for (const auto* chain : chains)
@@ -42,7 +85,7 @@ coordinateErrors(const Vector6d& mean, const std::vector<const Chain*>& chains, 
   Eigen::MatrixXd errors(num_draws, static_cast<Eigen::Index>(chains.size()));
   for (Eigen::Index c = 0; c < errors.cols(); ++c)
     for (Eigen::Index i = 0; i < num_draws; ++i) {
-      const double error = chains[static_cast<std::size_t>(c)]->draws(i, k) - mean[k];
+      const double error = chains[static_cast<std::size_t>(c)]->draws(i, k) - means[k];
       errors(i, c) = k < 3 ? error : wrapAngle(error);
     }
   return errors;
@@ -53,6 +96,9 @@ summarizeCoordinate(const Eigen::VectorXd& errors,
                     const Eigen::MatrixXd& errors_by_chain,
                     CoordinateSummary& coordinate)
 {
+  if (errors.size() > 1)
+    coordinate.standard_deviation =
+        std::sqrt(errors.squaredNorm() / static_cast<double>(errors.size() - 1));
   coordinate.quantile_2_5 = coordinate.mean + quantile(errors, 0.025);
   coordinate.median = coordinate.mean + quantile(errors, 0.5);
   coordinate.quantile_97_5 = coordinate.mean + quantile(errors, 0.975);
@@ -160,15 +206,23 @@ pooledDraws(const std::vector<Chain>& chains)
 }
 
 Vector6d
-meanPose(const PoseMatrix& draws)
+coordinateMeans(const PoseMatrix& draws)
 {
   if (draws.rows() == 0)
     return Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
-  Vector6d mean = draws.colwise().mean().transpose();
+  Vector6d means = draws.colwise().mean().transpose();
   for (int k = 3; k < 6; ++k)
-    mean[k] = std::atan2(draws.col(k).array().sin().mean(),
-                         draws.col(k).array().cos().mean());
-  return mean;
+    means[k] = std::atan2(draws.col(k).array().sin().mean(),
+                          draws.col(k).array().cos().mean());
+  return means;
+}
+
+Vector6d
+meanPose(const PoseMatrix& draws)
+{
+  Vector6d mean = chordalMean(draws);
+  return draws.rows() > 0 && moveToBarycentre(draws, mean) ? mean
+                                                           : coordinateMeans(draws);
 }
 
 Matrix6d
@@ -197,15 +251,12 @@ summarize(const ChainSet& chain_set)
     summary.covariances[static_cast<std::size_t>(convention)] =
         covarianceAbout(summary.mean, draws, convention);
 
-  const PoseMatrix errors =
-      errorsAbout(summary.mean, draws, CovarianceConvention::Parameters);
+  const Vector6d means = coordinateMeans(draws);
+  const PoseMatrix errors = errorsAbout(means, draws, CovarianceConvention::Parameters);
   for (int k = 0; k < 6; ++k) {
     auto& coordinate = summary.coordinates[static_cast<std::size_t>(k)];
-    coordinate.mean = summary.mean[k];
-    coordinate.standard_deviation =
-        std::sqrt(summary.covariance(CovarianceConvention::Parameters)(k, k));
-    summarizeCoordinate(
-        errors.col(k), coordinateErrors(summary.mean, chains, k), coordinate);
+    coordinate.mean = means[k];
+    summarizeCoordinate(errors.col(k), coordinateErrors(means, chains, k), coordinate);
   }
   summary.modes = summarizeModes(chain_set);
   const WorstDiagnostics worst(summary);

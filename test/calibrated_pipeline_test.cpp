@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -145,6 +146,71 @@ TEST(Calibrated, FarCoordinatesLoseNothing)
         << k;
   }
   EXPECT_NEAR(there.data.noise_scale, here.data.noise_scale, 1e-3 * noise);
+}
+
+/** Where draws put points and where their mean does: root mean squares over the points
+ * [m]. */
+struct Places {
+  /** Standard deviation over the draws. */
+  double spread;
+  /** From the mean place of a point to its place at the mean pose. */
+  double offset;
+};
+
+Places
+placesOf(const Eigen::Matrix3Xd& points, const PosteriorEstimate& estimate)
+{
+  Eigen::Matrix3Xd at_mean, place, sum = Eigen::Matrix3Xd::Zero(3, points.cols());
+  movePoints(estimate.summary.mean, points, at_mean);
+  double sum_of_squares = 0.0;
+  for (const auto& draw : estimate.samples.rowwise()) {
+    movePoints(draw.transpose(), points, place);
+    sum += place - at_mean;
+    sum_of_squares += (place - at_mean).squaredNorm();
+  }
+  const auto num_draws = static_cast<double>(estimate.samples.rows());
+  const auto num_points = static_cast<double>(points.cols());
+  const double squared_offset = (sum / num_draws).squaredNorm() / num_points;
+  return {std::sqrt(sum_of_squares / (num_draws * num_points) - squared_offset),
+          std::sqrt(squared_offset)};
+}
+
+/** Squared distance of the truth from the mean, in standard deviations. */
+double
+squaredErrorOf(const Vector6d& truth,
+               const Summary& summary,
+               CovarianceConvention convention)
+{
+  const Vector6d error = poseError(truth, summary.mean, convention);
+  return error.dot(summary.covariance(convention).ldlt().solve(error));
+}
+
+TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
+{
+  Scans scans;
+  const PosteriorEstimate here = estimateFrom(scans);
+  const Vector6d truth_here = scans.truth;
+  Eigen::Matrix4d shift = Eigen::Matrix4d::Identity();
+  shift.topRightCorner<3, 1>() << 7000.0, -7100.0, 300.0;
+  for (Eigen::Matrix3Xd* cloud : {&scans.source, &scans.target})
+    cloud->colwise() += shift.topRightCorner<3, 1>();
+  scans.truth = poseOf(shift * matrixOf(truth_here) * shift.inverse());
+  const PosteriorEstimate there = estimateFrom(scans);
+  ASSERT_EQ(there.summary.status, Status::Ok) << there.summary.message;
+  const Places places = placesOf(scans.source, there);
+  EXPECT_LT(places.offset, 0.01 * places.spread);
+  for (const auto convention :
+       {CovarianceConvention::LeftSE3, CovarianceConvention::RightSE3}) {
+    const double near_error = squaredErrorOf(truth_here, here.summary, convention);
+    // Four standard errors of a quadratic form of a mean and a covariance of at least
+    // 400 independent draws, twice.
+    EXPECT_NEAR(
+        squaredErrorOf(scans.truth, there.summary, convention),
+        near_error,
+        4.0 *
+            std::sqrt(2.0 * (2.0 * near_error * near_error + 4.0 * near_error) / 400.0))
+        << toString(convention);
+  }
 }
 
 TEST(Calibrated, PointsBesideTheSurfaceMakeItDoubtful)

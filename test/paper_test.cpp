@@ -80,7 +80,7 @@ baselineWith(const PoseMatrix& ends)
 {
   PaperBaseline baseline;
   baseline.ends = baseline.main_ends = ends;
-  baseline.mean = meanPose(ends);
+  baseline.mean = coordinateMeans(ends);
   return baseline;
 }
 

@@ -64,12 +64,32 @@ mixedChains(Random& random, int num_chains = 4, Eigen::Index num_draws = 500)
   return chainSetOf(chains);
 }
 
+/** All draws X as A X B. */
+PoseMatrix
+movedDraws(const Eigen::Matrix4d& A, const PoseMatrix& draws, const Eigen::Matrix4d& B)
+{
+  PoseMatrix moved(draws.rows(), 6);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    moved.row(i) = poseOf(A * matrixOf(draws.row(i).transpose()) * B).transpose();
+  return moved;
+}
+
+/** A pose with its position some \p distance away [m]. */
+Eigen::Matrix4d
+farPose(Random& random, double distance)
+{
+  Vector6d pose = test::randomPose(random);
+  pose.head<3>() *= distance;
+  return matrixOf(pose);
+}
+
 TEST(Mean, OfAnglesIsTakenOnTheCircle)
 {
   PoseMatrix draws = PoseMatrix::Zero(2, 6);
   draws(0, 5) = pi - 0.1;
   draws(1, 5) = -pi + 0.3;
   EXPECT_NEAR(meanPose(draws)[5], -pi + 0.1, 1e-12);
+  EXPECT_NEAR(coordinateMeans(draws)[5], -pi + 0.1, 1e-12);
 }
 
 TEST(Mean, OfTranslationsIsTheAverage)
@@ -78,6 +98,96 @@ TEST(Mean, OfTranslationsIsTheAverage)
   draws(0, 0) = 1.0;
   draws(1, 0) = 4.0;
   EXPECT_DOUBLE_EQ(meanPose(draws)[0], 2.5);
+}
+
+TEST(Mean, OfTurnsAboutAnAxisIsTheirAverageTurn)
+{
+  const Eigen::Vector3d centre(3.0, -2.0, 1.0);
+  const auto turn = [&centre](double yaw) {
+    Vector6d pose = Vector6d::Zero();
+    pose[5] = yaw;
+    pose.head<3>() = centre - rotationOf(pose) * centre;
+    return pose;
+  };
+  PoseMatrix draws(3, 6);
+  draws << turn(-1.4).transpose(), turn(0.2).transpose(), turn(0.3).transpose();
+  EXPECT_LT((meanPose(draws) - turn(-0.3)).norm(), 1e-11);
+}
+
+TEST(Mean, IsThePoseAboutWhichTheTwistsCancel)
+{
+  Random random(28, 0);
+  for (const double deviation : {1e-6, 0.01, 0.3}) {
+    const PoseMatrix draws = gaussianDraws(random,
+                                           500,
+                                           test::randomPose(random),
+                                           deviation * deviation * Matrix6d::Identity(),
+                                           CovarianceConvention::LeftSE3);
+    const Eigen::Matrix4d inverse = matrixOf(meanPose(draws)).inverse();
+    Vector6d sum = Vector6d::Zero();
+    for (const auto& draw : draws.rowwise())
+      sum += logSE3(inverse * matrixOf(draw.transpose()));
+    EXPECT_LT(sum.norm(), 500 * 1e-11 * (1.0 + deviation)) << deviation;
+  }
+}
+
+TEST(Mean, IsTheSameMotionInAllFrames)
+{
+  Random random(29, 0);
+  for (const double distance : {1.0, 1e4})
+    for (const double deviation : {1e-3, 0.3}) {
+      const PoseMatrix draws =
+          gaussianDraws(random,
+                        500,
+                        test::randomPose(random),
+                        deviation * deviation * Matrix6d::Identity(),
+                        CovarianceConvention::RightSE3);
+      const Eigen::Matrix4d A = farPose(random, distance),
+                            B = farPose(random, distance);
+      const Vector6d expected = poseOf(A * matrixOf(meanPose(draws)) * B);
+      const Vector6d error = poseError(
+          meanPose(movedDraws(A, draws, B)), expected, CovarianceConvention::R3xSO3);
+      EXPECT_LT(error.tail<3>().norm(), 1e-12) << distance << ' ' << deviation;
+      // Some hundred roundings.
+      EXPECT_LT(error.head<3>().norm(), 1e-12 * distance)
+          << distance << ' ' << deviation;
+    }
+}
+
+TEST(Mean, IsWhereTheAnglesAreNot)
+{
+  // At gimbal lock roll and yaw are all over the place, and the rotations are not.
+  Random random(30, 0);
+  Vector6d truth = Vector6d::Zero();
+  truth[4] = pi / 2;
+  const PoseMatrix draws = gaussianDraws(
+      random, 1000, truth, 1e-4 * Matrix6d::Identity(), CovarianceConvention::RightSE3);
+  const Vector6d error =
+      poseError(meanPose(draws), truth, CovarianceConvention::RightSE3);
+  EXPECT_LT(error.cwiseAbs().maxCoeff(), 5.0 * 0.01 / std::sqrt(1000.0));
+}
+
+TEST(Mean, OfTurnsAllAroundIsThatOfTheCoordinates)
+{
+  PoseMatrix draws = PoseMatrix::Constant(100, 6, 0.2);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    draws(i, 5) = wrapAngle(0.1 + 2.0 * pi * static_cast<double>(i) / 100.0);
+  EXPECT_EQ(meanPose(draws), coordinateMeans(draws));
+  EXPECT_NEAR(meanPose(draws)[0], 0.2, 1e-12);
+  // A few draws half a turn from the others, and many that are not quite so far off.
+  for (const double yaw : {pi - 1e-9, 2.5}) {
+    draws.col(5).setZero();
+    draws.col(5).head(yaw < 3.0 ? 40 : 1).setConstant(yaw);
+    EXPECT_EQ(meanPose(draws), coordinateMeans(draws));
+  }
+}
+
+TEST(Mean, OfDrawsThatAreNoNumbersIsNone)
+{
+  PoseMatrix draws = PoseMatrix::Zero(5, 6);
+  draws(3, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(meanPose(draws)[1]));
+  EXPECT_TRUE(meanPose(PoseMatrix(0, 6)).array().isNaN().all());
 }
 
 TEST(Covariance, OfEachConventionIsThatOfTheDrawsMadeInIt)
@@ -119,6 +229,40 @@ TEST(Covariance, LeftIsTheAdjointOfRight)
   EXPECT_LT((left - adjoint * right * adjoint.transpose()).norm(), 1e-10 * left.norm());
 }
 
+TEST(Covariance, HoldsTheTruthFarFromTheOriginAsNearIt)
+{
+  Random random(41, 0);
+  const Vector6d deviations =
+      (Vector6d() << 1e-4, 1e-4, 2e-4, 0.004, 0.004, 0.003).finished();
+  const Vector6d near_truth = test::randomPose(random, 0.5);
+  const PoseMatrix near_draws = gaussianDraws(
+      random,
+      2000,
+      poseFromError(deviations, near_truth, CovarianceConvention::RightSE3),
+      deviations.cwiseAbs2().asDiagonal(),
+      CovarianceConvention::RightSE3);
+  const Eigen::Matrix4d A = farPose(random, 1e4), B = farPose(random, 1e4);
+  const Vector6d far_truth = poseOf(A * matrixOf(near_truth) * B);
+  const PoseMatrix far_draws = movedDraws(A, near_draws, B);
+  const auto squaredError = [](const Vector6d& truth,
+                               const PoseMatrix& draws,
+                               CovarianceConvention convention) {
+    const Vector6d mean = meanPose(draws);
+    const Vector6d error = poseError(truth, mean, convention);
+    return error.dot(covarianceAbout(mean, draws, convention).ldlt().solve(error));
+  };
+  // A deviation along each of six axes; standard errors are 6 sqrt(2 / n) by the
+  // covariance and 2 sqrt(6 / n) by the mean.
+  const double expected =
+      squaredError(near_truth, near_draws, CovarianceConvention::RightSE3);
+  EXPECT_NEAR(expected, 6.0, 4.0 * std::sqrt((72.0 + 24.0) / 2000.0));
+  // Variances of (0.004 rad 30 km)^2 and (0.1 mm)^2, 12 orders apart, leave 4 digits.
+  for (const auto convention :
+       {CovarianceConvention::LeftSE3, CovarianceConvention::RightSE3})
+    EXPECT_NEAR(squaredError(far_truth, far_draws, convention), expected, 0.01)
+        << toString(convention);
+}
+
 TEST(Covariance, IsUndefinedForFewerThanTwoDraws)
 {
   for (const Eigen::Index n : {0, 1})
@@ -142,13 +286,18 @@ TEST(Summary, BeforeARunSaysSoAndIsNaN)
 TEST(Summary, OfMixedChainsIsOkAndConsistent)
 {
   Random random(33, 0);
-  const Summary summary = summarize(mixedChains(random));
+  const ChainSet chains = mixedChains(random);
+  const PoseMatrix draws = pooledDraws(chains.chains);
+  const Summary summary = summarize(chains);
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+  EXPECT_EQ(summary.mean, meanPose(draws));
+  const Matrix6d about_coordinates =
+      covarianceAbout(coordinateMeans(draws), draws, CovarianceConvention::Parameters);
   EXPECT_EQ(summary.num_draws, 2000);
   const double sd = std::sqrt(1e-3);
   for (int k = 0; k < 6; ++k) {
     const auto& c = summary.coordinates[static_cast<std::size_t>(k)];
-    EXPECT_EQ(c.mean, summary.mean[k]);
+    EXPECT_EQ(c.mean, coordinateMeans(draws)[k]);
     EXPECT_NEAR(c.mean, 0.1, 4.0 * sd / std::sqrt(2000.0));
     EXPECT_NEAR(c.standard_deviation, sd, 4.0 * sd / std::sqrt(4000.0));
     // Standard error of a quantile: sqrt(p (1 - p) / n) / density.
@@ -158,7 +307,7 @@ TEST(Summary, OfMixedChainsIsOkAndConsistent)
         c.quantile_97_5, 0.1 + 1.959964 * sd, 4.0 * sd * 2.67 / std::sqrt(2000.0));
     EXPECT_NEAR(c.median, 0.1, 4.0 * sd * 1.2533 / std::sqrt(2000.0));
     EXPECT_DOUBLE_EQ(c.standard_deviation * c.standard_deviation,
-                     summary.covariance(CovarianceConvention::Parameters)(k, k));
+                     about_coordinates(k, k));
   }
 }
 

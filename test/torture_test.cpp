@@ -35,6 +35,9 @@ constexpr double max_squared_distance = 27.9;
  * of most pairs. */
 constexpr double max_error = 3.0;
 
+/** Of the mean pose, in standard deviations of the draws. */
+constexpr double max_offset = 0.1;
+
 Eigen::Matrix3Xd
 finiteColumns(const Eigen::Matrix3Xd& points)
 {
@@ -91,21 +94,24 @@ struct Placement {
   double error;
   /** Standard deviation about that mean. */
   double spread;
+  /** From the mean of its places to its place at the mean pose. */
+  double offset_of_mean;
 };
 
 Placement
-placementOf(const TorturePair& pair, const PoseMatrix& draws)
+placementOf(const TorturePair& pair, const Vector6d& mean, const PoseMatrix& draws)
 {
   const int num_held_axes = 3 - pair.num_free_axes;
   const Eigen::Matrix3d to_source = rotationOf(pair.truth).transpose();
   const Eigen::Matrix3Xd source = finiteColumns(pair.source);
   const Eigen::Matrix3Xd truth = moved(pair.truth, source);
+  const auto offsetsOf = [&](const Vector6d& pose) -> Eigen::MatrixXd {
+    return (to_source * (moved(pose, source) - truth)).bottomRows(num_held_axes);
+  };
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(num_held_axes, source.cols());
   double sum_of_squares = 0.0;
   for (const auto& draw : draws.rowwise()) {
-    const Eigen::MatrixXd offsets =
-        (to_source * (moved(draw.transpose(), source) - truth))
-            .bottomRows(num_held_axes);
+    const Eigen::MatrixXd offsets = offsetsOf(draw.transpose());
     sum += offsets;
     sum_of_squares += offsets.squaredNorm();
   }
@@ -113,7 +119,8 @@ placementOf(const TorturePair& pair, const PoseMatrix& draws)
   const auto num_points = static_cast<double>(source.cols());
   const double squared_error = (sum / num_draws).squaredNorm() / num_points;
   return {std::sqrt(squared_error),
-          std::sqrt(sum_of_squares / (num_draws * num_points) - squared_error)};
+          std::sqrt(sum_of_squares / (num_draws * num_points) - squared_error),
+          (offsetsOf(mean) - sum / num_draws).norm() / std::sqrt(num_points)};
 }
 
 /** Whether a posterior holds the truth and says more than a single point would. */
@@ -127,13 +134,16 @@ isRight(const TorturePair& pair,
                                    ? pair.noise
                                    : options.likelihood.measurement_sigma;
   const double squared_distance = squaredDistance(pair, estimate.summary);
-  const Placement placement = placementOf(pair, estimate.samples);
+  const Placement placement =
+      placementOf(pair, estimate.summary.mean, estimate.samples);
   const bool is_right = pair.has_truth && squared_distance < max_squared_distance &&
                         placement.error < max_error * pair.noise &&
-                        placement.spread < sd_of_a_point;
+                        placement.spread < sd_of_a_point &&
+                        placement.offset_of_mean < max_offset * placement.spread;
   return (is_right ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
          << "squared distance " << squared_distance << ", error " << placement.error
-         << " m, spread " << placement.spread << " m";
+         << " m, spread " << placement.spread << " m, mean " << placement.offset_of_mean
+         << " m off";
 }
 
 void

@@ -29,13 +29,22 @@ axisOf(int k, const CoordinateSummary& coordinate)
   return axis;
 }
 
+Vector6d
+meansOf(const Summary& summary)
+{
+  Vector6d means;
+  for (int k = 0; k < 6; ++k)
+    means[k] = summary.coordinates[static_cast<std::size_t>(k)].mean;
+  return means;
+}
+
 Eigen::MatrixXd
-errorsOf(const PoseMatrix& draws, const Vector6d& mean, const DrawSet& set)
+errorsOf(const PoseMatrix& draws, const Vector6d& means, const DrawSet& set)
 {
   Eigen::MatrixXd errors(draws.rows(), 6);
   for (Eigen::Index i = 0; i < draws.rows(); ++i) {
     const Vector6d error =
-        poseError(draws.row(i).transpose(), mean, CovarianceConvention::Parameters);
+        poseError(draws.row(i).transpose(), means, CovarianceConvention::Parameters);
     for (int k = 0; k < 6; ++k)
       errors(i, k) = std::abs(error[k]) < rounding
                          ? 0.0
@@ -53,11 +62,11 @@ drawSetOf(const RegistrationResult& result)
   for (int k = 0; k < 6; ++k)
     set.axes[static_cast<std::size_t>(k)] =
         axisOf(k, result.summary.coordinates[static_cast<std::size_t>(k)]);
+  const Vector6d means = meansOf(result.summary);
   for (std::size_t i = 0; i < result.chains.size(); ++i) {
     const Chain& chain = result.chains[i];
     if (!chain.diverged && chain.draws.rows() > 0)
-      set.chains.push_back(
-          {static_cast<int>(i), errorsOf(chain.draws, result.summary.mean, set)});
+      set.chains.push_back({static_cast<int>(i), errorsOf(chain.draws, means, set)});
   }
   return set;
 }

@@ -1,6 +1,6 @@
 /** \file
- * \brief Draws in the form in which charts show them: differences from the mean in
- * readable units, few enough to be drawn.
+ * \brief Draws in the form in which charts show them: differences from the mean
+ * of each coordinate in readable units, few enough to be drawn.
  */
 #pragma once
 
@@ -31,8 +31,8 @@ struct Axis {
 struct ChainDraws {
   /** Index among all chains, the diverged ones included. */
   int chain = 0;
-  /** A draw a row: differences from the posterior mean in the units of the axes,
-   * angles wrapped about it. */
+  /** A draw a row: differences from the mean of each coordinate in the units of the
+   * axes, angles wrapped about it. */
   Eigen::MatrixXd errors;
 };
 

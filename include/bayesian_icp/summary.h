@@ -64,8 +64,9 @@ constexpr double min_ess = 400.0;
  * undefined. Quantiles of an angle are unwrapped about its mean, so that they are in
  * order even where the interval crosses +-pi. */
 struct CoordinateSummary {
+  /** Mean of this coordinate alone: coordinateMeans(), not Summary::mean. */
   double mean = std::numeric_limits<double>::quiet_NaN();
-  /** Square root of the diagonal of the covariance of parameters. */
+  /** About that mean, of an angle wrapped about it. */
   double standard_deviation = std::numeric_limits<double>::quiet_NaN();
   double quantile_2_5 = std::numeric_limits<double>::quiet_NaN();
   double median = std::numeric_limits<double>::quiet_NaN();
@@ -95,8 +96,8 @@ struct BAYESIAN_ICP_EXPORT Summary {
   Status status = Status::NotRun;
   /** The status in words, with the numbers behind it. */
   std::string message = "nothing has been estimated yet";
-  /** Mean pose (x, y, z, roll, pitch, yaw) [m, rad]; the mean of an angle is circular,
-   * atan2(mean sin, mean cos). NaN without draws. */
+  /** Mean pose (x, y, z, roll, pitch, yaw) [m, rad]: meanPose() of the draws. NaN
+   * without draws. */
   Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /** Marginals of x, y, z, roll, pitch, yaw. */
   std::array<CoordinateSummary, 6> coordinates;
@@ -126,7 +127,20 @@ struct BAYESIAN_ICP_EXPORT Summary {
 BAYESIAN_ICP_EXPORT PoseMatrix
 pooledDraws(const std::vector<Chain>& chains);
 
-/** \brief Posterior mean of \p draws (rows are canonical poses); NaN without draws. */
+/** \brief Mean of each of x, y, z, roll, pitch, yaw of \p draws on its own [m, rad];
+ * that of an angle is circular, atan2(mean sin, mean cos). NaN without draws. As a pose
+ * it depends on both frames: c metres away from their origins, and with angles of
+ * variance s^2, it lies some c s^2 off the draws. */
+BAYESIAN_ICP_EXPORT Vector6d
+coordinateMeans(const PoseMatrix& draws);
+
+/** \brief Mean pose of \p draws (rows are canonical poses) [m, rad]; NaN without draws.
+ *
+ * The pose M for which the sum of log(M^-1 X) over the draws X is zero: the
+ * bi-invariant mean on SE(3) (Pennec and Arsigny 2012). It is the same motion of the
+ * points whatever the frames: draws A X B have the mean A M B. Draws that spread too
+ * far to have one (turned from it by 1 rad in root mean square, or one of them by 3
+ * rad) have their coordinateMeans() instead. */
 BAYESIAN_ICP_EXPORT Vector6d
 meanPose(const PoseMatrix& draws);
 
@@ -138,8 +152,8 @@ covarianceAbout(const Vector6d& mean,
                 CovarianceConvention convention);
 
 /** \brief Summarise a run. Chains that diverged are reported and left out. Diagnostics
- * are taken of the draws' errors about the mean, over the first draws that all chains
- * have. */
+ * are taken of the draws' errors about the coordinateMeans(), over the first draws that
+ * all chains have. */
 BAYESIAN_ICP_EXPORT Summary
 summarize(const ChainSet& chain_set);
 

@@ -47,7 +47,7 @@ baselineOf(const std::string& pair_name, const std::vector<MonteCarloIcpRun>& ru
     if (run.mean_squared_distance <= main_basin_factor * least)
       main_runs.push_back(run);
   baseline.main_ends = endsOf(main_runs);
-  baseline.mean = meanPose(baseline.ends);
+  baseline.mean = coordinateMeans(baseline.ends);
   return baseline;
 }
 

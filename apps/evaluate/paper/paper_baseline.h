@@ -19,7 +19,8 @@ struct PaperBaseline {
   /** Those in the main basin: whose mean squared distance is at most twice the least.
    * The others are in far local minima. */
   PoseMatrix main_ends;
-  /** Circular mean of all, about which angles are unwrapped. */
+  /** Mean of each coordinate of all, circular of angles, which are unwrapped about it.
+   */
   Vector6d mean = Vector6d::Zero();
 
   double

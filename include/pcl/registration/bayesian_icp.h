@@ -93,7 +93,7 @@ public:
     return (index < estimate_.chains.size() && estimate_.chains[index].diverged);
   }
 
-  /** \brief Posterior mean pose [m, rad]; angles are averaged on the circle. */
+  /** \brief Posterior mean pose [m, rad]: bayesian_icp::meanPose() of the draws. */
   Vector6d
   getMean() const
   {
