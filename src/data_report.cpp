@@ -62,6 +62,23 @@ canonicalDirection(const Eigen::Vector3d& vector)
   return direction;
 }
 
+bool
+hasFreeDirection(const DataReport& report)
+{
+  return std::any_of(report.directions.begin(),
+                     report.directions.end(),
+                     [](const DataDirection& direction) {
+                       return direction.observability == Observability::PriorOnly;
+                     });
+}
+
+/** Largest residual_scale without a flag. */
+double
+largestScale(const DataReport& report)
+{
+  return hasFreeDirection(report) ? max_residual_scale_if_free : max_residual_scale;
+}
+
 double
 leastShareOfPrior(const DataReport& report)
 {
@@ -96,8 +113,7 @@ flagsOf(const DataReport& report)
                         report.other_cost_ratio > max_other_cost_ratio);
   flags.low_support = !(report.active_fraction >= min_active_fraction);
   flags.few_patches = !(report.effective_patches >= min_effective_patches);
-  flags.misfit = !(report.residual_scale <= max_residual_scale &&
-                   report.mean_cost_ratio <= max_mean_cost_ratio);
+  flags.misfit = !(report.residual_scale <= largestScale(report));
   flags.no_information =
       std::all_of(report.directions.begin(),
                   report.directions.end(),
@@ -151,18 +167,13 @@ describeFlags(const DataReport& report)
         "the pose is held by about %.0f independent patches of surface (at least %.0f)",
         report.effective_patches,
         min_effective_patches));
-  if (report.flags.misfit && !(report.residual_scale <= max_residual_scale))
-    texts.push_back(formatted("the surfaces disagree by more than the noise: residuals "
-                              "of %.1f times the target's noise (at most %.0f)",
-                              report.residual_scale,
-                              max_residual_scale));
-  if (report.flags.misfit && !(report.mean_cost_ratio <= max_mean_cost_ratio))
-    texts.push_back(
-        formatted("residuals at the mean are %.2f times those at the best pose "
-                  "(at most %.2f): the data may hold a motion that is left "
-                  "to the prior",
-                  report.mean_cost_ratio,
-                  max_mean_cost_ratio));
+  if (report.flags.misfit)
+    texts.push_back(formatted(
+        "the surfaces disagree by more than the noise: residuals "
+        "of %.1f times the target's noise (at most %.0f%s)",
+        report.residual_scale,
+        largestScale(report),
+        hasFreeDirection(report) ? " where the prior alone holds a motion" : ""));
   if (report.flags.no_information)
     texts.push_back(formatted(
         "the data hold none of the six motions: along each the posterior is at least "

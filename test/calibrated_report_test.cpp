@@ -44,6 +44,7 @@ diagonalEstimate()
   Vector6d relative_information;
   relative_information << 99.0, 24.0, 3.0, 0.0, 399.0, 8.0;
   estimate.prior.precision = Vector6d::Constant(4.0).asDiagonal();
+  estimate.prior_about_origin = estimate.prior;
   const Vector6d information = 4.0 * relative_information;
   estimate.information = information.asDiagonal();
   estimate.covariance = (estimate.information + estimate.prior.precision).inverse();
@@ -233,16 +234,32 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
                  e.other_end[0] = 1.0;
                  e.other_cost_ratio = max_other_cost_ratio + 0.01;
                }).any());
-  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active = 55; }).any());
-  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active = 54; }).low_support);
-  EXPECT_FALSE(flagsAfter([](E& e) { e.kappa_inf = 3.83; }).any());
-  EXPECT_TRUE(flagsAfter([](E& e) { e.kappa_inf = 3.85; }).few_patches);
+  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active = 40; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active = 39; }).low_support);
+  EXPECT_FALSE(flagsAfter([](E& e) { e.kappa_inf = 5.75; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.kappa_inf = 5.77; }).few_patches);
+  // The prior alone holds one direction, which a disagreement may hide ...
   EXPECT_FALSE(flagsAfter([](E& e) { e.residual_scale = 1.99; }).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.residual_scale = 2.01; }).misfit);
+  // ... and here none.
+  const auto hold_all = [](E& e, double residual_scale) {
+    e.information(3, 3) = 400.0;
+    e.curvature(3, 3) = 20.0;
+    e.residual_scale = residual_scale;
+  };
+  EXPECT_FALSE(flagsAfter([&](E& e) { hold_all(e, 9.99); }).any());
+  EXPECT_TRUE(flagsAfter([&](E& e) { hold_all(e, 10.01); }).misfit);
   EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
   // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2647)^2.
-  EXPECT_FALSE(flagsAfter([](E& e) { e.prior.deviation[0] = 2.264; }).any());
-  EXPECT_TRUE(flagsAfter([](E& e) { e.prior.deviation[0] = 2.265; }).prior_conflict);
+  const auto deviate = [](E& e, double metres) {
+    e.prior.deviation[0] = e.prior_about_origin.deviation[0] = metres;
+  };
+  EXPECT_FALSE(flagsAfter([&](E& e) { deviate(e, 2.264); }).any());
+  EXPECT_TRUE(flagsAfter([&](E& e) { deviate(e, 2.265); }).prior_conflict);
+  // A guess may be wrong by an error of the sensor's pose or of the object's.
+  EXPECT_FALSE(flagsAfter([&](E& e) { e.prior.deviation[0] = 10.0; }).any());
+  EXPECT_FALSE(
+      flagsAfter([&](E& e) { e.prior_about_origin.deviation[0] = 10.0; }).any());
 }
 
 TEST(Report, WhatIsNotANumberIsFlagged)

@@ -254,8 +254,7 @@ TEST(Secants, AreTheSlopeOfMeanScoresOverManyScans)
   const SecantPlan plan = {(gauss_newton / (tau * tau)).inverse(),
                            displacementMetric(scorer, truth),
                            1e-6 * Matrix6d::Identity(),
-                           ExactScene::sigma,
-                           tau * tau * gauss_newton};
+                           ExactScene::sigma};
   const Secants secants = measureSecants(scorer, truth, at_mode, tau, plan);
 
   // Slopes along the same steps, over scans that the secants have not seen.

@@ -101,14 +101,14 @@ TEST(DescribeFlags, NameNumberAndThreshold)
   report.basin_distance = 5.25;
   report.active_fraction = 0.09;
   report.effective_patches = 12.0;
-  report.residual_scale = 2.6;
+  report.residual_scale = 12.6;
   report.correlation_factor = 14.0;
   const auto texts = describeFlags(report);
   ASSERT_EQ(texts.size(), 5u);
   const char* parts[5][2] = {{"5.2 ", "at most 3"},
-                             {"9 %", "55 %"},
-                             {"12 ", "at least 30"},
-                             {"2.6 ", "at most 2"},
+                             {"9 %", "40 %"},
+                             {"12 ", "at least 20"},
+                             {"12.6 ", "at most 10"},
                              {"99.5 %", "99 %"}};
   for (std::size_t i = 0; i < 5; ++i)
     for (const char* part : parts[i])

@@ -33,6 +33,17 @@ withoutTakeover()
   return options;
 }
 
+/** Share of a model's patches of one kind, in [0, 1]. */
+double
+shareOf(PatchKind kind, const SurfaceModel& model)
+{
+  const auto count =
+      std::count_if(model.patches().begin(),
+                    model.patches().end(),
+                    [kind](const SurfacePatch& p) { return p.kind == kind; });
+  return double(count) / double(model.patches().size());
+}
+
 /** Where the surface is said to be at a patch's point, and its normal there. */
 struct Projection {
   Vector3d point;
@@ -155,7 +166,7 @@ meanErrors(const Known& known)
   MeanErrors mean;
   for (const SurfacePatch& patch : model.patches()) {
     const Projection projection = projectionOf(model, patch);
-    if (!patch.is_usable || !known.is_inside(projection.point))
+    if (patch.kind != PatchKind::Quadric || !known.is_inside(projection.point))
       continue;
     mean.variance_ratio += std::pow(patch.sigma / known.sigma, 2);
     mean.distance += known.distance(projection.point);
@@ -212,39 +223,37 @@ TEST(SurfaceModel, ANoisyCanIsNotDrawnInwards)
 
 // ---- Borders, creases, and what points at them take over ----
 
-TEST(SurfaceModel, PointsAtABorderHaveNoPatchOfTheirOwn)
+TEST(SurfaceModel, PointsAtABorderHaveAPlaneAndNoQuadric)
 {
   constexpr Index side = 80;
-  constexpr double spacing = 0.01;
+  constexpr double spacing = 0.01, noise = 0.0005;
   Random random(73, 0);
-  const Matrix3Xd points = test::noisy(test::gridPlane(side, spacing), 0.0005, random);
+  const Matrix3Xd points = test::noisy(test::gridPlane(side, spacing), noise, random);
   const SurfaceModel model(points, withoutTakeover());
   ASSERT_EQ(model.patches().size(), std::size_t(side * side));
-  int num_inside = 0, num_usable = 0;
+  int num_inside = 0, num_quadrics = 0;
   for (Index i = 0; i < side * side; ++i) {
     const SurfacePatch& patch = model.patches()[static_cast<std::size_t>(i)];
     const Index row = i / side, column = i % side;
     const Index to_border = std::min({row, column, side - 1 - row, side - 1 - column});
     // Half a disc's centroid is 0.42 radii from its centre, a whole one's at it.
     if (to_border == 0) {
-      EXPECT_FALSE(patch.is_usable) << row << " " << column;
+      EXPECT_EQ(patch.kind, PatchKind::Plane) << row << " " << column;
+      // Its own roughness, of at least 30 points.
+      EXPECT_NEAR(patch.sigma / noise, 1.0, 5.0 / std::sqrt(2.0 * 27.0));
     }
     if (double(to_border) * spacing > patch.radius) {
       ++num_inside;
-      num_usable += patch.is_usable;
+      num_quadrics += patch.kind == PatchKind::Quadric;
     }
   }
   // Of 30 points, the quartic's 9 further terms leave 15 degrees of freedom.
-  const double usable = cdf(boost::math::fisher_f(9.0, 15.0), 2.2);
+  const double passed = cdf(boost::math::fisher_f(9.0, 15.0), 2.2);
   const double independent = num_inside / 30.0;
-  EXPECT_NEAR(double(num_usable) / num_inside,
-              usable,
-              4.0 * std::sqrt(usable * (1.0 - usable) / independent));
-  EXPECT_NEAR(model.usableFraction() * side * side,
-              double(std::count_if(model.patches().begin(),
-                                   model.patches().end(),
-                                   [](const SurfacePatch& p) { return p.is_usable; })),
-              1e-6);
+  EXPECT_NEAR(double(num_quadrics) / num_inside,
+              passed,
+              4.0 * std::sqrt(passed * (1.0 - passed) / independent));
+  EXPECT_NEAR(model.usableFraction(), 1.0 - shareOf(PatchKind::None, model), 1e-12);
   // Neighbours in a grid: noise across it adds 0.0005^2 / 0.01 to the distance.
   EXPECT_NEAR(model.spacing(), spacing, 0.01 * spacing);
 }
@@ -279,11 +288,11 @@ TEST(SurfaceModel, PointsAtACreaseTakeOverThePatchOfTheirFace)
     const SurfacePatch& patch = model.patches()[j];
     const Vector3d centre = own.patches()[j].centre;
     EXPECT_EQ(patch.centre, centre);
-    if (own.patches()[j].is_usable) {
+    if (own.patches()[j].kind == PatchKind::Quadric) {
       EXPECT_EQ(patch.origin, own.patches()[j].origin);
       EXPECT_EQ(patch.sigma, own.patches()[j].sigma);
     }
-    else if (patch.is_usable) {
+    else if (patch.kind == PatchKind::Quadric) {
       ++num_taken;
       EXPECT_NE(patch.origin, patch.centre);
       const SurfaceOffset offset = offsetFrom(patch, patch.centre);
@@ -292,7 +301,7 @@ TEST(SurfaceModel, PointsAtACreaseTakeOverThePatchOfTheirFace)
     }
   }
   EXPECT_GT(num_taken, 100);
-  EXPECT_GT(model.usableFraction(), own.usableFraction());
+  EXPECT_GT(shareOf(PatchKind::Quadric, model), shareOf(PatchKind::Quadric, own));
 }
 
 // ---- Degenerate and special targets ----
@@ -302,7 +311,7 @@ areEqual(const SurfacePatch& a, const SurfacePatch& b)
 {
   return a.origin == b.origin && a.axes == b.axes && a.quadric == b.quadric &&
          a.centre == b.centre && a.radius == b.radius && a.sigma == b.sigma &&
-         a.is_usable == b.is_usable;
+         a.kind == b.kind;
 }
 
 void
@@ -377,7 +386,7 @@ TEST(SurfaceModel, LeavesOutPointsThatAreNotFinite)
   EXPECT_EQ(nothing.medianSigma(), 0.0);
 }
 
-TEST(SurfaceModel, FewPointsHaveNoUsablePatch)
+TEST(SurfaceModel, FewPointsHaveNoQuadricAndFewerNoPlane)
 {
   Random random(78, 0);
   for (const Index num_points : {1, 2, 3, 7, 20, 25, 29}) {
@@ -388,6 +397,9 @@ TEST(SurfaceModel, FewPointsHaveNoUsablePatch)
     expectFinite(model);
     // A quartic takes 15 points; with 21 there is a test of the quadric.
     if (num_points <= 20) {
+      EXPECT_EQ(shareOf(PatchKind::Quadric, model), 0.0) << num_points;
+    }
+    if (num_points <= 7) {
       EXPECT_EQ(model.usableFraction(), 0.0) << num_points;
     }
   }
@@ -440,43 +452,50 @@ TEST(SurfaceModel, AnExactPlaneIsFoundExactly)
     EXPECT_NEAR(normal.dot(projection.point - tilted.head<3>()), 0.0, rounding);
     EXPECT_NEAR(std::abs(normal.dot(projection.normal)), 1.0, 1e-9);
   }
-  EXPECT_GT(model.usableFraction(), 0.9);
+  EXPECT_GT(shareOf(PatchKind::Quadric, model), 0.9);
 }
 
-TEST(SurfaceModel, ExactCurvedSurfacesAreUsable)
+TEST(SurfaceModel, ExactCurvedSurfacesAreQuadrics)
 {
   Random random(80, 0);
   const SurfaceModel ball(test::sphere(random, 2000, 0.1).points);
-  EXPECT_GT(ball.usableFraction(), 0.9);
+  EXPECT_GT(shareOf(PatchKind::Quadric, ball), 0.9);
   const SurfaceModel can(test::cylinder(random, 2000, 0.03, 0.03).points);
-  EXPECT_GT(can.usableFraction(), 0.9);
+  EXPECT_GT(shareOf(PatchKind::Quadric, can), 0.9);
 }
 
-TEST(SurfaceModel, PatchesOfLargeTargetsAreThoseOfAllPoints)
+TEST(SurfaceModel, PatchesCoverATargetEvenlyHoweverDenseItIs)
 {
-  const NoisyBox box(2);
-  const SurfaceModel all(box.points, withoutTakeover());
-  SurfaceModelOptions options = withoutTakeover();
-  options.max_patches = 500;
-  const SurfaceModel some(box.points, options);
-  ASSERT_EQ(some.patches().size(), std::size_t(500));
-  std::size_t next = 0;
-  int num_matched = 0;
-  for (const SurfacePatch& patch : some.patches()) {
-    while (next < all.patches().size() && all.patches()[next].centre != patch.centre)
-      ++next;
-    ASSERT_LT(next, all.patches().size());
-    const SurfacePatch& same = all.patches()[next++];
-    num_matched += patch.quadric == same.quadric && patch.axes == same.axes &&
-                   patch.radius == same.radius && patch.is_usable == same.is_usable;
+  // Four fifths of the points are on the first fifth of a square.
+  constexpr Index num_points = 30000;
+  constexpr double dense = 0.2;
+  Random random(82, 0);
+  Matrix3Xd points(3, num_points);
+  for (Index i = 0; i < num_points; ++i) {
+    const double x = i % 5 == 0 ? dense + (1.0 - dense) * random.uniform()
+                                : dense * random.uniform();
+    points.col(i) << x, random.uniform(), 0.0005 * random.normal();
   }
-  EXPECT_EQ(num_matched, 500);
-  // Half of the points are on either side of the middle: evenly chosen, 250 +- 11.
-  const auto num_low =
-      std::count_if(some.patches().begin(),
-                    some.patches().end(),
-                    [](const SurfacePatch& patch) { return patch.centre.x() < 0.0; });
-  EXPECT_NEAR(double(num_low), 250.0, 45.0);
+  SurfaceModelOptions options;
+  options.max_patches = 1000;
+  const SurfaceModel model(points, options);
+  ASSERT_LE(model.patches().size(), std::size_t(1000));
+  ASSERT_GE(model.patches().size(), std::size_t(900));
+  std::vector<double> dense_radii, other_radii;
+  for (const SurfacePatch& patch : model.patches())
+    (patch.centre.x() + model.origin().x() < dense ? dense_radii : other_radii)
+        .push_back(patch.radius);
+  // To within a column of cubes, of which there are 31.
+  EXPECT_NEAR(double(dense_radii.size()) / double(model.patches().size()),
+              dense,
+              1.0 / 31.0 + 0.01);
+  const auto middle = [](std::vector<double>& radii) {
+    std::nth_element(
+        radii.begin(), radii.begin() + Index(radii.size() / 2), radii.end());
+    return radii[radii.size() / 2];
+  };
+  // 16 times as dense, four times as narrow, if neighbours were of all points.
+  EXPECT_LT(middle(other_radii) / middle(dense_radii), 1.25);
 }
 
 } // namespace

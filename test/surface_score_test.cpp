@@ -204,7 +204,7 @@ TEST(SurfaceScore, UsesThePatchWhoseProjectedPointIsNearest)
     }
     const SurfaceOffset offset = offsetFrom(*patch, point);
     const bool has_patch =
-        patch->is_usable &&
+        patch->isUsable() &&
         offset.in_plane <= SurfaceScorer::max_in_plane * patch->radius;
     EXPECT_EQ(bool(scores.has_patch[static_cast<std::size_t>(i)]), has_patch) << i;
     EXPECT_NEAR(

@@ -50,7 +50,6 @@ dataJson(const DataReport& report)
       {"active_fraction", jsonOf(report.active_fraction)},
       {"basin_distance_in_standard_deviations", jsonOf(report.basin_distance)},
       {"other_start_cost_ratio", jsonOf(report.other_cost_ratio)},
-      {"mean_cost_ratio", jsonOf(report.mean_cost_ratio)},
       {"prior_probability", jsonOf(report.prior_probability)},
       {"flags", flagsJson(report.flags)},
       {"flag_messages", describeFlags(report)},

@@ -38,7 +38,7 @@ constexpr double max_other_cost_ratio = 1.02;
 constexpr double min_active_fraction = 0.4;
 constexpr double min_effective_patches = 20.0;
 constexpr double max_residual_scale = 10.0;
-constexpr double max_mean_cost_ratio = 1.06;
+constexpr double max_residual_scale_if_free = 2.0;
 constexpr double min_prior_probability = 0.001;
 
 /** \brief Short name: "observed", "weak", "prior_only". */
@@ -74,10 +74,9 @@ struct DataFlags {
   /** Fewer than min_effective_patches independent patches hold the pose: too few to
    * rely on the width. */
   bool few_patches = false;
-  /** The surfaces disagree by more than the noise, residual_scale above
-   * max_residual_scale, or much more at the posterior mean than at the best pose,
-   * mean_cost_ratio above max_mean_cost_ratio: a motion that nothing seemed to hold is
-   * held. */
+  /** The surfaces disagree by more than the noise: residual_scale above
+   * max_residual_scale, or above max_residual_scale_if_free where the prior alone holds
+   * a direction, which the disagreement may hide. */
   bool misfit = false;
   /** All six directions are held by the prior only. */
   bool no_information = false;
@@ -120,8 +119,6 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   /** Mean capped residual at the worse of the two ends, in units of the better one's.
    */
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
-  /** Mean capped residual at the posterior mean, in units of that at the best pose. */
-  double mean_cost_ratio = std::numeric_limits<double>::quiet_NaN();
   /** Probability that a pose drawn from the prior is further from the prior's mean than
    * the posterior's mean is, along the directions that are not held by the prior only.
    * The prior is taken about its own reference point or about the origin of the source

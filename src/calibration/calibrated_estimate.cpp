@@ -237,12 +237,8 @@ estimateCalibrated(const SurfaceScorer& scorer,
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
   const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
-  PatchHints hints;
-  SurfaceScores at_mean;
-  scorer.evaluate(movedBy(e.mean, e.centre, e.mode), e.centre, tau, hints, at_mean);
-  e.mean_cost_ratio = meanCappedResidual(at_mean) / e.cost;
   e.num_queries =
-      ends.num_queries + num_points * (mode.num_evaluations + 2 + num_evaluations);
+      ends.num_queries + num_points * (mode.num_evaluations + 1 + num_evaluations);
   return e;
 }
 

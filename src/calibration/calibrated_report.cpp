@@ -192,7 +192,6 @@ dataReportOf(const CalibratedEstimate& estimate,
   report.correlation_factor = estimate.kappa_inf;
   report.degrees_of_freedom = estimate.degrees_of_freedom;
   report.other_cost_ratio = estimate.other_cost_ratio;
-  report.mean_cost_ratio = estimate.mean_cost_ratio;
   report.centre = estimate.centre;
   report.directions = directionsOf(estimate);
   report.basin_distance = basinDistance(estimate, report);

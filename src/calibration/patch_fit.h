@@ -24,9 +24,11 @@ struct PatchFitWorkspace {
 
 /** \brief Least-squares quadric of the neighbourhood of \p point, or its plane if no
  * quadric fits. The neighbourhood grows while it is no wider than its noise or as
- * narrow as a scan line. \param[in,out] workspace of earlier points of the same cloud,
- * or new \param[out] spacing distance to the nearest other point [m] \return the patch;
- * its sigma is that of this neighbourhood alone */
+ * narrow as a scan line.
+ *
+ * \param[in,out] workspace of earlier points of the same cloud, or new
+ * \param[out] spacing distance to the nearest other point [m]
+ * \return the patch; its sigma is that of this neighbourhood alone */
 SurfacePatch
 fitPatch(const PointNeighbors& cloud,
          const Eigen::Vector3f& point,

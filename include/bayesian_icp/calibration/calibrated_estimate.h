@@ -58,8 +58,6 @@ struct CalibratedEstimate {
   /** meanCappedResidual() at the other start's end, in units of that at the better one;
    * at least 1. */
   double other_cost_ratio = 1.0;
-  /** meanCappedResidual() at the posterior mean, in units of that at the mode. */
-  double mean_cost_ratio = 1.0;
   /** Nearest-neighbour queries used. */
   long num_queries = 0;
 };
