@@ -169,7 +169,10 @@ TEST(CalibratedEstimate, ASingleStartIsFollowedAlone)
     start.translation().x() = shift * Waves::wavelength + 0.003;
     const CalibratedEstimate e =
         estimateCalibrated(*waves.scorer, *waves.prior, EstimateOptions(), &start);
-    EXPECT_NEAR(e.mode.translation().x(), shift * Waves::wavelength, 0.002) << shift;
+    // In its valley; patches are half a wavelength wide.
+    EXPECT_NEAR(
+        e.mode.translation().x(), shift * Waves::wavelength, 0.1 * Waves::wavelength)
+        << shift;
   }
 }
 

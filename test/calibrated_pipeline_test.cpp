@@ -215,20 +215,24 @@ TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
 
 TEST(Calibrated, PointsBesideTheSurfaceMakeItDoubtful)
 {
-  // Nine in ten points are where the target was not seen.
+  // Three quarters of the source's surface are where the target was not seen.
   Scans scans;
-  Eigen::Matrix3Xd elsewhere = Scans::surface(93, 9 * scans.source.cols());
-  elsewhere.row(0).array() += 3.0;
-  Eigen::Matrix3Xd source(3, 10 * scans.source.cols());
-  source << scans.source, elsewhere;
+  const Eigen::Index num_points = scans.source.cols();
+  Eigen::Matrix3Xd source(3, 4 * num_points);
+  source.leftCols(num_points) = scans.source;
+  for (int k = 1; k < 4; ++k) {
+    source.middleCols(k * num_points, num_points) =
+        Scans::surface(93 + static_cast<std::uint64_t>(k), num_points);
+    source.row(0).segment(k * num_points, num_points).array() += 3.0 * k;
+  }
   scans.source = source;
   const Summary summary = estimateFrom(scans).summary;
   EXPECT_EQ(summary.status, Status::Doubtful) << summary.message;
   EXPECT_TRUE(summary.data.flags.low_support);
   EXPECT_NE(summary.message.find("of the source points"), std::string::npos);
   EXPECT_TRUE(hasUsableMean(summary.status));
-  // All of 15 000 points have the same chance to be among the 2000.
-  EXPECT_NEAR(summary.data.active_fraction, 0.1, 0.04);
+  // The 2000 points cover all of the source's surface alike.
+  EXPECT_NEAR(summary.data.active_fraction, 0.25, 0.04);
 }
 
 /** No draws, and a status with a word in its message. */

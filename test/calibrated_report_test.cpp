@@ -166,6 +166,7 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
   // The prior's deviation is 0.5; the fourth direction is held by it only.
   CalibratedEstimate estimate = diagonalEstimate();
   estimate.prior.deviation << 0.5, 0.0, 0.0, 1e3, 1.0, 0.5;
+  estimate.prior_about_origin = estimate.prior;
   estimate.mean << 0.0, 0.0, 0.0, 0.0, 0.5, 0.0;
   const double squared_distance = 1.0 + 9.0 + 1.0;
   const auto tail = [](int degrees, double x) {
@@ -179,7 +180,7 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
     if (k == 3)
       continue;
     estimate.information(k, k) = 0.0;
-    estimate.prior.deviation[k] = 0.0;
+    estimate.prior.deviation[k] = estimate.prior_about_origin.deviation[k] = 0.0;
     estimate.mean[k] = 0.0;
     double distance = 0.0;
     int num_held = 0;

@@ -48,8 +48,12 @@ expectMoments(const ChainSet& set, const Vector6d& mean, const Matrix6d& covaria
   EXPECT_GT(least_ess, 900.0);
   const Matrix6d white =
       Eigen::LLT<Matrix6d>(covariance).matrixL().solve(Matrix6d(Matrix6d::Identity()));
+  // Of six numbers that are Gaussian, not of poses: about the means of each.
+  const PoseMatrix draws = pooledDraws(set.chains);
   const Matrix6d standardised =
-      white * summary.covariance(CovarianceConvention::Parameters) * white.transpose();
+      white *
+      covarianceAbout(coordinateMeans(draws), draws, CovarianceConvention::Parameters) *
+      white.transpose();
   EXPECT_LT((standardised - Matrix6d::Identity()).cwiseAbs().maxCoeff(),
             4.5 * std::sqrt(2.0 / least_ess));
 }

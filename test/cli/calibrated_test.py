@@ -93,11 +93,11 @@ class DataSection(ToolTest):
         self.assertIsNone(document["data"])
 
     def test_flags_are_doubt(self):
-        """Two thirds of the source are where the target was not seen."""
+        """Three quarters of the source are where the target was not seen."""
         _, target = scans("mug")
         _, points = cloud_files.read_pcd(scans("mug")[0])
         source = [tuple(map(self.number, (p["x"], p["y"], p["z"]))) for p in points]
-        elsewhere = [(x + 1, y, z) for x, y, z in source]
+        elsewhere = [(x + far, y, z) for x, y, z in source for far in (1, 2, 3)]
         file = self.file("source.pcd", cloud_files.pcd_bytes(source[::2] + elsewhere))
         result = run(file, target, *PRESET, "--json")
         self.assertEqual(result.returncode, 1)

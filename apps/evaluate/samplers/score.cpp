@@ -59,7 +59,7 @@ scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
     score.kolmogorov_smirnov.setOnes();
     return score;
   }
-  const Vector6d centre = meanPose(gold_draws);
+  const Vector6d centre = coordinateMeans(gold_draws);
   const PoseMatrix reference = unwrapAbout(centre, gold_draws);
   const PoseMatrix draws = unwrapAbout(centre, pooled_draws);
   const Moments p = momentsOf(reference), q = momentsOf(draws);
