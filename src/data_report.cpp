@@ -17,6 +17,15 @@ constexpr double min_translation_share = 0.95;
 /** Share of the motion along the axis from which a rotation is a screw. */
 constexpr double min_screw_share = 0.05;
 
+/** Residuals above this part of their largest scale that repeat each other over large
+ * patches are those of another shape: so many patches are asked for then. */
+constexpr double part_of_misfit = 0.3;
+constexpr double min_patches_with_misfit = 28.0;
+
+/** residualScale() is not below 0.3: there, the target's noise is not the one that the
+ * residuals have. */
+constexpr double min_residual_scale = 0.301;
+
 /** Without a sign where it would show as -0.00. */
 double
 rounded(double value, double unit)
@@ -80,6 +89,14 @@ largestScale(const DataReport& report)
 }
 
 double
+leastPatches(const DataReport& report)
+{
+  return report.residual_scale > part_of_misfit * max_residual_scale
+             ? min_patches_with_misfit
+             : min_effective_patches;
+}
+
+double
 leastShareOfPrior(const DataReport& report)
 {
   double least = 1.0;
@@ -112,8 +129,9 @@ flagsOf(const DataReport& report)
   flags.wrong_basin = !(report.basin_distance <= max_basin_distance ||
                         report.other_cost_ratio > max_other_cost_ratio);
   flags.low_support = !(report.active_fraction >= min_active_fraction);
-  flags.few_patches = !(report.effective_patches >= min_effective_patches);
-  flags.misfit = !(report.residual_scale <= largestScale(report));
+  flags.few_patches = !(report.effective_patches >= leastPatches(report));
+  flags.misfit = !(report.residual_scale >= min_residual_scale &&
+                   report.residual_scale <= largestScale(report));
   flags.no_information =
       std::all_of(report.directions.begin(),
                   report.directions.end(),
@@ -166,8 +184,12 @@ describeFlags(const DataReport& report)
     texts.push_back(formatted(
         "the pose is held by about %.0f independent patches of surface (at least %.0f)",
         report.effective_patches,
-        min_effective_patches));
-  if (report.flags.misfit)
+        leastPatches(report)));
+  if (report.flags.misfit && report.residual_scale < min_residual_scale)
+    texts.push_back(
+        "the residuals are far below the target's noise, whose scale is then "
+        "not known: clouds without noise have none");
+  else if (report.flags.misfit)
     texts.push_back(formatted(
         "the surfaces disagree by more than the noise: residuals "
         "of %.1f times the target's noise (at most %.0f%s)",

@@ -107,7 +107,7 @@ TEST(DescribeFlags, NameNumberAndThreshold)
   ASSERT_EQ(texts.size(), 5u);
   const char* parts[5][2] = {{"5.2 ", "at most 3"},
                              {"9 %", "40 %"},
-                             {"12 ", "at least 20"},
+                             {"12 ", "at least 28"},
                              {"12.6 ", "at most 10"},
                              {"99.5 %", "99 %"}};
   for (std::size_t i = 0; i < 5; ++i)
