@@ -71,13 +71,14 @@ struct DataFlags {
   bool wrong_basin = false;
   /** Less than min_active_fraction of the source points lie on the target's surface. */
   bool low_support = false;
-  /** Fewer than min_effective_patches independent patches hold the pose, or fewer than 28
-   * where residual_scale is above 3: too few to rely on the width. */
+  /** Fewer than min_effective_patches independent patches hold the pose, or fewer than
+   * 28 where residual_scale is above 3: too few to rely on the width. */
   bool few_patches = false;
   /** The surfaces disagree by more than the noise: residual_scale above
-   * max_residual_scale, or above max_residual_scale_if_free where the prior alone holds a
-   * direction, which the disagreement may hide. Or they agree better than the target's
-   * noise allows, as clouds without noise do: residual_scale is at its floor of 0.3. */
+   * max_residual_scale, or above max_residual_scale_if_free where the prior alone holds
+   * a direction, which the disagreement may hide. Or they agree better than the
+   * target's noise allows, as clouds without noise do: residual_scale is at its floor
+   * of 0.3. */
   bool misfit = false;
   /** All six directions are held by the prior only. */
   bool no_information = false;
