@@ -15,8 +15,8 @@ namespace {
 /** The preset's own. */
 constexpr std::uint64_t thinning_stream = std::uint64_t(1) << 40;
 
-/** The points that the preset chooses, in its order: the first of them are searched
- * with. */
+/** As many points as the preset uses, in random order: the first of them are searched
+ * with. Chosen at random, while the preset's cover the source evenly. */
 Eigen::Matrix3Xd
 thinnedSource(const CoverageCase& problem)
 {
