@@ -1,7 +1,6 @@
 #include "calibrated_pipeline.h"
 
 #include "calibration/distinct_points.h"
-#include "calibration/even_choice.h"
 #include "pipeline_parts.h"
 #include "plain_text.h"
 
@@ -9,21 +8,16 @@
 #include <bayesian_icp/calibration/calibrated_estimate.h>
 #include <bayesian_icp/calibration/calibrated_modes.h>
 #include <bayesian_icp/calibration/calibrated_report.h>
-#include <bayesian_icp/random.h>
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace bayesian_icp {
 
 namespace {
-
-/** Stream of the random order of source points; those of chains count from 0. */
-constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
 /** Narrower than this, in standard deviations of the noise, a target is a line: patches
  * that are fitted to its noise would hold motions along it. */
@@ -54,19 +48,6 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   if (num_finite < min_calibrated_points)
     return failure(Status::InvalidInput, "the target has " + textOfCount(num_finite));
   return checked;
-}
-
-/** At most \p count points that cover the source evenly, in a random order. Near the
- * sensor most points repeat each other; rotations are held by those that are far. */
-Eigen::Matrix3Xd
-evenSource(const Eigen::Matrix3Xd& points, Eigen::Index count, Random& random)
-{
-  const Eigen::Vector3d centroid = points.rowwise().mean();
-  std::vector<Eigen::Index> columns =
-      evenChoice((points.colwise() - centroid).cast<float>(), count);
-  for (std::size_t i = columns.size(); i > 1; --i)
-    std::swap(columns[i - 1], columns[random.index(i)]);
-  return points(Eigen::all, columns);
 }
 
 /** Tells that something is under way of which the length is not known. */
@@ -194,9 +175,10 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
   const std::string no_surface = complaintAbout(model, distinct_points);
   if (!no_surface.empty())
     return failure(Status::TooFewCorrespondences, no_surface);
-  Random random(options.chains.seed, order_stream);
-  const SurfaceScorer scorer(
-      evenSource(source_points, options.calibrated.max_source_points, random), model);
+  const SurfaceScorer scorer(evenSource(source_points,
+                                        options.calibrated.max_source_points,
+                                        options.chains.seed),
+                             model);
   const Prior prior = makePrior(options, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }

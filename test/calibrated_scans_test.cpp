@@ -169,12 +169,25 @@ TEST(CalibratedScans, ABowlTurnsAboutItsAxisWhicheverOfItsPointsAreUsed)
     }
 }
 
-TEST(CalibratedScans, AreFoundFromAsFarAsThePriorSays)
+TEST(CalibratedScans, AreNotTooSureFromAsFarAsThePriorSays)
 {
-  // 1.2 standard deviations of the default prior in each coordinate.
-  simulator::SimulationOptions scan = simulator::defaultOptions("table");
-  scan.offset << 0.42, -0.42, 0.42, -0.42, 0.42, -0.42;
-  EXPECT_LT(distanceOfTruth(simulator::simulate(scan), Options()), chi_square_999);
+  // 1.2 standard deviations of the default prior in each coordinate: most runs keep to
+  // the table's plane and leave the rest to the prior.
+  constexpr int num_scans = 6, num_orders = 3;
+  int num_outside = 0;
+  for (int seed = 1; seed <= num_scans; ++seed)
+    for (int order = 1; order <= num_orders; ++order) {
+      simulator::SimulationOptions scan = simulator::defaultOptions("table");
+      scan.offset << 0.42, -0.42, 0.42, -0.42, 0.42, -0.42;
+      scan.seed = static_cast<std::uint64_t>(seed);
+      Options options;
+      options.chains.seed = static_cast<std::uint64_t>(order);
+      if (!(distanceOfTruth(simulator::simulate(scan), options) < chi_square_999))
+        ++num_outside;
+    }
+  // Of Student's t with 20 degrees of freedom 0.7 % is outside: two of 18 are once in
+  // 140 tests.
+  EXPECT_LE(num_outside, 1);
 }
 
 } // namespace

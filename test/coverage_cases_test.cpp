@@ -124,14 +124,34 @@ TEST_P(EveryCoverageScene, LiesOnItsSurfacesAtTheTruth)
   }
 }
 
+TEST(FarCases, HaveAsWideAPriorAsTheyAreFar)
+{
+  constexpr int num_cases = 20;
+  double translations = 0.0, rotations = 0.0;
+  for (int seed = 1; seed <= num_cases; ++seed) {
+    const CoverageCase made = makeCoverageCase("stairs", "far", seed);
+    EXPECT_EQ(made.prior_sd[0], 1.0);
+    EXPECT_EQ(made.prior_sd[5], 0.8);
+    const Eigen::Vector3d centroid = made.source.rowwise().mean();
+    translations += (made.truth * centroid - centroid).squaredNorm();
+    const Vector6d pose = poseOf(made.truth.matrix());
+    rotations += pose[3] * pose[3];
+  }
+  // Chi-square variates of 60 and, of a single angle wrapped at pi, nearly 20 degrees
+  // of freedom: within five standard deviations of their mean.
+  EXPECT_NEAR(translations / (3.0 * num_cases), 1.0, 5.0 * std::sqrt(2.0 / 60.0));
+  EXPECT_NEAR(rotations / num_cases, 0.64, 5.0 * 0.64 * std::sqrt(2.0 / 20.0));
+  EXPECT_GT(rotations, 0.0);
+}
+
 TEST(LidarCases, LieOnTheirSurfacesAtTheTruth)
 {
   for (const std::string& scene_name : lidarScenes()) {
     const simulator::Scene scene = simulator::makeScene(scene_name);
     const CoverageCase made = makeCoverageCase(scene_name, "lidar16", 1);
     EXPECT_GT(made.source.cols(), 8000) << scene_name;
-    // Noise grows at a slant as the distance shrinks, so half are below 0.67 standard
-    // deviations of noise and offset together, 0.022 m.
+    // Noise grows less at a slant than the distance shrinks, so half are below 0.67
+    // standard deviations of noise and offset together, 0.022 m.
     EXPECT_LT(medianDistance(scene, made.truth * made.source), 0.02) << scene_name;
     EXPECT_LT(medianDistance(scene, made.target), 0.02) << scene_name;
   }
@@ -140,9 +160,12 @@ TEST(LidarCases, LieOnTheirSurfacesAtTheTruth)
 TEST(LidarCases, MoveDuringTheScansThatSaySo)
 {
   const simulator::Scene scene = simulator::makeScene("street");
+  const CoverageCase standing = makeCoverageCase("street", "lidar64", 1);
   const CoverageCase made = makeCoverageCase("street", "lidar64_sweep", 1);
   const double distance = medianDistance(scene, made.truth * made.source);
-  EXPECT_GT(distance, 0.02);
+  // Points are off by up to half a way of at least 0.5 m, a part of it across their
+  // surface.
+  EXPECT_GT(distance, 1.3 * medianDistance(scene, standing.truth * standing.source));
   EXPECT_LT(distance, 0.5) << "at most a quarter of a way of 2 m";
 }
 

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <cmath>
 #include <string>
 
 namespace bayesian_icp {
@@ -208,6 +209,42 @@ TEST(ScoreClusters, WithoutAFitTheirCovarianceIsUnbiased)
   // Of a variance from L clusters: 2 / (L - 1) relative; 21 elements are looked at.
   const double error = std::sqrt(2.0 / (num_clusters - 1.0) / num_scans);
   EXPECT_LT((whitened - Matrix6d::Identity()).cwiseAbs().maxCoeff(), 4.5 * error);
+}
+
+/** A hundred points, far away on two sides, hold the plane's tilts: the fit takes most
+ * of their few clusters' scores. */
+TEST(ScoreClusters, ADirectionThatFewClustersHoldIsUnbiased)
+{
+  constexpr int num_scans = 400;
+  constexpr Index num_far = 50;
+  Random random(87, 0);
+  test::Sheet sheet = test::squarePlane(random, num_points, 1.0);
+  for (Index i = 0; i < num_far; ++i) {
+    sheet.points(0, i) += 20.0;
+    sheet.points(0, i + num_far) -= 20.0;
+  }
+  const Matrix6d precision = 1e-6 * Matrix6d::Identity();
+  const Matrix6Xd jacobians = test::distanceJacobians(sheet) / sigma;
+  const Matrix6d truth = jacobians * jacobians.transpose();
+  const Matrix6d working_information = truth + 5.0 * precision;
+  Vector6d tilt = Vector6d::Zero();
+  tilt[4] = 1.0;
+  double sum = 0.0, sum_of_squares = 0.0;
+  for (int k = 0; k < num_scans; ++k) {
+    const PointScores points =
+        fittedScores(sheet, test::normals(random, num_points), precision);
+    const Matrix6d J =
+        clusteredCovariance(points, working_information, ClusterOptions());
+    const double ratio = tilt.dot(J * tilt) / tilt.dot(truth * tilt);
+    sum += ratio;
+    sum_of_squares += ratio * ratio;
+  }
+  const double mean = sum / num_scans;
+  const double error =
+      std::sqrt((sum_of_squares / num_scans - mean * mean) / num_scans);
+  EXPECT_NEAR(mean, 1.0, 4.5 * error);
+  // It would see through a bias: half a dozen clusters lose a sixth each.
+  EXPECT_LT(4.5 * error, 0.15);
 }
 
 TEST(ScoreClusters, OfNoPointsIsZero)

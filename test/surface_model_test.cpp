@@ -8,10 +8,12 @@
 #include <boost/math/distributions/fisher_f.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace bayesian_icp {
 namespace {
@@ -413,6 +415,57 @@ TEST(SurfaceModel, ALineIsNoSurface)
   const SurfaceModel model(points);
   expectFinite(model);
   EXPECT_EQ(model.usableFraction(), 0.0);
+}
+
+/** Level ground under a spinning lidar 1.8 m above it: a ring for every elevation, a
+ * point every 0.2 degrees, each off along its beam by noise of 0.02 m, and so on the
+ * cone of its ring. The elevation of each point is behind it. */
+Eigen::Matrix4Xd
+ringsOnTheGround(const std::vector<double>& elevations)
+{
+  constexpr double degree = 3.14159265358979323846 / 180.0;
+  constexpr Index num_azimuths = 1800;
+  Random random(96, 0);
+  Eigen::Matrix4Xd points(4, num_azimuths * Index(elevations.size()));
+  Index next = 0;
+  for (const double elevation : elevations)
+    for (Index i = 0; i < num_azimuths; ++i) {
+      const double up = elevation * degree, azimuth = 0.2 * degree * double(i);
+      const double range = -1.8 / std::sin(up) + 0.02 * random.normal();
+      const Vector3d beam(std::cos(up) * std::cos(azimuth),
+                          std::cos(up) * std::sin(azimuth),
+                          std::sin(up));
+      points.col(next++) << range * beam, up;
+    }
+  return points;
+}
+
+TEST(SurfaceModel, ARingOfALidarIsNoSurface)
+{
+  for (const double elevation : {-15.0, -9.0, -5.0}) {
+    const SurfaceModel model(ringsOnTheGround({elevation}).topRows<3>());
+    expectFinite(model);
+    EXPECT_EQ(model.usableFraction(), 0.0) << elevation;
+  }
+}
+
+TEST(SurfaceModel, RingsOfALidarAreGroundAndNotTheirCones)
+{
+  const Eigen::Matrix4Xd points =
+      ringsOnTheGround({-15.0, -13.0, -11.0, -9.0, -7.0, -5.0});
+  const SurfaceModel model(points.topRows<3>(), withoutTakeover());
+  int num_usable = 0;
+  for (const SurfacePatch& patch : model.patches()) {
+    if (!patch.isUsable())
+      continue;
+    ++num_usable;
+    EXPECT_EQ(patch.kind, PatchKind::Plane);
+    const Vector3d centre = patch.centre + model.origin();
+    const double elevation = std::atan2(1.8, centre.head<2>().norm());
+    const double slope = std::acos(std::min(1.0, std::abs(patch.axes(2, 2))));
+    EXPECT_LT(slope, 0.5 * elevation) << centre.transpose();
+  }
+  EXPECT_GT(num_usable, int(model.patches().size()) / 2);
 }
 
 TEST(SurfaceModel, APointRepeatedIsNoSurface)

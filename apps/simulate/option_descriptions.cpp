@@ -71,7 +71,8 @@ sensorOptions()
       text("KIND"),
       "depth-camera, lidar, or a spinning lidar as on a car's roof: lidar16, lidar32 "
       "(-15 to 15 degrees, every 0.2), lidar64, lidar128 (-25 to 5 degrees, every "
-      "0.25), 1 to 80 m, --incidence-noise 1 --ring-offset 0.01 --azimuth-phase 1; the "
+      "0.25), 1 to 80 m, --incidence-noise 0.25 --ring-offset 0.01 --azimuth-phase 1; "
+      "the "
       "other "
       "options change each of these (default depends on the scene)");
   group.add_options()("width", text("N"), "camera: columns [pixels] (default 640)");

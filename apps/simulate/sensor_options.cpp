@@ -81,7 +81,7 @@ carLidar(int rings)
   options.lidar.azimuth_step = rings < 64 ? 0.2 : 0.25;
   options.lidar.ring_offset = 0.01;
   options.lidar.azimuth_phase = 1.0;
-  options.incidence_noise = 1.0;
+  options.incidence_noise = 0.25;
   options.min_range = 1.0;
   options.max_range = 80.0;
   return options;

@@ -1,15 +1,19 @@
+#include "even_choice.h"
 #include "principal_axes.h"
 
 #include <bayesian_icp/calibration/calibrated_estimate.h>
 #include <bayesian_icp/calibration/curvature.h>
 #include <bayesian_icp/calibration/robust_mode.h>
 #include <bayesian_icp/calibration/score_clusters.h>
+#include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -17,6 +21,9 @@ using Eigen::Index;
 using Eigen::Isometry3d;
 
 namespace {
+
+/** Stream of the random order of source points; those of chains count from 0. */
+constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
 /** Starts and the mode have converged at this part of the target's noise. */
 constexpr double start_tolerance = 0.03;
@@ -111,8 +118,8 @@ firstCovariance(const CalibratedEstimate& estimate, double noise)
   return principal.axes * variances.asDiagonal() * principal.axes.transpose();
 }
 
-/** J with the noise of secants along directions that the data do not hold: the pose is
- * unknown along them, and the score with it. */
+/** J with the noise of secants as far as the data do not hold their directions: the
+ * pose is unknown along them, and the score with it. */
 Matrix6d
 withUnheldNoise(const Matrix6d& score_covariance,
                 const Secants& secants,
@@ -123,9 +130,8 @@ withUnheldNoise(const Matrix6d& score_covariance,
   const Matrix6d in_steps = to_steps * covariance * to_steps.transpose();
   Matrix6d J = score_covariance;
   for (int k = 0; k < 6; ++k)
-    if (debited.keep[k] <= 0.0)
-      J += std::min(max_unheld_steps, in_steps(k, k)) *
-           secants.noise[static_cast<std::size_t>(k)];
+    J += (1.0 - debited.keep[k]) * std::min(max_unheld_steps, in_steps(k, k)) *
+         secants.noise[static_cast<std::size_t>(k)];
   return J;
 }
 
@@ -215,6 +221,18 @@ measureCurvature(const SurfaceScorer& scorer,
 }
 
 } // namespace
+
+Eigen::Matrix3Xd
+evenSource(const Eigen::Matrix3Xd& points, Index max_points, std::uint64_t seed)
+{
+  const Eigen::Vector3d centroid = points.rowwise().mean();
+  std::vector<Index> columns =
+      evenChoice((points.colwise() - centroid).cast<float>(), max_points);
+  Random random(seed, order_stream);
+  for (std::size_t i = columns.size(); i > 1; --i)
+    std::swap(columns[i - 1], columns[random.index(i)]);
+  return points(Eigen::all, columns);
+}
 
 CalibratedEstimate
 estimateCalibrated(const SurfaceScorer& scorer,

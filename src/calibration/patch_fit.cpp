@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp {
 
@@ -19,10 +20,20 @@ namespace {
 constexpr int max_growth_for_noise = 4;
 /** ... and to this many to be as wide as ... */
 constexpr int max_growth_for_width = 16;
-/** ... this ratio of its in-plane standard deviations. */
+/** ... this, as aspectOf(). */
 constexpr double wanted_aspect = 0.35;
-/** Neighbourhoods narrower than this ratio are lines. */
+/** Narrower neighbourhoods are lines. */
 constexpr double min_aspect = 0.2;
+/** A quadric's slopes are known at least as well as from points that fill, evenly, an
+ * ellipse of the smallest aspect: 4 is the variance of a slope in the unit disc, of one
+ * point and unit noise. */
+constexpr double max_slope_variance = 4.0 / (min_aspect * min_aspect);
+/** Clark and Evans' (1954) ratio of nearest neighbours' mean distance to that of
+ * points scattered at random, from which on points cover a quadric. That of scan lines
+ * apart is smaller, and between them anything goes for a quadric. */
+constexpr double min_evenness = 0.8;
+/** Points whose nearest neighbours are looked for. */
+constexpr Eigen::Index num_evenness_points = 32;
 /** A quadric that misses its points by less than this part of the radius is good
  * enough, however exact they are. */
 constexpr double negligible_misfit = 1e-3;
@@ -50,8 +61,6 @@ struct PrincipalFrame {
   Matrix3d axes;
   /** Standard deviation across the surface [m]. */
   double thickness;
-  /** Ratio of the standard deviations in the plane. */
-  double aspect;
 };
 
 PrincipalFrame
@@ -68,10 +77,53 @@ principalFrame(const PointRows& points)
   PrincipalFrame frame;
   frame.axes << solver.eigenvectors().col(2), solver.eigenvectors().col(1),
       solver.eigenvectors().col(0);
-  const Vector3d variances = solver.eigenvalues().cwiseMax(0.0);
-  frame.thickness = std::sqrt(variances[0]);
-  frame.aspect = variances[2] > 0.0 ? std::sqrt(variances[1] / variances[2]) : 0.0;
+  frame.thickness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
   return frame;
+}
+
+/** Ratio of the points' spread in the plane, across the parabola along the widest axis
+ * that fits them best, to that along the axis. Scan lines are bent, and a bent line
+ * seems to have a width, but it tells nothing of the slope across it.
+ * \param[in] local in the principal frame */
+double
+aspectOf(const PointRows& local)
+{
+  const Eigen::ArrayXd x = local.col(0).array() - local.col(0).mean();
+  const double spread = x.square().sum();
+  if (!(spread > 0.0))
+    return 0.0;
+  // Second axis and parabola without what a line explains; the axes are uncorrelated.
+  const Eigen::ArrayXd y = local.col(1).array() - local.col(1).mean();
+  Eigen::ArrayXd bend = x.square() - x.square().mean();
+  bend -= x * ((bend * x).sum() / spread);
+  const double size = bend.square().sum();
+  const double explained =
+      size > 0.0 ? (bend * y).sum() * (bend * y).sum() / size : 0.0;
+  return std::sqrt(std::max(0.0, y.square().sum() - explained) / spread);
+}
+
+/** Clark and Evans' ratio: 1 for points at random, 2 for a square grid, less if they
+ * are on lines.
+ * \param[in] local in the principal frame */
+double
+evennessOf(const PointRows& local)
+{
+  const Eigen::Index num_points = local.rows();
+  const Eigen::ArrayXd x = local.col(0), y = local.col(1);
+  // Of an ellipse that is filled evenly.
+  constexpr double pi = 3.14159265358979323846;
+  const double area =
+      4.0 * pi *
+      std::sqrt((x - x.mean()).square().mean() * (y - y.mean()).square().mean());
+  const Eigen::Index step = std::max<Eigen::Index>(1, num_points / num_evenness_points);
+  double sum = 0.0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < num_points; i += step, ++count) {
+    Eigen::ArrayXd squared_distances = (x - x[i]).square() + (y - y[i]).square();
+    squared_distances[i] = std::numeric_limits<double>::infinity();
+    sum += std::sqrt(squared_distances.minCoeff());
+  }
+  return sum / count / (0.5 * std::sqrt(area / static_cast<double>(num_points)));
 }
 
 /** Place of x^a y^b, a + b = degree, among 1, x, y, x^2, x y, y^2, ... */
@@ -159,18 +211,24 @@ fitQuadric(const PointRows& local,
   const QuadricMatrix matrix =
       regression.normal_matrix.topLeftCorner<num_quadric_terms, num_quadric_terms>();
   const Vector6d moments = regression.moments.head<num_quadric_terms>();
-  const Vector6d solution = matrix.ldlt().solve(moments);
+  const Eigen::LDLT<QuadricMatrix> factors = matrix.ldlt();
+  const Vector6d solution = factors.solve(moments);
+  const double slope_variance =
+      static_cast<double>(num_points) * std::max(factors.solve(Vector6d::Unit(1))[1],
+                                                 factors.solve(Vector6d::Unit(2))[2]);
   const double rss = std::max(0.0, regression.squared_heights - solution.dot(moments));
   const double sigma =
       std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
   const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
-  // The test of the quadric last: it costs as much as the fit.
+  // The tests that cost as much as the fit are last.
   const bool is_quadric =
       solution.allFinite() && aspect >= min_aspect &&
+      slope_variance < max_slope_variance &&
       centroid_offset < options.max_centroid_offset * patch.radius &&
       patch.radius > options.min_radius_to_noise * sigma &&
       (sigma < negligible_misfit * patch.radius ||
-       misfit(regression, rss, num_points) < options.max_misfit);
+       misfit(regression, rss, num_points) < options.max_misfit) &&
+      evennessOf(local) > min_evenness;
   if (!is_quadric)
     return;
   const double r = 1.0 / patch.radius;
@@ -187,15 +245,14 @@ fitQuadric(const PointRows& local,
 /** Make a patch the plane of the neighbours in its frame, if they are a surface at all.
  */
 void
-fitPlane(const PointRows& local, const PrincipalFrame& frame, SurfacePatch& patch)
+fitPlane(const PointRows& local, double thickness, double aspect, SurfacePatch& patch)
 {
   const auto num_points = static_cast<double>(local.rows());
   patch.quadric.fill(0.0);
   patch.quadric[0] = local.col(2).mean();
-  patch.sigma =
-      frame.thickness * std::sqrt(num_points / std::max(1.0, num_points - 3.0));
+  patch.sigma = thickness * std::sqrt(num_points / std::max(1.0, num_points - 3.0));
   const bool is_plane = local.rows() >= min_plane_points && patch.radius > 0.0 &&
-                        frame.aspect >= min_aspect &&
+                        aspect >= min_aspect &&
                         patch.sigma < max_thickness * patch.radius;
   patch.kind = is_plane ? PatchKind::Plane : PatchKind::None;
 }
@@ -236,6 +293,7 @@ gatherNeighbors(const PointNeighbors& cloud,
 SurfacePatch
 fitPatch(const PointNeighbors& cloud,
          const Vector3f& point,
+         double max_radius,
          const SurfaceModelOptions& options,
          PatchFitWorkspace& workspace,
          double& spacing)
@@ -249,21 +307,25 @@ fitPatch(const PointNeighbors& cloud,
     const PointRows& neighbors = workspace.neighbors;
     const PrincipalFrame frame = principalFrame(neighbors);
     const PointRows local = neighbors.lazyProduct(frame.axes);
+    const double aspect = aspectOf(local);
     patch.axes = frame.axes;
     patch.radius = std::sqrt(local.leftCols<2>().rowwise().squaredNorm().maxCoeff());
+    const bool is_too_wide = patch.radius > max_radius;
     const bool is_thick = patch.radius < options.min_radius_to_noise * frame.thickness;
-    const bool is_narrow = frame.aspect < wanted_aspect;
+    const bool is_narrow = aspect < wanted_aspect;
     const int next = 2 * growth;
-    if (next * options.num_neighbors <= num_points &&
+    if (!is_too_wide && next * options.num_neighbors <= num_points &&
         ((is_thick && next <= max_growth_for_noise) ||
          (is_narrow && next <= max_growth_for_width)))
       continue;
     const auto& squared_distances = workspace.nearest.squared_distances;
     spacing =
         squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
-    fitPlane(local, frame, patch);
-    if (neighbors.rows() >= min_points && patch.radius > 0.0)
-      fitQuadric(local, frame.aspect, options, patch);
+    fitPlane(local, frame.thickness, aspect, patch);
+    if (is_too_wide)
+      patch.kind = PatchKind::None;
+    else if (neighbors.rows() >= min_points && patch.radius > 0.0)
+      fitQuadric(local, aspect, options, patch);
     return patch;
   }
 }

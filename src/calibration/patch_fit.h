@@ -26,12 +26,14 @@ struct PatchFitWorkspace {
  * quadric fits. The neighbourhood grows while it is no wider than its noise or as
  * narrow as a scan line.
  *
+ * \param[in] max_radius of a neighbourhood [m]; a wider one is not a patch
  * \param[in,out] workspace of earlier points of the same cloud, or new
  * \param[out] spacing distance to the nearest other point [m]
  * \return the patch; its sigma is that of this neighbourhood alone */
 SurfacePatch
 fitPatch(const PointNeighbors& cloud,
          const Eigen::Vector3f& point,
+         double max_radius,
          const SurfaceModelOptions& options,
          PatchFitWorkspace& workspace,
          double& spacing);

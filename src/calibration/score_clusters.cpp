@@ -2,6 +2,7 @@
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,9 @@ constexpr std::uint64_t partition_seed = 1;
 /** What six parameters cost in degrees of freedom: six were fitted, and the inverse of
  * an estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
 constexpr double lost_degrees_of_freedom = 13.0;
+
+/** Largest part of the information that one cluster is taken to have. */
+constexpr double max_share = 0.9;
 
 /** Leaves of one randomised kd-split. */
 class Partition {
@@ -110,26 +114,9 @@ private:
   Index num_leaves_ = 0;
 };
 
-/** sum_b tr((H_w^-1 H_b)^2): what fitting six parameters took from the clusters.
- * \param[in] whitened columns are L^-1 j with H_w = L L^T */
-double
-leverage(const Matrix6Xd& whitened, const Partition& partition)
-{
-  std::vector<Matrix6d> informations(static_cast<std::size_t>(partition.numLeaves()),
-                                     Matrix6d::Zero());
-  for (Index i = 0; i < whitened.cols(); ++i)
-    informations[static_cast<std::size_t>(partition.leafOf(i))]
-        .selfadjointView<Eigen::Lower>()
-        .rankUpdate(whitened.col(i));
-  double sum = 0.0;
-  for (const Matrix6d& lower : informations)
-    sum += Matrix6d(lower.selfadjointView<Eigen::Lower>()).squaredNorm();
-  return sum;
-}
-
-/** Sum of outer products of the clusters' scores, less their share of the total. */
-Matrix6d
-sumOfOuterProducts(const Matrix6Xd& scores, const Partition& partition)
+/** Sums of the clusters' scores, less their share of the total. */
+Matrix6Xd
+clusterSums(const Matrix6Xd& scores, const Partition& partition)
 {
   Matrix6Xd sums = Matrix6Xd::Zero(6, partition.numLeaves());
   Eigen::RowVectorXd counts = Eigen::RowVectorXd::Zero(partition.numLeaves());
@@ -138,8 +125,31 @@ sumOfOuterProducts(const Matrix6Xd& scores, const Partition& partition)
     counts[partition.leafOf(i)] += 1.0;
   }
   const Vector6d mean = scores.rowwise().mean();
-  sums -= mean * counts;
-  return sums * sums.transpose();
+  return sums - mean * counts;
+}
+
+/** Give back to the clusters what fitting six parameters took from them, so that their
+ * outer products are right on average for independent points: CR2 of Bell and McCaffrey
+ * (2002), (I - H_b)^-1/2 s_b, H_b being the cluster's share of the information. A
+ * direction that a few clusters hold loses nearly all of their scores.
+ * \param[in] whitened L^-1 j of each point, working information L L^T
+ * \param[in,out] sums L^-1 s_b of each cluster */
+void
+undoFit(const Matrix6Xd& whitened, const Partition& partition, Matrix6Xd& sums)
+{
+  std::vector<Matrix6d> shares(static_cast<std::size_t>(partition.numLeaves()),
+                               Matrix6d::Zero());
+  for (Index i = 0; i < whitened.cols(); ++i)
+    shares[static_cast<std::size_t>(partition.leafOf(i))]
+        .selfadjointView<Eigen::Lower>()
+        .rankUpdate(whitened.col(i));
+  for (Index b = 0; b < sums.cols(); ++b) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> share(
+        shares[static_cast<std::size_t>(b)]);
+    const Vector6d left = 1.0 - share.eigenvalues().array().min(max_share);
+    sums.col(b) = share.eigenvectors() * left.cwiseSqrt().cwiseInverse().asDiagonal() *
+                  share.eigenvectors().transpose() * sums.col(b);
+  }
 }
 
 } // namespace
@@ -173,20 +183,26 @@ clusteredCovariance(const PointScores& points,
   const Index max_points =
       std::max<Index>(2, num_points / std::max(1, options.num_clusters));
   const bool is_fitted = points.jacobians.cols() == num_points;
+  Matrix6d L = Matrix6d::Identity();
   Matrix6Xd whitened;
-  if (is_fitted)
-    whitened = working_information.llt().matrixL().solve(points.jacobians);
+  if (is_fitted) {
+    L = working_information.llt().matrixL();
+    whitened = L.triangularView<Eigen::Lower>().solve(points.jacobians);
+  }
   Random random(partition_seed, options.stream);
   Matrix6d sum = Matrix6d::Zero();
   for (int k = 0; k < options.num_partitions; ++k) {
     const Partition partition(points.positions, max_points, random);
+    Matrix6Xd sums =
+        L.triangularView<Eigen::Lower>().solve(clusterSums(points.scores, partition));
     const auto num_leaves = static_cast<double>(partition.numLeaves());
-    const double factor = is_fitted
-                              ? 6.0 / std::max(1.0, 6.0 - leverage(whitened, partition))
-                              : num_leaves / std::max(1.0, num_leaves - 1.0);
-    sum += factor * sumOfOuterProducts(points.scores, partition);
+    if (is_fitted)
+      undoFit(whitened, partition, sums);
+    else
+      sums *= std::sqrt(num_leaves / std::max(1.0, num_leaves - 1.0));
+    sum += sums * sums.transpose();
   }
-  return sum / options.num_partitions;
+  return L * sum * L.transpose() / options.num_partitions;
 }
 
 ScoreCovariance

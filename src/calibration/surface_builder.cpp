@@ -29,6 +29,15 @@ constexpr double max_takeover_residual = 2.5;
 constexpr double min_sigma_to_median = 0.3;
 constexpr double min_sigma_to_spacing = 1e-4;
 
+/** Neighbourhoods have at most this part of the root mean square distance of the points
+ * from their centroid as a radius: beyond, a plane through two distant scan lines says
+ * nothing of the ground between them, and all of a large part of the source shares its
+ * errors. Few points need more: so many times the radius in which an even sheet of them
+ * has the wanted neighbours, in units of sqrt(neighbours / points). */
+constexpr double max_radius_to_extent = 0.25, max_radius_of_few = 4.0;
+/** A smaller share of quadrics does not say what the target's noise is. */
+constexpr double min_share_of_quadrics = 0.05;
+
 /** Indices that a thread takes at a time. */
 constexpr int share_size = 64;
 
@@ -78,12 +87,19 @@ void
 SurfaceBuilder::fitPatches()
 {
   const PointNeighbors cloud(points_);
+  const Eigen::Matrix3Xd centred =
+      points_.cast<double>().colwise() - points_.cast<double>().rowwise().mean();
+  const auto num_points = static_cast<double>(centred.cols());
+  const double max_radius =
+      std::sqrt(centred.squaredNorm() / num_points) *
+      std::max(max_radius_to_extent,
+               max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
   const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
     const std::uint32_t patch = patch_of_[point];
     if (patch == KdTree::none)
       return;
-    patches_[patch] =
-        fitPatch(cloud, points_.col(point), options_, workspace, spacings_[patch]);
+    patches_[patch] = fitPatch(
+        cloud, points_.col(point), max_radius, options_, workspace, spacings_[patch]);
     noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
   };
   forEachIndex<PatchFitWorkspace>(cloud.alongTree(), num_threads_, fitAt);
@@ -170,7 +186,9 @@ SurfaceBuilder::poolNoise()
   for (std::size_t j = 0; j < patches_.size(); ++j)
     if (isQuadric(patches_[j]))
       of_quadrics.push_back(noise[j]);
-  median_sigma_ = medianOf(of_quadrics.empty() ? noise : of_quadrics);
+  const bool are_few = static_cast<double>(of_quadrics.size()) <
+                       min_share_of_quadrics * static_cast<double>(noise.size());
+  median_sigma_ = medianOf(are_few ? noise : of_quadrics);
   const double least =
       std::max({min_sigma_to_median * median_sigma_,
                 min_sigma_to_spacing * spacing(),

@@ -4,28 +4,12 @@
 #include "formatted_text.h"
 
 #include <bayesian_icp/calibration/calibrated_report.h>
-#include <bayesian_icp/random.h>
 
 #include <algorithm>
 
 namespace bayesian_icp::evaluate {
 
 namespace {
-
-/** The preset's own. */
-constexpr std::uint64_t thinning_stream = std::uint64_t(1) << 40;
-
-/** As many points as the preset uses, in random order: the first of them are searched
- * with. Chosen at random, while the preset's cover the source evenly. */
-Eigen::Matrix3Xd
-thinnedSource(const CoverageCase& problem)
-{
-  Random random(problem.seed, thinning_stream);
-  return problem.source(Eigen::all,
-                        randomChoice(problem.source.cols(),
-                                     CalibratedOptions().max_source_points,
-                                     random));
-}
 
 std::string
 numberNote(const char* name, double value)
@@ -90,7 +74,9 @@ resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
 struct Registration {
   explicit Registration(const CoverageCase& problem)
   : model(problem.target, SurfaceModelOptions(), 1)
-  , scorer(thinnedSource(problem), model)
+  , scorer(
+        evenSource(problem.source, CalibratedOptions().max_source_points, problem.seed),
+        model)
   , prior(priorOf(problem))
   {}
 

@@ -18,6 +18,9 @@ using simulator::View;
 
 namespace {
 
+/** \brief Prior of condition `far` [m, rad]. */
+const Vector6d far_prior_sd = (Vector6d() << 1.0, 1.0, 1.0, 0.8, 0.8, 0.8).finished();
+
 /** \brief Sensors and views of both scans, and the part of the target that gets lost.
  */
 struct ScanPlan {
@@ -68,7 +71,7 @@ ScanPlan
 planScans(const CoverageSetup& setup, const std::string& condition, Random& random)
 {
   ScanPlan plan{setup.sensor, setup.sensor, setup.view, setup.view};
-  if (condition == "moved")
+  if (condition == "moved" || condition == "far")
     plan.source_view = secondView(setup, 1.0, random);
   else if (condition == "half")
     halveResolution(plan.source_sensor);
@@ -202,7 +205,7 @@ makeCoverageCase(const std::string& scene,
   made.scene = scene;
   made.condition = condition;
   made.seed = seed;
-  made.prior_sd = setup.prior_sd;
+  made.prior_sd = condition == "far" ? far_prior_sd : setup.prior_sd;
   const auto scan = [&](const SensorOptions& sensor,
                         const Isometry3d& T_world_sensor,
                         std::uint32_t scan_number) -> Matrix3Xd {

@@ -26,7 +26,11 @@ namespace bayesian_icp::evaluate {
  * - lost20, lost50: the source from a view moved a quarter as far as in `moved`; then
  *   the target loses all points on one side of a plane, chosen at random but parallel
  *   to the line of sight (camera) or upright (LiDAR), that has 20 or 50 % of the
- *   source's points on that side. */
+ *   source's points on that side.
+ *
+ * Condition `far`, which is not among them, is `moved` with a true pose 1 m and 0.8 rad
+ * off (standard deviations of each axis) and a prior that says so: most starts end in
+ * another basin. */
 const std::vector<std::string>&
 coverageConditions();
 

@@ -38,6 +38,8 @@ struct SceneSet {
   std::string name;
   Names scenes;
   Names conditions;
+  /** Those that have to be asked for. */
+  Names rare_conditions;
   /** Whether they are run where none are asked for. */
   bool is_default;
 };
@@ -64,9 +66,9 @@ simulatedOffer(const CoverageOptions& options)
 {
   Offer offer;
   offer.seeds = seedsOf(options);
-  offer.sets = {{"tuned", tunedScenes(), coverageConditions(), true},
-                {"new", newScenes(), coverageConditions(), true},
-                {"lidar", lidarScenes(), lidarConditions(), false}};
+  offer.sets = {{"tuned", tunedScenes(), coverageConditions(), {"far"}, true},
+                {"new", newScenes(), coverageConditions(), {"far"}, true},
+                {"lidar", lidarScenes(), lidarConditions(), {}, false}};
   offer.make_case = [](const CoverageCaseName& name) {
     return makeCoverageCase(name.scene, name.condition, name.seed);
   };
@@ -78,7 +80,7 @@ realOffer(const CoverageOptions& options)
 {
   const auto pairs = std::make_shared<const RealPairs>(options.real_folder);
   Offer offer;
-  offer.sets = {{"", pairs->names(), {"real"}, true}};
+  offer.sets = {{"", pairs->names(), {"real"}, {}, true}};
   offer.seeds = seedsOf(options);
   offer.make_case = [pairs](const CoverageCaseName& name) {
     return pairs->makeCase(name.scene, name.seed);
@@ -94,7 +96,7 @@ sequenceOffer(const CoverageOptions& options)
       std::make_shared<const SequencePairs>(options.real_folder, options.sequences);
   Offer offer;
   for (const std::string& name : pairs->names())
-    offer.sets.push_back({"", {name}, {pairs->condition(name)}, true});
+    offer.sets.push_back({"", {name}, {pairs->condition(name)}, {}, true});
   offer.seeds = [pairs](const std::string& scene) { return pairs->pairs(scene); };
   offer.make_case = [pairs](const CoverageCaseName& name) {
     return pairs->makeCase(name.scene, name.seed);
@@ -181,13 +183,15 @@ conditionsOf(const CoverageOptions& options,
       });
   Names conditions = set->conditions;
   if (!options.conditions.empty()) {
+    Names known = set->conditions;
+    addMissing(known, set->rare_conditions);
     conditions.clear();
     for (const std::string& name : options.conditions)
-      if (std::count(set->conditions.begin(), set->conditions.end(), name) > 0)
+      if (std::count(known.begin(), known.end(), name) > 0)
         conditions.push_back(name);
     if (conditions.empty())
       throw io::UsageError("--conditions: " + io::quoted(scene) + " has only " +
-                           boost::algorithm::join(set->conditions, " "));
+                           boost::algorithm::join(known, " "));
   }
   else if (options.is_quick)
     conditions.resize(1);
@@ -214,8 +218,10 @@ studyOf(const CoverageOptions& options)
   const Offer offer = offerOf(options);
   const Names scenes = scenesOf(options, offer);
   Names known_conditions;
-  for (const SceneSet& set : offer.sets)
+  for (const SceneSet& set : offer.sets) {
     addMissing(known_conditions, set.conditions);
+    addMissing(known_conditions, set.rare_conditions);
+  }
   chosen(options.conditions, known_conditions, "conditions");
   CoverageStudy study;
   study.make_case = offer.make_case;

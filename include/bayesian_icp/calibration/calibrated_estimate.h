@@ -6,6 +6,8 @@
 #include <bayesian_icp/calibration/surface_score.h>
 #include <bayesian_icp/calibration/twist.h>
 
+#include <cstdint>
+
 namespace bayesian_icp {
 
 /** \brief What the data say about the pose at one mode. Twists are about centre, in the
@@ -69,6 +71,16 @@ struct EstimateOptions {
   /** Rounds of curvature. */
   int num_rounds = 3;
 };
+
+/** \brief The source points that the estimate is made of: they cover the source evenly,
+ * since near the sensor most points repeat each other, and rotations are held by those
+ * that are far.
+ * \param[in] points 3 x n, finite [m]
+ * \param[in] max_points how many, at most
+ * \param[in] seed of their order, which is random: any part of them, the first ones
+ * for the search of the mode, is a random choice */
+BAYESIAN_ICP_EXPORT Eigen::Matrix3Xd
+evenSource(const Eigen::Matrix3Xd& points, Eigen::Index max_points, std::uint64_t seed);
 
 /** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
  * result from there) and estimate its covariance.

@@ -36,9 +36,10 @@ activeScores(const SurfaceScores& scores, const Eigen::Matrix3Xd& source_points)
  * independent of each other.
  *
  * Clusters are the leaves of randomised kd-splits, about equal in number of points. The
- * sum of outer products of the clusters' total scores is corrected for the pose having
- * been fitted, by f = 6 / (6 - sum_b tr((H_w^-1 H_b)^2)), H_b the Gauss-Newton
- * information of cluster b; without jacobians by f = L / (L - 1).
+ * sum of outer products of the L clusters' total scores is corrected for the pose
+ * having been fitted: with H_b the Gauss-Newton information of cluster b, its score is
+ * multiplied by (I - H_b H_w^-1)^-1/2, which is the whitened form of CR2 (Bell and
+ * McCaffrey 2002); without jacobians the sum by L / (L - 1).
  * \param[in] points their scores and positions
  * \param[in] working_information H_w: what the fit was held by
  * \param[in] options number of clusters, and partitions to average over */
