@@ -13,6 +13,12 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/** The prior of roll, pitch and yaw is singular there, and tears at modes that come
+ * within some 1e-4 rad of the pole: the pose can be 2 mm off. */
+const Expectation at_the_pole = {
+    Verdict::Warned,
+    {{Status::NotMixed, "pitch +-90"}, {Status::Doubtful, "pitch +-90"}}};
+
 std::vector<TortureCase>
 casesOfPose()
 {
@@ -39,9 +45,7 @@ casesOfPose()
        turned(pose(0.01, -0.02, 0.015, 0, 0.5 * pi, 0),
               pose(0, 0, 0, 0, 0.5 * pi - 0.02, 0)),
        unchanged,
-       {rightButWarned(Status::NotMixed, "pitch +-90"),
-        rightButWarned(Status::Doubtful, "pitch +-90"),
-        not_mixed}},
+       {at_the_pole, rightButWarned(Status::Doubtful, "pitch +-90"), not_mixed}},
       {"PitchMinus90",
        "pitch of -90 degrees",
        turned(pose(0.01, -0.02, 0.015, 0, -0.5 * pi, 0),
