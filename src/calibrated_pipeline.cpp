@@ -179,7 +179,7 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                                         options.calibrated.max_source_points,
                                         options.chains.seed),
                              model);
-  const Prior prior = makePrior(options, initial_pose, source_points);
+  const Prior prior = priorOf(options, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }
 

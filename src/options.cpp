@@ -8,6 +8,29 @@ namespace bayesian_icp {
 
 namespace {
 
+/** Of a scan the sensor is the origin and no further from the centroid than this many
+ * times the radius. Further off, the cloud is an object that somebody looks at. */
+constexpr double max_distance_of_sensor = 1.5;
+
+/** Where finite points are. */
+struct PointSpread {
+  explicit PointSpread(const Eigen::Matrix3Xd& points)
+  {
+    double num_finite = 0.0, sum_of_squares = 0.0;
+    for (const auto& point : points.colwise())
+      if (point.allFinite())
+        centroid += (point - centroid) / ++num_finite;
+    for (const auto& point : points.colwise())
+      if (point.allFinite())
+        sum_of_squares += (point - centroid).squaredNorm();
+    radius = std::sqrt(sum_of_squares / num_finite);
+  }
+
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  /** Root mean square distance from the centroid [m]. */
+  double radius = 0.0;
+};
+
 void
 check(const PriorOptions& prior, Preset preset, Checker& checker)
 {
@@ -129,24 +152,28 @@ toString(MetropolisUse use)
 }
 
 PriorFrame
-priorFrameOf(const Options& options)
+priorFrameOf(const Options& options, const Eigen::Matrix3Xd& source_points)
 {
   if (options.prior.frame != PriorFrame::Automatic)
     return options.prior.frame;
-  return options.preset == Preset::Calibrated ? PriorFrame::SourceCentroid
-                                              : PriorFrame::Origin;
+  if (options.preset != Preset::Calibrated)
+    return PriorFrame::Origin;
+  const PointSpread source(source_points);
+  return source.centroid.norm() <= max_distance_of_sensor * source.radius
+             ? PriorFrame::Origin
+             : PriorFrame::SourceCentroid;
 }
 
 Prior
 priorOf(const Options& options,
         const Vector6d& initial_pose,
-        const Eigen::Vector3d& source_centroid)
+        const Eigen::Matrix3Xd& source_points)
 {
   const PriorOptions& prior = options.prior;
   const Vector6d& mean = prior.mean.allFinite() ? prior.mean : initial_pose;
-  if (priorFrameOf(options) == PriorFrame::Origin)
+  if (priorFrameOf(options, source_points) == PriorFrame::Origin)
     return Prior(mean, prior.variance);
-  return Prior(mean, prior.variance, source_centroid);
+  return Prior(mean, prior.variance, PointSpread(source_points).centroid);
 }
 
 std::string

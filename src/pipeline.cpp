@@ -101,7 +101,7 @@ estimate(const Eigen::Matrix3Xd& source_points,
   PosteriorEstimate checked = checkInput(source_points, search, initial_pose, options);
   if (checked.summary.status != Status::NotRun)
     return checked;
-  const Prior prior = makePrior(options, initial_pose, source_points);
+  const Prior prior = priorOf(options, initial_pose, source_points);
   const Eigen::Vector3d limit = translationLimit(prior, initial_pose, source_points);
   const auto has_diverged = [&prior, &limit](const Vector6d& pose) {
     const Eigen::Vector3d translation = prior.deviation(pose).head<3>();

@@ -112,12 +112,4 @@ checkArguments(const Eigen::Matrix3Xd& source_points,
   return PosteriorEstimate();
 }
 
-Prior
-makePrior(const Options& options,
-          const Vector6d& initial_pose,
-          const Eigen::Matrix3Xd& source_points)
-{
-  return priorOf(options, initial_pose, source_points.rowwise().mean());
-}
-
 } // namespace bayesian_icp

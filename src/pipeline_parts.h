@@ -30,10 +30,4 @@ checkArguments(const Eigen::Matrix3Xd& source_points,
                const Vector6d& initial_pose,
                const Options& options);
 
-/** \brief The prior about \p initial_pose, or its own mean if it has one. */
-Prior
-makePrior(const Options& options,
-          const Vector6d& initial_pose,
-          const Eigen::Matrix3Xd& source_points);
-
 } // namespace bayesian_icp

@@ -44,7 +44,6 @@ diagonalEstimate()
   Vector6d relative_information;
   relative_information << 99.0, 24.0, 3.0, 0.0, 399.0, 8.0;
   estimate.prior.precision = Vector6d::Constant(4.0).asDiagonal();
-  estimate.prior_about_origin = estimate.prior;
   const Vector6d information = 4.0 * relative_information;
   estimate.information = information.asDiagonal();
   estimate.covariance = (estimate.information + estimate.prior.precision).inverse();
@@ -166,7 +165,6 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
   // The prior's deviation is 0.5; the fourth direction is held by it only.
   CalibratedEstimate estimate = diagonalEstimate();
   estimate.prior.deviation << 0.5, 0.0, 0.0, 1e3, 1.0, 0.5;
-  estimate.prior_about_origin = estimate.prior;
   estimate.mean << 0.0, 0.0, 0.0, 0.0, 0.5, 0.0;
   const double squared_distance = 1.0 + 9.0 + 1.0;
   const auto tail = [](int degrees, double x) {
@@ -180,7 +178,7 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
     if (k == 3)
       continue;
     estimate.information(k, k) = 0.0;
-    estimate.prior.deviation[k] = estimate.prior_about_origin.deviation[k] = 0.0;
+    estimate.prior.deviation[k] = 0.0;
     estimate.mean[k] = 0.0;
     double distance = 0.0;
     int num_held = 0;
@@ -253,14 +251,10 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
   EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
   // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2647)^2.
   const auto deviate = [](E& e, double metres) {
-    e.prior.deviation[0] = e.prior_about_origin.deviation[0] = metres;
+    e.prior.deviation[0] = metres;
   };
   EXPECT_FALSE(flagsAfter([&](E& e) { deviate(e, 2.264); }).any());
   EXPECT_TRUE(flagsAfter([&](E& e) { deviate(e, 2.265); }).prior_conflict);
-  // A guess may be wrong by an error of the sensor's pose or of the object's.
-  EXPECT_FALSE(flagsAfter([&](E& e) { e.prior.deviation[0] = 10.0; }).any());
-  EXPECT_FALSE(
-      flagsAfter([&](E& e) { e.prior_about_origin.deviation[0] = 10.0; }).any());
 }
 
 TEST(Report, WhatIsNotANumberIsFlagged)

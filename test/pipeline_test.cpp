@@ -56,20 +56,53 @@ TEST(OptionsValidation, DefaultsAreCalibratedAndElseThePapers)
   EXPECT_EQ(options.chains.thinning, 1);
 }
 
-TEST(OptionsValidation, TheAutomaticFrameIsThatOfThePreset)
+/** The eight corners of a cube with half an edge of 1 m, 2 m off in y, and a point that
+ * is not finite: the root mean square distance from the centroid is sqrt(3) m. */
+Eigen::Matrix3Xd
+cubeAt(double x)
+{
+  Eigen::Matrix3Xd points(3, 9);
+  for (int i = 0; i < 8; ++i)
+    points.col(i) << x + (i % 2 == 0 ? -1.0 : 1.0), 2.0 + (i / 2 % 2 == 0 ? -1.0 : 1.0),
+        i / 4 == 0 ? -1.0 : 1.0;
+  points.col(8).setConstant(std::numeric_limits<double>::quiet_NaN());
+  return points;
+}
+
+TEST(PriorFrame, IsTheSensorForScansAndTheCentroidForObjects)
+{
+  // The centroid's distance from the origin is 1.5 sqrt(3) = 2.598 m at x = 1.658 m.
+  Options options;
+  EXPECT_EQ(priorFrameOf(options, cubeAt(1.65)), PriorFrame::Origin);
+  EXPECT_EQ(priorFrameOf(options, cubeAt(1.67)), PriorFrame::SourceCentroid);
+  EXPECT_EQ(priorFrameOf(options, cubeAt(-1e6)), PriorFrame::SourceCentroid);
+  const Vector6d guess = Vector6d::Zero();
+  EXPECT_EQ(priorOf(options, guess, cubeAt(1.65)).referencePoint(),
+            Eigen::Vector3d::Zero());
+  EXPECT_TRUE(priorOf(options, guess, cubeAt(50.0))
+                  .referencePoint()
+                  .isApprox(Eigen::Vector3d(50.0, 2.0, 0.0)));
+}
+
+TEST(PriorFrame, IsTheOriginForTheOtherPresets)
+{
+  for (const Preset preset : {Preset::Paper, Preset::Exact}) {
+    Options options;
+    options.preset = preset;
+    EXPECT_EQ(priorFrameOf(options, cubeAt(1e6)), PriorFrame::Origin);
+  }
+}
+
+TEST(PriorFrame, IsTheOneThatIsStated)
 {
   Options options;
-  EXPECT_EQ(priorFrameOf(options), PriorFrame::SourceCentroid);
-  options.preset = Preset::Paper;
-  EXPECT_EQ(priorFrameOf(options), PriorFrame::Origin);
-  options.preset = Preset::Exact;
-  EXPECT_EQ(priorFrameOf(options), PriorFrame::Origin);
   for (const PriorFrame frame : {PriorFrame::Origin, PriorFrame::SourceCentroid})
-    for (const Preset preset : {Preset::Paper, Preset::Calibrated}) {
-      options.preset = preset;
-      options.prior.frame = frame;
-      EXPECT_EQ(priorFrameOf(options), frame);
-    }
+    for (const Preset preset : {Preset::Paper, Preset::Calibrated})
+      for (const double x : {0.0, 1e6}) {
+        options.preset = preset;
+        options.prior.frame = frame;
+        EXPECT_EQ(priorFrameOf(options, cubeAt(x)), frame);
+      }
 }
 
 /** One bad value, and what the complaint has to name. */

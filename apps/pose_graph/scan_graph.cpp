@@ -21,13 +21,9 @@ nameOf(int target, int source)
 Prior
 priorOf(const Run& run)
 {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < run.source.points.cols(); ++i)
-    if (run.source.points.col(i).allFinite())
-      sum += run.source.points.col(i).cast<double>();
   return bayesian_icp::priorOf(run.settings.options,
                                poseOf(run.settings.guess),
-                               sum / static_cast<double>(run.source.num_finite));
+                               run.source.points.cast<double>());
 }
 
 } // namespace

@@ -124,7 +124,9 @@ visitPosterior(OptionsT& options, Visitor& visit)
          "frame",
          "prior-frame",
          "NAME",
-         "the point whose translation the prior speaks of"},
+         "the point whose translation the prior describes; automatic: the origin, or "
+         "with preset calibrated the source's centroid if that is further from the "
+         "origin than 1.5 times the points' root mean square distance from it"},
         options.prior.frame);
 }
 

@@ -155,7 +155,6 @@ settingsFrom(const po::variables_map& given,
   if (!unused.empty())
     note += (note.empty() ? "" : "; ") + unused + ": no effect with preset " +
             toString(settings.options.preset);
-  settings.options.prior.frame = priorFrameOf(settings.options);
   return settings;
 }
 

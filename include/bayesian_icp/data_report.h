@@ -123,9 +123,7 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
   /** Probability that a pose drawn from the prior is further from the prior's mean than
    * the posterior's mean is, along the directions that are not held by the prior only.
-   * The prior is taken about its own reference point or about the origin of the source
-   * frame, whichever makes the pose more probable: a guess is wrong by an error of the
-   * object's pose or of the sensor's. Uniform in [0, 1] if the two are one. */
+   * Uniform in [0, 1] if poses are drawn from the prior. */
   double prior_probability = std::numeric_limits<double>::quiet_NaN();
   /** Centre of the twists: the moved source's centroid, target frame [m]. */
   Eigen::Vector3d centre =

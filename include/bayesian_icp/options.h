@@ -103,18 +103,27 @@ struct Options {
   validate() const;
 };
 
-/** \brief The frame of the prior that a run with \p options has: prior.frame, or what
- * it stands for if it is automatic. */
+/** \brief The frame of the prior of a run: prior.frame, or what Automatic stands for.
+ *
+ * Automatic is Origin for presets `paper` and `exact`. For `calibrated` it is Origin if
+ * the origin of the source frame is no further from the source's centroid than 1.5
+ * times the points' root mean square distance from it: such a cloud is a scan, and a
+ * guess about it errs by a motion of the sensor. Other clouds are objects that a sensor
+ * looks at, and their frame is SourceCentroid.
+ * \param[in] options of the run
+ * \param[in] source_points of the run, source frame [m]; those not finite do not count
+ */
 BAYESIAN_ICP_EXPORT PriorFrame
-priorFrameOf(const Options& options);
+priorFrameOf(const Options& options, const Eigen::Matrix3Xd& source_points);
 
-/** \brief The prior that a run has used.
+/** \brief The prior of a run.
  * \param[in] options of the run
  * \param[in] initial_pose its guess, which is the mean of a prior that has none
- * \param[in] source_centroid mean of the finite source points, source frame [m] */
+ * \param[in] source_points of the run, source frame [m]; those not finite do not count
+ */
 BAYESIAN_ICP_EXPORT Prior
 priorOf(const Options& options,
         const Vector6d& initial_pose,
-        const Eigen::Vector3d& source_centroid);
+        const Eigen::Matrix3Xd& source_points);
 
 } // namespace bayesian_icp

@@ -17,8 +17,8 @@ enum class PriorFrame {
   /** The centroid of the source points: the natural one for objects away from the
    * sensor, where a rotation about the origin would move the object far. */
   SourceCentroid,
-  /** SourceCentroid for preset `calibrated`, Origin for the others: see priorFrameOf().
-   */
+  /** Origin; for preset `calibrated` SourceCentroid if the cloud is far from the origin
+   * for its size: see priorFrameOf(). */
   Automatic
 };
 

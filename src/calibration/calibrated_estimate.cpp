@@ -172,8 +172,6 @@ atMode(const SurfaceScorer& scorer,
   PatchHints hints;
   scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
   e.prior = twistPrior(prior, e.mode, e.centre);
-  e.prior_about_origin =
-      twistPrior(Prior(prior.mean(), prior.variance()), e.mode, e.centre);
   e.displacement_metric = displacementMetric(scorer, e.mode);
   return e;
 }

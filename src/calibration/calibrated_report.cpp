@@ -164,14 +164,9 @@ priorProbability(const CalibratedEstimate& estimate,
   const auto num_held = static_cast<int>(6 - free.cols());
   if (num_held == 0)
     return 1.0;
-  const auto probability = [&](const TwistPrior& prior) {
-    const Vector6d deviation = prior.deviation + estimate.mean;
-    return chiSquareTail(num_held,
-                         squaredLengthBeyond(free, deviation, prior.precision));
-  };
-  // In this order, what is not a number stays.
-  return std::max(probability(estimate.prior),
-                  probability(estimate.prior_about_origin));
+  const Vector6d deviation = estimate.prior.deviation + estimate.mean;
+  return chiSquareTail(num_held,
+                       squaredLengthBeyond(free, deviation, estimate.prior.precision));
 }
 
 } // namespace

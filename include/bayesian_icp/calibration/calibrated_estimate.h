@@ -38,9 +38,6 @@ struct CalibratedEstimate {
   /** Lambda = T^T H J^-1 H T. */
   Matrix6d information = Matrix6d::Zero();
   TwistPrior prior;
-  /** The same numbers about the origin of the source frame: a guess is often wrong by
-   * an error of the sensor's pose. */
-  TwistPrior prior_about_origin;
   /** Sigma = (Lambda + P)^-1. */
   Matrix6d covariance = Matrix6d::Identity();
   /** Twist from the mode to the posterior mean. */

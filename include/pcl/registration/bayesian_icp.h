@@ -202,8 +202,9 @@ public:
     options_.prior.variance = variance;
   }
 
-  /** \brief The point whose translation the prior speaks of: automatic, that is the
-   * source's centroid for preset `calibrated` and the origin for the others. */
+  /** \brief The point whose translation the prior speaks of. Automatic is the origin,
+   * and for preset `calibrated` the source's centroid if the cloud is far from the
+   * origin for its size: see bayesian_icp::priorFrameOf(). */
   void
   setPriorFrame(bayesian_icp::PriorFrame frame)
   {
