@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -142,6 +143,24 @@ TEST(FarCases, HaveAsWideAPriorAsTheyAreFar)
   EXPECT_NEAR(translations / (3.0 * num_cases), 1.0, 5.0 * std::sqrt(2.0 / 60.0));
   EXPECT_NEAR(rotations / num_cases, 0.64, 5.0 * 0.64 * std::sqrt(2.0 / 20.0));
   EXPECT_GT(rotations, 0.0);
+}
+
+TEST(DensityCases, HaveThatManyTimesThePoints)
+{
+  const std::map<std::string, double> factors = {
+      {"points_quarter", 0.25}, {"points_x4", 4.0}, {"points_x16", 16.0}};
+  for (const char* const scene : {"mug", "stairs", "room"}) { // one of each sensor
+    const CoverageCase same = makeCoverageCase(scene, "same", 1);
+    for (const auto& [condition, factor] : factors) {
+      const CoverageCase made = makeCoverageCase(scene, condition, 1);
+      EXPECT_NEAR(
+          double(made.source.cols()) / double(same.source.cols()), factor, 0.1 * factor)
+          << scene << ' ' << condition;
+      EXPECT_NEAR(
+          double(made.target.cols()) / double(same.target.cols()), factor, 0.1 * factor)
+          << scene << ' ' << condition;
+    }
+  }
 }
 
 TEST(LidarCases, LieOnTheirSurfacesAtTheTruth)

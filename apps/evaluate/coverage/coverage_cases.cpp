@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <stdexcept>
 
 namespace bayesian_icp::evaluate {
@@ -21,6 +22,13 @@ namespace {
 /** \brief Prior of condition `far` [m, rad]. */
 const Vector6d far_prior_sd = (Vector6d() << 1.0, 1.0, 1.0, 0.8, 0.8, 0.8).finished();
 
+/** \brief Conditions with other numbers of points, and what the sensors' resolution is
+ * multiplied by. */
+const std::map<std::string, double> densities = {{"points_quarter", 0.5},
+                                                 {"points_x4", 2.0},
+                                                 {"points_x16", 4.0},
+                                                 {"points_x64", 8.0}};
+
 /** \brief Sensors and views of both scans, and the part of the target that gets lost.
  */
 struct ScanPlan {
@@ -33,13 +41,17 @@ struct ScanPlan {
   Vector6d sweep_motion = Vector6d::Zero();
 };
 
+/** \brief Multiply the pixels of a row and of a column, or rings and azimuths. */
 void
-halveResolution(SensorOptions& sensor)
+scaleResolution(double factor, SensorOptions& sensor)
 {
-  sensor.camera.width /= 2;
-  sensor.camera.height /= 2;
-  sensor.lidar.rings /= 2;
-  sensor.lidar.azimuth_step *= 2.0;
+  const auto scale = [factor](int& count) {
+    count = static_cast<int>(std::lround(factor * count));
+  };
+  scale(sensor.camera.width);
+  scale(sensor.camera.height);
+  scale(sensor.lidar.rings);
+  sensor.lidar.azimuth_step /= factor;
 }
 
 void
@@ -74,7 +86,11 @@ planScans(const CoverageSetup& setup, const std::string& condition, Random& rand
   if (condition == "moved" || condition == "far")
     plan.source_view = secondView(setup, 1.0, random);
   else if (condition == "half")
-    halveResolution(plan.source_sensor);
+    scaleResolution(0.5, plan.source_sensor);
+  else if (const auto found = densities.find(condition); found != densities.end()) {
+    scaleResolution(found->second, plan.source_sensor);
+    scaleResolution(found->second, plan.target_sensor);
+  }
   else if (condition == "noise3") {
     plan.source_sensor.noise *= 3.0;
     plan.target_sensor.noise *= 3.0;
@@ -173,6 +189,14 @@ coverageConditions()
 {
   static const std::vector<std::string> names = {
       "same", "moved", "half", "noise3", "correlated", "outliers", "lost20", "lost50"};
+  return names;
+}
+
+const std::vector<std::string>&
+furtherConditions()
+{
+  static const std::vector<std::string> names = {
+      "far", "points_quarter", "points_x4", "points_x16", "points_x64"};
   return names;
 }
 

@@ -26,13 +26,18 @@ namespace bayesian_icp::evaluate {
  * - lost20, lost50: the source from a view moved a quarter as far as in `moved`; then
  *   the target loses all points on one side of a plane, chosen at random but parallel
  *   to the line of sight (camera) or upright (LiDAR), that has 20 or 50 % of the
- *   source's points on that side.
- *
- * Condition `far`, which is not among them, is `moved` with a true pose 1 m and 0.8 rad
- * off (standard deviations of each axis) and a prior that says so: most starts end in
- * another basin. */
+ *   source's points on that side. */
 const std::vector<std::string>&
 coverageConditions();
+
+/** \brief Conditions of the same scenes that a study has only if it is told to.
+ *
+ * - far: `moved` with a true pose 1 m and 0.8 rad off (standard deviations of each
+ * axis) and a prior that says so: most starts end in another basin.
+ * - points_quarter, points_x4, points_x16, points_x64: `same` with that many times the
+ *   points in both clouds. */
+const std::vector<std::string>&
+furtherConditions();
 
 /** \brief What lidarScenes() are seen with: carLidar(), whose rings have other offsets
  * in every case, from both of drivenViews(). No ray is jittered.
@@ -45,10 +50,10 @@ const std::vector<std::string>&
 lidarConditions();
 
 /** \brief Simulate a case: a scene of lidarScenes() under one of lidarConditions(), or
- * another one under one of coverageConditions(); all of it depends on the three
- * arguments only. The target frame is the scene's world frame. The true pose is drawn
- * from the prior (angles from a Gaussian), and the source is not thinned. \throws
- * std::invalid_argument if there is no such scene or condition */
+ * another one under one of coverageConditions() or furtherConditions(); all of it
+ * depends on the three arguments only. The target frame is the scene's world frame. The
+ * true pose is drawn from the prior (angles from a Gaussian), and the source is not
+ * thinned. \throws std::invalid_argument if there is no such scene or condition */
 CoverageCase
 makeCoverageCase(const std::string& scene,
                  const std::string& condition,

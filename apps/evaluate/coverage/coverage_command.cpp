@@ -66,9 +66,10 @@ simulatedOffer(const CoverageOptions& options)
 {
   Offer offer;
   offer.seeds = seedsOf(options);
-  offer.sets = {{"tuned", tunedScenes(), coverageConditions(), {"far"}, true},
-                {"new", newScenes(), coverageConditions(), {"far"}, true},
-                {"lidar", lidarScenes(), lidarConditions(), {}, false}};
+  offer.sets = {
+      {"tuned", tunedScenes(), coverageConditions(), furtherConditions(), true},
+      {"new", newScenes(), coverageConditions(), furtherConditions(), true},
+      {"lidar", lidarScenes(), lidarConditions(), {}, false}};
   offer.make_case = [](const CoverageCaseName& name) {
     return makeCoverageCase(name.scene, name.condition, name.seed);
   };

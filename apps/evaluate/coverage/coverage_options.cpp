@@ -29,7 +29,9 @@ description()
     ("conditions", textOption(""),
      "conditions with commas between, of which every scene takes its own: lidar scenes have "
      "lidar16, lidar32, lidar64 (rings) and lidar64_sweep (moving during each scan); without it, "
-     "all but far, of the others: a true pose 1 m and 0.8 rad off, which the prior knows")
+     "those of a depth camera or lidar that is near, but for far (a true pose 1 m and 0.8 rad "
+     "off, which the prior knows), points_quarter, points_x4, points_x16 and points_x64 (that "
+     "many times the points in both clouds)")
     ("methods", textOption(""), "methods with commas between; without it, all")
     ("seeds", intOption(20), "cases of each scene and condition")
     ("first-seed", intOption(1), "seed of the first of them; of recordings, of all guesses")
