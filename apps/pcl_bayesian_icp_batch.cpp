@@ -28,7 +28,7 @@ tell(const std::string& message)
   std::cerr << "pcl_bayesian_icp_batch: " + message + '\n';
 }
 
-/** Tells of each pair on standard error. */
+/** Reports each pair on standard error. */
 class ProgressLines {
 public:
   ProgressLines(const Ranks& ranks, std::size_t num_pairs, bool is_wanted)
@@ -118,7 +118,7 @@ runToFile(const BatchRequest& request,
       positions += io::textOf(position) + ' ';
     if (file->numFinished() > 0 && !request.is_quiet)
       tell(io::textOf(file->numFinished()) + " of " + io::textOf(pairs.size()) +
-           " pairs are in " + request.results_file + " already");
+           " pairs already have a line in " + request.results_file);
   }
   const auto share = shareOf(ranks, ranks.broadcast(positions), pairs);
   std::optional<io::LineFile> part;

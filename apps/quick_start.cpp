@@ -20,12 +20,11 @@ main(int argc, char** argv)
   icp.setInputSource(source);
   icp.setInputTarget(target);
   pcl::PointCloud<pcl::PointXYZ> aligned;
-  icp.align(aligned);
-  // the transformation and the cloud are those of IterativeClosestPoint; new are
-  std::cout << icp.getSummary().message << "\n"       // can the posterior be trusted?
+  icp.align(aligned); // the same result as IterativeClosestPoint; new are:
+  std::cout << icp.getSummary().message << "\n"       // can you trust the posterior?
             << icp.getMean().transpose() << "\n"      // x y z [m], roll pitch yaw [rad]
-            << icp.getCovariance() << "\n"            // 6x6 in the same order
-            << icp.getSamples().rows() << " draws\n"; // one pose a row
+            << icp.getCovariance() << "\n"            // 6x6, in the same order
+            << icp.getSamples().rows() << " draws\n"; // each row is one pose
   // [/quick start]
   return icp.hasConverged() ? 0 : 1;
 }

@@ -250,9 +250,7 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
   EXPECT_TRUE(flagsAfter([&](E& e) { hold_all(e, 10.01); }).misfit);
   EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
   // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2647)^2.
-  const auto deviate = [](E& e, double metres) {
-    e.prior.deviation[0] = metres;
-  };
+  const auto deviate = [](E& e, double metres) { e.prior.deviation[0] = metres; };
   EXPECT_FALSE(flagsAfter([&](E& e) { deviate(e, 2.264); }).any());
   EXPECT_TRUE(flagsAfter([&](E& e) { deviate(e, 2.265); }).prior_conflict);
 }

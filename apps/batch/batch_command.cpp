@@ -21,19 +21,22 @@ describeOptionsOfBatch()
   const auto text = [](const char* placeholder) {
     return po::value<std::string>()->value_name(placeholder);
   };
-  group.add_options()("help,h", "show this text");
-  group.add_options()("version", "show the version");
+  group.add_options()("help,h", "Show this text.");
+  group.add_options()("version", "Show the version.");
   group.add_options()("results",
                       text("FILE"),
-                      "write the lines to this file, and leave out pairs that have one "
-                      "there already (default: standard output)");
+                      "Write the lines to this file, and skip pairs that already have "
+                      "a line in it. (default: standard output)");
   group.add_options()("output,o",
                       text("DIR"),
-                      "write DIR/NAME/posterior.json and samples.csv of each pair");
+                      "Write DIR/NAME/posterior.json and samples.csv for each pair. "
+                      "Without it, only the lines are written.");
   group.add_options()("suggested-prior",
-                      "about the guess and the source's centroid, with the standard "
-                      "deviations 'suggested_prior_sigma' of each pair");
-  group.add_options()("quiet", "print no progress");
+                      "Take the prior about the guess and the source's centroid, with "
+                      "the standard deviations 'suggested_prior_sigma' of each pair. "
+                      "Without it, all pairs have the prior of --prior-mean and "
+                      "--prior-variance.");
+  group.add_options()("quiet", "Show no progress.");
   po::options_description all;
   all.add(group);
   describeSettings(Settings(), all);
@@ -64,10 +67,10 @@ parseBatchCommand(int argc, const char* const* argv)
   }
   const std::vector<std::string> manifests = io::optionTexts(given, "manifest");
   if (manifests.empty())
-    throw io::UsageError("a manifest is needed");
+    throw io::UsageError("expected a manifest");
   if (manifests.size() > 1)
-    throw io::UsageError("one manifest is needed, " + io::quoted(manifests[1]) +
-                         " is one too many");
+    throw io::UsageError("expected one manifest, but got a second file: " +
+                         io::quoted(manifests[1]));
   request.manifest_file = manifests[0];
   request.results_file = io::optionText(given, "results");
   request.output_folder = io::optionText(given, "output");
@@ -83,40 +86,35 @@ std::string
 batchHelpText()
 {
   std::ostringstream help;
-  help
-      << "Usage: pcl_bayesian_icp_batch MANIFEST [options]\n"
-         "       mpirun -n N pcl_bayesian_icp_batch MANIFEST --results FILE "
-         "[options]\n\n"
-         "Registers many pairs of clouds, on all processors, and tells of each in a "
-         "line of\n"
-         "JSON as soon as it is done. MANIFEST is a JSON list of pairs,\n"
-         "  {\"name\": ..., \"source\": FILE, \"target\": FILE, \"guess\": FILE or six "
-         "numbers,\n"
-         "   \"settings\": {...}}\n"
-         "with files relative to the manifest. The guess and the settings, which are "
-         "as "
-         "in the\n"
-         "'options' of a posterior.json, may be left out; they come before the options "
-         "here,\n"
-         "which are for all pairs. --threads is the number for the whole process: with "
-         "more\n"
-         "pairs than that each pair has one thread. docs/batch.md has the keys of a "
-         "line.\n\n"
-         "A batch that was stopped, in whatever way, goes on if it is started again "
-         "with the\n"
-         "same --results. A pair that cannot be read or registered has a line with "
-         "status\n"
-         "\"error\"; the others are not concerned.\n"
-      << describeOptionsOfBatch()
-      << "\nExit codes:\n"
-         "  0    the status of all pairs is \"ok\"\n"
-         "  1    that of some is not\n"
-         "  2    wrong usage\n"
-         "  3    the manifest cannot be used, or a result cannot be written\n"
-         "  130  interrupted (Ctrl-C or SIGTERM); pairs under way were given up\n"
-         "\nExample:\n"
-         "  pcl_bayesian_icp_batch manifest.json --results results.jsonl \\\n"
-         "      --prior-variance 0.01\n";
+  help << R"(Usage: pcl_bayesian_icp_batch MANIFEST [options]
+       mpirun -n N pcl_bayesian_icp_batch MANIFEST --results FILE [options]
+
+Registers many pairs of clouds in parallel. Prints one line of JSON for each
+pair as soon as it is finished. MANIFEST is a JSON list of pairs,
+  {"name": ..., "source": FILE, "target": FILE, "guess": FILE or six numbers,
+   "settings": {...}}
+whose files are relative to the manifest. Guess and settings are optional. The
+settings have the form of the 'options' of a posterior.json. They take
+precedence over the options below, which apply to all pairs. --threads is the
+number of threads of the whole process: each pair has one thread if there are
+more pairs than threads. docs/batch.md describes the keys of a line.
+
+A batch that was stopped continues if it is started again with the same
+--results. If a pair cannot be read or registered, its line has the status
+"error", and the other pairs continue.
+)" << describeOptionsOfBatch()
+       << R"(
+Exit codes:
+  0    the status of all pairs is "ok"
+  1    the status of some pairs is not "ok"
+  2    wrong usage
+  3    the manifest cannot be used, or a result cannot be written
+  130  interrupted (Ctrl-C or SIGTERM); the pairs under way were abandoned
+
+Example:
+  pcl_bayesian_icp_batch manifest.json --results results.jsonl \
+      --prior-variance 0.01
+)";
   return help.str();
 }
 

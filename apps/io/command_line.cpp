@@ -58,10 +58,11 @@ takeClouds(const po::variables_map& given,
 {
   const std::vector<std::string> clouds = optionTexts(given, name);
   if (clouds.size() < 2)
-    throw UsageError("two clouds are needed, a source and a target");
+    throw UsageError("expected a source and a target cloud");
   if (clouds.size() > 2)
-    throw UsageError("two clouds are needed, " + quoted(clouds[2]) +
-                     " is one too many");
+    throw UsageError(
+        "expected one source and one target cloud, but got a third file: " +
+        quoted(clouds[2]));
   source_file = clouds[0];
   target_file = clouds[1];
 }

@@ -22,19 +22,19 @@ po::options_description
 describeOptionsOfGraph()
 {
   po::options_description group("General");
-  group.add_options()("help,h", "show this text");
-  group.add_options()("version", "show the version");
+  group.add_options()("help,h", "Show this text.");
+  group.add_options()("version", "Show the version.");
   group.add_options()("output,o",
                       po::value<std::string>()->value_name("FILE"),
-                      "the graph in g2o's format (required)");
+                      "File for the graph in g2o's format. (required)");
   group.add_options()("loop",
                       po::value<std::vector<std::string>>()->value_name("I,J"),
-                      "also register scan J to scan I, counted from 0; may be given "
-                      "several times");
+                      "Also register scan J to scan I, counted from 0. May be given "
+                      "several times. Without it, the graph is a chain.");
   group.add_options()("weak-edges",
-                      "where a scan cannot be registered to the one before, make an "
-                      "edge of the prior");
-  group.add_options()("quiet", "print only what is wrong");
+                      "Make an edge of the prior where a scan cannot be registered to "
+                      "the one before. Without it, that edge is missing.");
+  group.add_options()("quiet", "Print problems only.");
   po::options_description all;
   all.add(group);
   describeSettings(Settings(), all);
@@ -108,34 +108,31 @@ std::string
 graphHelpText()
 {
   std::ostringstream help;
-  help << "Usage: pcl_bayesian_icp_pose_graph FOLDER -o FILE.g2o [options]\n"
-          "       pcl_bayesian_icp_pose_graph SCAN SCAN ... -o FILE.g2o [options]\n\n"
-          "Registers each scan to the one before it (of a folder: its .pcd files, by "
-          "name) and\n"
-          "writes a pose graph for g2o and whatever reads its format. Vertex k is the "
-          "pose of\n"
-          "scan k in the frame of scan 0; an edge has the posterior mean of a "
-          "registration and\n"
-          "its information. --guess and the prior are about the motion from one scan "
-          "to the\n"
-          "next; state your odometry there, and do not add it to the graph again. "
-          "Edges of\n"
-          "--loop have the information of the clouds alone: their prior comes from the "
-          "chain.\n"
-          "A posterior that is neither ok nor doubtful makes no edge; what is missing "
-          "or\n"
-          "doubtful is told. docs/pose_graph_and_filter.md says more.\n"
-       << describeOptionsOfGraph()
-       << "\nExit codes:\n"
-          "  0    all registrations are ok\n"
-          "  1    some are not; the graph has been written\n"
-          "  2    wrong usage\n"
-          "  3    a file cannot be used or written\n"
-          "  130  interrupted (Ctrl-C or SIGTERM); nothing has been written\n"
-          "\nExample:\n"
-          "  pcl_bayesian_icp_pose_graph scans -o graph.g2o --loop 0,3 \\\n"
-          "      --guess 0.5,0,0,0,0,0 --prior-variance "
-          "0.01,0.01,0.0004,1e-4,1e-4,1e-2\n";
+  help << R"(Usage: pcl_bayesian_icp_pose_graph FOLDER -o FILE.g2o [options]
+       pcl_bayesian_icp_pose_graph SCAN SCAN ... -o FILE.g2o [options]
+
+Registers each scan to the one before it and writes a pose graph in g2o's
+format. The scans of a folder are its .pcd files, sorted by name. Vertex k is
+the pose of scan k in the frame of scan 0. An edge has the posterior mean of a
+registration and its information. --guess and the prior describe the motion
+from one scan to the next: state your odometry there, and do not add it to the
+graph again. Edges of --loop have the information of the clouds alone, because
+their prior comes from the chain. A posterior that is neither ok nor doubtful
+makes no edge; missing and doubtful edges are reported. For more, see
+docs/pose_graph_and_filter.md.
+)" << describeOptionsOfGraph()
+       << R"(
+Exit codes:
+  0    all registrations are ok
+  1    some are not; the graph has been written
+  2    wrong usage
+  3    a file cannot be used or written
+  130  interrupted (Ctrl-C or SIGTERM); nothing has been written
+
+Example:
+  pcl_bayesian_icp_pose_graph scans -o graph.g2o --loop 0,3 \
+      --guess 0.5,0,0,0,0,0 --prior-variance 0.01,0.01,0.0004,1e-4,1e-4,1e-2
+)";
   return help.str();
 }
 

@@ -18,7 +18,8 @@ namespace bayesian_icp::app {
 struct GraphRequest {
   /** Files of the scans, in their order. */
   std::vector<std::string> scans;
-  /** Target and source, positions in scans, of edges beside those of the chain. */
+  /** Target and source, positions in scans, of edges in addition to those of the chain.
+   */
   std::vector<std::pair<int, int>> loops;
   /** The guess is that of each scan's pose in the frame of the one before. */
   Settings settings;

@@ -7,7 +7,7 @@
 
 namespace bayesian_icp::app {
 
-/** \brief Call visit(field, value) for what only preset `calibrated` has. */
+/** \brief Call visit(field, value) for the settings of preset `calibrated`. */
 template <typename CalibratedT, typename Visitor>
 void
 visitCalibrated(CalibratedT& calibrated, Visitor& visit)
@@ -16,14 +16,14 @@ visitCalibrated(CalibratedT& calibrated, Visitor& visit)
          "max_source_points",
          "calibrated-points",
          "N",
-         "largest number of source points; of a larger source so many are chosen at "
-         "random"},
+         "Largest number of source points. Of a larger source, this many points are "
+         "used that cover it evenly."},
         calibrated.max_source_points);
   visit({"calibrated",
          "num_mode_points",
          "mode-points",
          "N",
-         "of these, points on which the starts are followed to their modes"},
+         "Number of these points that are used to follow the starts to their modes."},
         calibrated.num_mode_points);
 }
 

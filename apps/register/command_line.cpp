@@ -23,10 +23,10 @@ takeExports(const po::variables_map& given, Request& request)
   if (request.exports.formats.empty() || !request.output_folder.empty())
     return;
   if (request.exports.formats.size() > 1)
-    throw io::UsageError("--export: several formats need a folder, --output");
+    throw io::UsageError("--export: several formats need --output");
   if (request.is_json || request.is_quiet)
     throw io::UsageError(
-        "--export without --output prints, which excludes --json and --quiet");
+        "--export without --output excludes --json and --quiet, because it prints");
 }
 
 /** An argument as a shell takes it back. */

@@ -18,7 +18,7 @@ dataText(const DataReport& report);
 std::string
 flagNames(const DataFlags& flags);
 
-/** \brief Who holds the pose along a direction: "data", "weak" or "prior". */
+/** \brief What determines the pose along a direction: "data", "weak" or "prior". */
 const char*
 holderOf(Observability observability);
 

@@ -7,47 +7,45 @@
 
 namespace bayesian_icp::app {
 
-/** \brief Call visit(field, value) for what preset `exact` has and the paper has not.
- * The gate of its residual is that of the registration. */
+/** \brief Call visit(field, value) for the settings of preset `exact` only. The gate
+ * of its residual is that of the registration. */
 template <typename ExactT, typename Visitor>
 void
 visitExact(ExactT& exact, Visitor& visit)
 {
-  visit(
-      {"exact",
-       "residual",
-       "residual",
-       "NAME",
-       "distance of a source point to its nearest target point, or along the target's "
-       "normal there"},
-      exact.residual.residual);
+  visit({"exact",
+         "residual",
+         "residual",
+         "NAME",
+         "Distance to penalize: from a source point to its nearest target point, or "
+         "along the target's normal there."},
+        exact.residual.residual);
   visit({"exact",
          "kernel",
          "kernel",
          "NAME",
-         "robust kernel on that distance, against outliers"},
+         "Robust kernel on that distance, against outliers."},
         exact.residual.kernel);
   visit({"exact",
          "kernel_width_m",
          "kernel-width",
          "M",
-         "distance from which a robust kernel differs from the square (huber) or is "
-         "constant (tukey) [m]"},
+         "Distance from which a robust kernel differs from the square (huber) or is "
+         "constant (tukey) [m]."},
         exact.residual.kernel_width);
-  visit(
-      {"exact",
-       "metropolis",
-       "metropolis",
-       "WHEN",
-       "Metropolis in place of Langevin steps, on the whole source: exact where small "
-       "mini-batches are too noisy"},
-      exact.metropolis);
+  visit({"exact",
+         "metropolis",
+         "metropolis",
+         "WHEN",
+         "When to use Metropolis steps on the whole source instead of Langevin steps. "
+         "They are exact where small mini-batches are too noisy."},
+        exact.metropolis);
   visit({"exact",
          "max_source_points",
          "max-source-points",
          "N",
-         "largest number of source points; a larger source is thinned, evenly over its "
-         "order"},
+         "Largest number of source points. A larger source is thinned evenly over its "
+         "order."},
         exact.max_source_points);
 }
 

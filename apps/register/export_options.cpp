@@ -45,25 +45,29 @@ describeExportOptions()
   const auto text = [](const char* placeholder) {
     return po::value<std::string>()->value_name(placeholder);
   };
-  group.add_options()(
-      "export",
-      text("LIST"),
-      ("posterior mean and covariance for other software: " +
-       namesOfChoices(ExportFormat::Ros) +
-       ", with commas between; one is printed in place of the table, with --output "
-       "all are files in that folder; docs/exports.md has their conventions")
-          .c_str());
+  group.add_options()("export",
+                      text("LIST"),
+                      ("Export the posterior mean and covariance for other software: " +
+                       namesOfChoices(ExportFormat::Ros) +
+                       ", separated by commas. With --output, each format becomes a "
+                       "file in that folder; without it, give one format, which is "
+                       "printed instead of the table. docs/exports.md has the "
+                       "conventions. Without --export nothing is exported.")
+                          .c_str());
   group.add_options()("target-frame",
                       text("NAME"),
-                      "frame_id of ros, target frame of csv (default target)");
+                      "Name of the frame_id of ros and of the target frame of csv. "
+                      "(default target)");
+  group.add_options()("source-frame",
+                      text("NAME"),
+                      "Name of the source frame of csv. (default source)");
   group.add_options()(
-      "source-frame", text("NAME"), "source frame of csv (default source)");
+      "timestamp", text("S"), "Time of ros, tum and csv [s since 1970]. (default 0)");
   group.add_options()(
-      "timestamp", text("S"), "time of ros, tum and csv [s since 1970] (default 0)");
-  group.add_options()(
-      "vertices", text("I,J"), "vertices of target and source in g2o (default 0,1)");
+      "vertices", text("I,J"), "Vertices of target and source in g2o. (default 0,1)");
   group.add_options()("export-unreliable",
-                      "also export if the status is neither ok nor doubtful");
+                      "Also export if the status is neither ok nor doubtful. Without "
+                      "it, such a posterior is not exported.");
   return group;
 }
 

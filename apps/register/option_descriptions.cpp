@@ -48,7 +48,7 @@ template <typename Choice>
 std::enable_if_t<std::is_enum_v<Choice>, std::string>
 described(const Field& field, Choice value)
 {
-  return std::string(field.help) + ": " + namesOfChoices(value) + " (default " +
+  return std::string(field.help) + " One of " + namesOfChoices(value) + ". (default " +
          toString(value) + ")";
 }
 
@@ -76,22 +76,22 @@ describeGeneral()
   const auto text = [](const char* placeholder) {
     return po::value<std::string>()->value_name(placeholder);
   };
-  group.add_options()("help,h", "show this text");
-  group.add_options()("version", "show the version");
-  group.add_options()(
-      "method",
-      text("NAME"),
-      "bayesian-icp, or sgd-icp for a pose without a posterior (default "
-      "bayesian-icp)");
+  group.add_options()("help,h", "Show this text.");
+  group.add_options()("version", "Show the version.");
+  group.add_options()("method",
+                      text("NAME"),
+                      "Method: bayesian-icp samples the posterior, sgd-icp finds a "
+                      "pose only. (default bayesian-icp)");
   group.add_options()(
       "output,o",
       text("DIR"),
-      "write aligned.pcd, samples.csv, posterior.json and report.html (one page with "
-      "all that is to be known, for a browser; needs gnuplot) into this folder, which "
-      "is made if missing");
-  group.add_options()("no-report", "with -o: do not write report.html");
-  group.add_options()("json", "print what posterior.json has in place of the table");
-  group.add_options()("quiet", "print nothing but errors, and no progress bar");
+      "Write aligned.pcd, samples.csv, posterior.json and report.html to this folder, "
+      "and make it if it is missing. report.html shows everything on one page and "
+      "needs gnuplot. Without this option no file is written.");
+  group.add_options()("no-report", "With --output: do not write report.html.");
+  group.add_options()("json",
+                      "Print the content of posterior.json instead of the table.");
+  group.add_options()("quiet", "Print errors only, and show no progress bar.");
   return group;
 }
 
@@ -104,9 +104,9 @@ describeSettings(const Settings& defaults, po::options_description& options)
   registration.add_options()(
       "config",
       po::value<std::string>()->value_name("FILE"),
-      "settings as in the 'options' of a posterior.json, or a posterior.json "
-      "itself, or a config.json of the authors' program; options on the "
-      "command line come first");
+      "Read settings from a posterior.json, from its 'options' alone, or from a "
+      "config.json of the authors' program. Options on the command line take "
+      "precedence. Without it, all settings have their defaults.");
   Describer describe_registration{registration};
   visitRegistration(defaults, describe_registration);
   po::options_description posterior("Posterior");
@@ -137,29 +137,23 @@ describeOptions()
 
 namespace {
 
-const char* const about_exact =
-    "\nPreset exact needs the truth about the sensor: --sigma, and --effective-points, "
-    "the\n"
-    "number of independent measurements in the source. It finds --batch-size, "
-    "--thinning,\n"
-    "--burn-in and --step-size itself where they have their defaults; other values "
-    "are\n"
-    "obeyed, --step-size in (0, 1] as the largest step, 1 being a Newton step. It "
-    "draws "
-    "its\n"
-    "mini-batches without replacement and uses no other constant of Algorithm 1.\n";
+const char* const about_exact = R"(
+Preset exact needs the truth about the sensor: --sigma, and --effective-points,
+the number of independent measurements in the source. It chooses --batch-size,
+--thinning, --burn-in and --step-size itself if they have their defaults. Other
+values are obeyed; --step-size in (0, 1] is then the largest step, where 1 is a
+Newton step. Mini-batches are drawn without replacement. The other constants of
+Algorithm 1 have no effect.
+)";
 
-const char* const about_calibrated =
-    "\nPreset calibrated needs no truth about the sensor: distances are to the "
-    "target's\n"
-    "surface, in units of the noise that is found there, and neighbouring points are "
-    "not\n"
-    "taken for independent. It reports how well the clouds hold the pose in each "
-    "direction;\n"
-    "those they do not hold stay at the prior, which has to be finite. Options of "
-    "the\n"
-    "scale, the mini-batches, the starts and the step sizes have no effect and are "
-    "refused.\n";
+const char* const about_calibrated = R"(
+Preset calibrated needs no truth about the sensor. It measures distances to the
+target's surface in units of the noise that it finds there, and it accounts for
+correlations between neighbouring points. It reports how well the clouds
+determine the pose in each direction. Directions that they do not determine
+stay at the prior, which has to be finite. Options of the scale, the
+mini-batches, the starts and the step sizes have no effect and are errors.
+)";
 
 } // namespace
 
@@ -167,32 +161,31 @@ std::string
 helpText()
 {
   std::ostringstream help;
-  help
-      << "Usage: pcl_bayesian_icp SOURCE TARGET [options]\n\n"
-         "Registers a cloud to another by ICP and samples the posterior of the pose "
-         "that\n"
-         "maps source points into the target frame: mean, covariance, quantiles, "
-         "draws.\n"
-         "Clouds are .pcd or .ply files in metres. Options may begin with one dash or\n"
-         "two, their values follow a blank or '='.\n"
-      << describeOptions() << '\n'
-      << describeSgdOptions() << about_exact << about_calibrated << aboutSgdIcp()
-      << "\nExit codes:\n"
-         "  0    the posterior is there and can be trusted\n"
-         "  1    the registration failed, the chains have not mixed, they are in "
-         "several\n"
-         "       modes, the clouds call for doubt, or an export is not possible\n"
-         "  2    wrong usage\n"
-         "  3    a file cannot be read, used or written\n"
-         "  130  interrupted (Ctrl-C or SIGTERM); what was drawn until then is "
-         "written\n"
-         "\nExample:\n"
-         "  pcl_bayesian_icp source.pcd target.pcd -d 0.1 --guess 0,0,0.2,0,0,1.57 -o "
-         "out\n"
-         "  pcl_bayesian_icp source.pcd target.pcd --preset exact --sigma 0.005 \\\n"
-         "      --effective-points 300 --prior-frame source-centroid\n"
-         "  pcl_bayesian_icp source.pcd target.pcd --prior-mean 0,0,0.2,0,0,1.57 \\\n"
-         "      --prior-variance 0.01,0.01,0.01,0.04,0.04,0.04\n";
+  help << R"(Usage: pcl_bayesian_icp SOURCE TARGET [options]
+
+Registers a source cloud to a target cloud by ICP and samples the posterior of
+the pose that maps source points into the target frame: mean, covariance,
+quantiles, draws. Clouds are .pcd or .ply files in metres. Options begin with
+one or two dashes; their values follow a space or '='.
+)" << describeOptions()
+       << '\n'
+       << describeSgdOptions() << about_exact << about_calibrated << aboutSgdIcp()
+       << R"(
+Exit codes:
+  0    there is a posterior, and it can be trusted
+  1    the registration failed, the chains have not mixed or are in several
+       modes, the clouds call for doubt, or an export is not possible
+  2    wrong usage
+  3    a file cannot be read, used or written
+  130  interrupted (Ctrl-C or SIGTERM); the draws until then are written
+
+Example:
+  pcl_bayesian_icp source.pcd target.pcd -d 0.1 --guess 0,0,0.2,0,0,1.57 -o out
+  pcl_bayesian_icp source.pcd target.pcd --preset exact --sigma 0.005 \
+      --effective-points 300 --prior-frame source-centroid
+  pcl_bayesian_icp source.pcd target.pcd --prior-mean 0,0,0.2,0,0,1.57 \
+      --prior-variance 0.01,0.01,0.01,0.04,0.04,0.04
+)";
   return help.str();
 }
 

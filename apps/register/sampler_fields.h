@@ -13,53 +13,57 @@ void
 visitChains(OptionsT& options, Visitor& visit)
 {
   auto& chains = options.chains;
-  visit({"chains", "num_chains", "chains", "N", "independent chains"},
+  visit({"chains", "num_chains", "chains", "N", "Number of independent chains."},
         chains.num_chains);
-  visit({"chains", "num_draws", "samples", "N", "draws kept, over all chains"},
+  visit({"chains",
+         "num_draws",
+         "samples",
+         "N",
+         "Number of draws to keep, over all chains."},
         chains.num_draws);
-  visit(
-      {"chains",
-       "num_burn_in",
-       "burn-in",
-       "N",
-       "steps at the start of each chain that are not kept; exact and calibrated find "
-       "them"},
-      chains.num_burn_in);
+  visit({"chains",
+         "num_burn_in",
+         "burn-in",
+         "N",
+         "Number of steps at the start of each chain that are not kept. Presets exact "
+         "and calibrated replace the default by a number of their own."},
+        chains.num_burn_in);
   visit({"chains",
          "thinning",
          "thinning",
          "N",
-         "steps per kept draw; exact and calibrated find them"},
+         "Number of steps for each kept draw. Presets exact and calibrated replace the "
+         "default by a number of their own."},
         chains.thinning);
-  visit(
-      {"chains",
-       "initial_spread_m_rad",
-       "initial-spread",
-       "LIST",
-       "standard deviation of the chains' starts about the guess, x,y,z,roll,pitch,yaw "
-       "[m, rad]: six numbers, or one for all; with exact 0 is as wide as the prior, "
-       "at "
-       "most 0.5"},
-      chains.initial_spread);
-  visit({"chains", "seed", "seed", "N", "seed of all random numbers, 0 .. 2^64-1"},
+  visit({"chains",
+         "initial_spread_m_rad",
+         "initial-spread",
+         "LIST",
+         "Standard deviation of the chains' starts about the guess, "
+         "x,y,z,roll,pitch,yaw [m, rad]: six numbers, or one for all. With preset "
+         "exact, 0 means as wide as the prior, but at most 0.5."},
+        chains.initial_spread);
+  visit({"chains", "seed", "seed", "N", "Seed of all random numbers, 0 to 2^64-1."},
         chains.seed);
   visit({"chains",
          "num_threads",
          "threads",
          "N",
-         "threads, 0 for as many as there are; the draws do not depend on it"},
+         "Number of threads. 0 means as many as there are. The draws do not depend on "
+         "it."},
         chains.num_threads);
   visit({"mini_batch",
          "batch_size",
          "batch-size",
          "N",
-         "source points a step; exact finds them"},
+         "Number of source points in each step. Preset exact replaces the default by a "
+         "number of its own."},
         options.mini_batch.batch_size);
   visit({"mini_batch",
          "sampling",
          "batch-sampling",
          "NAME",
-         "how the source points of a step are chosen; not used by exact"},
+         "How the source points of a step are chosen. Preset exact does not use it."},
         options.mini_batch.sampling);
 }
 
@@ -72,43 +76,46 @@ visitSgld(SgldT& sgld, Visitor& visit)
          "step_size",
          "step-size",
          "A",
-         "alpha of eqs. (5), (8), (9); exact finds its own"},
+         "Step size alpha of eqs. (5), (8), (9). Preset exact replaces the default by "
+         "a value of its own."},
         sgld.step_size);
   visit({"sgld",
          "decay_rate",
          "decay-rate",
          "B",
-         "beta of eq. (10): share of the old squared gradient that is kept"},
+         "Share beta of the old squared gradient that eq. (10) keeps."},
         sgld.decay_rate);
   visit({"sgld",
          "lambda_rms",
          "lambda-rms",
          "L",
-         "lambda of eq. (11), which keeps the preconditioner finite [m, m^2/rad]"},
+         "Constant lambda of eq. (11), which keeps the preconditioner finite [m, "
+         "m^2/rad]."},
         sgld.lambda_rms);
   visit({"sgld",
          "noise_factor",
          "noise-factor",
          "F",
-         "factor on the variance of the injected noise"},
+         "Factor on the variance of the injected noise."},
         sgld.noise_factor);
   visit({"sgld",
          "block_decay_factor",
          "block-decay-factor",
          "F",
-         "factor on alpha every so many steps towards the end; 1 is off"},
+         "Multiply the step size by F every --block-decay-interval steps at the end of "
+         "a chain. 1 turns this off."},
         sgld.block_decay_factor);
   visit({"sgld",
          "block_decay_interval",
          "block-decay-interval",
          "N",
-         "steps from one to the next"},
+         "Number of steps between two reductions of the step size."},
         sgld.block_decay_interval);
   visit({"sgld",
          "block_decay_start",
          "block-decay-start",
          "P",
-         "where that begins, as a fraction of a chain's steps"},
+         "Where these reductions begin, as a fraction of the steps of a chain."},
         sgld.block_decay_start);
 }
 

@@ -27,15 +27,15 @@ visitRegistration(SettingsT& settings, Visitor& visit)
          "guess_matrix",
          "guess",
          "POSE|FILE",
-         "initial guess of the source-to-target pose: x,y,z,roll,pitch,yaw [m, rad], "
-         "or a "
-         "text file with the 4x4 matrix; R = Rz(yaw) Ry(pitch) Rx(roll)"},
+         "Initial guess of the source-to-target pose: x,y,z,roll,pitch,yaw [m, rad] "
+         "with R = Rz(yaw) Ry(pitch) Rx(roll), or a text file with the 4x4 matrix."},
         settings.guess);
   visit({group,
          "max_distance_m",
          "max-distance,d",
          "M",
-         "largest distance of corresponding points [m]; with calibrated for ICP only",
+         "Largest distance of corresponding points [m]. With preset calibrated it "
+         "applies to ICP only.",
          infinite,
          true},
         settings.max_distance);
@@ -43,37 +43,38 @@ visitRegistration(SettingsT& settings, Visitor& visit)
          "icp_iterations",
          "iterations,i",
          "N",
-         "largest number of ICP's iterations"},
+         "Largest number of iterations of ICP."},
         settings.icp_iterations);
   visit({group,
          "reciprocal",
          "reciprocal",
          "",
-         "use only pairs of points that are nearest to each other"},
+         "Use only pairs whose points are nearest to each other. Without it, each "
+         "source point is paired with its nearest target point."},
         settings.is_reciprocal);
   visit({group,
          "one_to_one",
          "one-to-one",
          "",
-         "use a target point for the nearest of its source points only"},
+         "Pair each target point with the nearest of its source points only. Without "
+         "it, a target point may be in several pairs."},
         settings.is_one_to_one);
-  visit(
-      {group,
-       "normalize_cloud",
-       "normalize-cloud",
-       "",
-       "divide both clouds by their largest |x|, |y|, |z| before they are registered, "
-       "with preset paper only: --sigma (1), --step-size and --lambda-rms are then in "
-       "units of that length, everything else and all results in metres"},
-      settings.is_normalized);
-  visit(
-      {group,
-       "use_mean",
-       "mean",
-       "",
-       "take the posterior mean in place of ICP's result as the final transformation, "
-       "unless the status is worse than not mixed"},
-      settings.use_mean);
+  visit({group,
+         "normalize_cloud",
+         "normalize-cloud",
+         "",
+         "Divide both clouds by their largest |x|, |y| or |z| before the registration "
+         "(preset paper only). --sigma (1 unless stated), --step-size and --lambda-rms "
+         "are then in units of that length; everything else and all results are in "
+         "metres. Without it, all lengths are in metres."},
+        settings.is_normalized);
+  visit({group,
+         "use_mean",
+         "mean",
+         "",
+         "Take the posterior mean as the final transformation, unless the status is "
+         "worse than not mixed. Without it, the final transformation is ICP's result."},
+        settings.use_mean);
 }
 
 /** \brief Call visit(field, value) for the settings of the posterior. */
@@ -81,53 +82,53 @@ template <typename OptionsT, typename Visitor>
 void
 visitPosterior(OptionsT& options, Visitor& visit)
 {
-  visit(
-      {"posterior",
-       "preset",
-       "preset",
-       "NAME",
-       "Algorithm 1 literally, a sampler that is right for the stated posterior, or a "
-       "scale found from the clouds"},
-      options.preset);
-  visit(
-      {"posterior",
-       "effective_points",
-       "effective-points",
-       "N",
-       "N of the paper's eq. (5): weight of the likelihood, not the size of the cloud"},
-      options.likelihood.effective_points);
+  visit({"posterior",
+         "preset",
+         "preset",
+         "NAME",
+         "Posterior to sample: paper is Algorithm 1, literally; exact draws correctly "
+         "from the stated posterior; calibrated estimates the scale from the clouds."},
+        options.preset);
+  visit({"posterior",
+         "effective_points",
+         "effective-points",
+         "N",
+         "N of the paper's eq. (5): weight of the likelihood, not the size of the "
+         "cloud."},
+        options.likelihood.effective_points);
   visit({"posterior",
          "measurement_sigma_m",
          "sigma",
          "M",
-         "standard deviation of a point-to-point distance [m]"},
+         "Standard deviation of a point-to-point distance [m]."},
         options.likelihood.measurement_sigma);
   visit({"prior",
          "mean_m_rad",
          "prior-mean",
          "POSE",
-         "prior mean x,y,z,roll,pitch,yaw [m, rad] (default: the guess)",
+         "Prior mean x,y,z,roll,pitch,yaw [m, rad]. (default: the guess)",
          not_a_number,
          true},
         options.prior.mean);
+  visit({"prior",
+         "variance_m2_rad2",
+         "prior-variance",
+         "LIST",
+         "Prior variance of x,y,z [m^2] and roll,pitch,yaw [rad^2]: six numbers, or "
+         "one for all. inf means no prior; preset calibrated does not accept it.",
+         infinite,
+         true},
+        options.prior.variance);
   visit(
       {"prior",
-       "variance_m2_rad2",
-       "prior-variance",
-       "LIST",
-       "prior variance of x,y,z [m^2] and roll,pitch,yaw [rad^2]: six numbers, or one "
-       "for all; inf is no prior, which calibrated does not take",
-       infinite,
-       true},
-      options.prior.variance);
-  visit({"prior",
-         "frame",
-         "prior-frame",
-         "NAME",
-         "the point whose translation the prior describes; automatic: the origin, or "
-         "with preset calibrated the source's centroid if that is further from the "
-         "origin than 1.5 times the points' root mean square distance from it"},
-        options.prior.frame);
+       "frame",
+       "prior-frame",
+       "NAME",
+       "Point whose translation the prior describes. automatic is origin; with preset "
+       "calibrated it is source-centroid if the centroid is further from the origin "
+       "than "
+       "1.5 times the points' root mean square distance from it."},
+      options.prior.frame);
 }
 
 /** \brief Call visit(field, value) for every setting. */

@@ -49,7 +49,7 @@ convert(const std::string& option, const std::string& text, std::uint64_t& value
   convertInteger(option, text, value);
 }
 
-/** Six numbers with commas between, or where it makes sense one for all. */
+/** Six numbers separated by commas, or one for all where that makes sense. */
 void
 convert(const std::string& option, const std::string& text, Vector6d& value)
 {
@@ -63,7 +63,7 @@ convert(const std::string& option, const std::string& text, Vector6d& value)
   if (!is_good)
     refuse(option,
            text,
-           std::string("six numbers with commas between") +
+           std::string("six numbers separated by commas") +
                (may_be_one ? ", or one for all" : ""));
   value = numbers;
 }
@@ -82,7 +82,7 @@ convert(const std::string& option, const std::string& text, Choice& value)
     refuse(option, text, namesOfChoices(value));
 }
 
-/** Takes over what the command line says of the settings. */
+/** Reads the settings that the command line has. */
 struct SettingsReader {
   const po::variables_map& given;
 

@@ -12,7 +12,7 @@ namespace {
 constexpr Eigen::Index max_points = 1800;
 constexpr const char* axis_names[] = {"x", "y", "z"};
 
-/** Finite points of a cloud, chosen at random: every so-manyth point of a scan would be
+/** Finite points of a cloud, chosen at random: every k-th point of a scan would be
  * a pattern. */
 Eigen::Matrix3Xd
 chosenPoints(const io::CloudFile& cloud)

@@ -210,25 +210,27 @@ describeSgdOptions()
       };
   add("optimizer",
       "NAME",
-      std::string("how gradients become steps: fixed, momentum, adadelta, adam or "
-                  "rmsprop (default ") +
+      std::string("Optimizer that turns gradients into steps: fixed, momentum, "
+                  "adadelta, adam or rmsprop. (default ") +
           toString(defaults.optimizer) + ")");
   add("translation-epsilon",
       "M",
-      "the pose is still while its translation stays this near to where it came to "
-      "rest [m]; 0 is never (default " +
+      "A pose is still while its translation is nearer than this to where it came to "
+      "rest [m]. 0 means never. (default " +
           io::textOf(defaults.translation_epsilon) + ")");
   add("rotation-epsilon",
       "RAD",
-      "... and the sum of the changes of its angles stays below this [rad] (default " +
+      "A pose is still only while the sum of the changes of its angles is below this "
+      "[rad]. (default " +
           io::textOf(defaults.rotation_epsilon) + ")");
   add("still-iterations",
       "N",
-      "converged after so many still steps in a row (default " +
+      "Number of consecutive still steps after which the descent has converged. "
+      "(default " +
           io::textOf(defaults.num_still_iterations) + ")");
   group.add_options()("keep-duplicates",
-                      "let a target point be in several pairs of a mini-batch, not "
-                      "only in that of the nearest source point");
+                      "Let a target point be in several pairs of a mini-batch. Without "
+                      "it, only the pair with the nearest source point counts.");
   return group;
 }
 
@@ -237,19 +239,20 @@ aboutSgdIcp()
 {
   const StochasticGradientIcpOptions defaults;
   std::ostringstream text;
-  text << "\nMethod sgd-icp finds a pose by stochastic gradient descent, and no "
-          "posterior. Of the\n"
-          "other options it has --guess, --max-distance, --seed, --output (aligned.pcd "
-          "and\n"
-          "sgd_icp.json), --json, --quiet, and with defaults of its own --iterations ("
-       << defaults.max_iterations << "),\n--batch-size (" << defaults.batch_size
-       << ") and --step-size (";
+  text << R"(
+Method sgd-icp finds a pose by stochastic gradient descent, and no posterior.
+Of the options above it uses --guess, --max-distance, --seed, --json, --quiet
+and --output (aligned.pcd and sgd_icp.json). It also uses, with defaults of its
+own, --iterations ()"
+       << defaults.max_iterations << "), --batch-size (" << defaults.batch_size
+       << ") and --step-size\n(";
   for (const SgdOptimizer optimizer : optimizers)
     if (optimizer != SgdOptimizer::AdaDelta)
       text << toString(optimizer) << ' ' << defaultStepSize(optimizer)
            << (optimizer == SgdOptimizer::RmsProp ? "; adadelta has none" : ", ");
-  text << ");\nothers are refused. Its exit code is 0 if the descent came to rest, "
-          "else 1.\n";
+  text << R"(). Other
+options are errors. The exit code is 0 if the descent came to rest, else 1.
+)";
   return text.str();
 }
 

@@ -1,5 +1,5 @@
 /** \file
- * \brief SGD-ICP of two files: what came of it, and how it is told.
+ * \brief SGD-ICP of two files: its result and its report.
  */
 #pragma once
 

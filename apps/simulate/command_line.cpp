@@ -16,7 +16,7 @@ namespace po = boost::program_options;
 
 namespace {
 
-/** \brief Takes options over from the command line where they are given. */
+/** \brief Reads the options that the command line has. */
 class GivenOptions {
 public:
   explicit GivenOptions(const po::variables_map& given) : given_(given) {}
@@ -54,7 +54,7 @@ public:
       numbers.push_back(numberOf<double>(item, name));
     if (static_cast<Eigen::Index>(numbers.size()) != values.size())
       throw std::invalid_argument("--" + name + " takes " + textOf(values.size()) +
-                                  " numbers with commas between, not '" + text(name) +
+                                  " numbers separated by commas, not '" + text(name) +
                                   "'");
     values = Eigen::Map<const Vector>(numbers.data());
   }
@@ -197,13 +197,13 @@ std::string
 helpText()
 {
   std::ostringstream help;
-  help << "Usage: pcl_bayesian_icp_simulate --scene NAME -o DIR [options]\n\n"
-          "Scans a made-up scene twice and writes source.pcd, target.pcd,\n"
-          "T_target_source.txt (maps source points into the target frame) and\n"
-          "scene.json (every option, so that the pair can be made again).\n"
-          "Exit codes: 0 good, 1 out of memory, 2 usage, 3 cannot write, 130 "
-          "interrupted.\n"
-       << allOptions();
+  help << R"(Usage: pcl_bayesian_icp_simulate --scene NAME -o DIR [options]
+
+Scans a simulated scene twice. Writes source.pcd, target.pcd,
+T_target_source.txt (maps source points into the target frame) and scene.json
+(all options, so that the pair can be made again).
+Exit codes: 0 good, 1 out of memory, 2 usage, 3 cannot write, 130 interrupted.
+)" << allOptions();
   return help.str();
 }
 

@@ -1,5 +1,5 @@
 /** \file
- * \brief pcl_bayesian_icp_simulate: scans a made-up scene twice and writes the two
+ * \brief pcl_bayesian_icp_simulate: scans a simulated scene twice and writes the two
  * clouds with the transform between them.
  */
 #include "command_line.h"

@@ -1,5 +1,5 @@
 /** \file
- * \brief What is written beside the clouds so that they can be made again.
+ * \brief The record next to the clouds, from which they can be made again.
  */
 #pragma once
 

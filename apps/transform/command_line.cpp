@@ -21,20 +21,23 @@ describeOptions()
   const auto text = [](const char* placeholder) {
     return po::value<std::string>()->value_name(placeholder);
   };
-  options.add_options()("help,h", "show this text");
-  options.add_options()("version", "show the version");
-  options.add_options()(
-      "pose,p",
-      text("POSE|FILE"),
-      "the motion: x,y,z,roll,pitch,yaw [m, rad] with R = Rz(yaw) Ry(pitch) Rx(roll); "
-      "a text file with the 4x4 matrix; or a posterior.json (a name that ends in "
-      ".json), whose pose maps source points into the target frame");
+  options.add_options()("help,h", "Show this text.");
+  options.add_options()("version", "Show the version.");
+  options.add_options()("pose,p",
+                        text("POSE|FILE"),
+                        "Motion to apply: x,y,z,roll,pitch,yaw [m, rad] with R = "
+                        "Rz(yaw) Ry(pitch) Rx(roll); a text file with the 4x4 matrix; "
+                        "or a posterior.json (a name that ends in .json), whose pose "
+                        "maps source points into the target frame. (required)");
   options.add_options()("use",
                         text("NAME"),
-                        "of a posterior.json: final, the transformation that the "
-                        "program decided on, or mean, the posterior's (default final)");
-  options.add_options()("inverse", "apply the inverse motion");
-  options.add_options()("overwrite", "OUTPUT may be INPUT");
+                        "Pose to take from a posterior.json: final is the program's "
+                        "final transformation, mean is the posterior mean. (default "
+                        "final)");
+  options.add_options()("inverse",
+                        "Apply the inverse motion. Without it, the motion is applied.");
+  options.add_options()("overwrite",
+                        "Let OUTPUT replace INPUT. Without it, that is an error.");
   return options;
 }
 
@@ -64,7 +67,7 @@ parseCommandLine(int argc, const char* const* argv)
   }
   const std::vector<std::string> clouds = io::optionTexts(given, "cloud");
   if (clouds.size() != 2)
-    throw io::UsageError("two files are needed, the input and the output, not " +
+    throw io::UsageError("expected two files, the input and the output, but got " +
                          std::to_string(clouds.size()));
   request.input_file = clouds[0];
   request.output_file = clouds[1];
@@ -81,24 +84,26 @@ std::string
 helpText()
 {
   std::ostringstream help;
-  help
-      << "Usage: pcl_bayesian_icp_transform INPUT OUTPUT --pose POSE|FILE [options]\n\n"
-         "Moves a cloud, a .pcd or .ply file in metres: points are moved, normals and "
-         "the\n"
-         "viewpoint turned with them, all other fields kept. OUTPUT is a compressed "
-         "PCD or\n"
-         "a binary PLY, as its name says, and appears complete or not at all.\n\n"
-      << describeOptions()
-      << "\nExit codes:\n"
-         "  0    done\n"
-         "  1    out of memory\n"
-         "  2    wrong usage\n"
-         "  3    a file cannot be read, used or written\n"
-         "  130  interrupted while writing (Ctrl-C or SIGTERM); it has been written\n"
-         "\nExample:\n"
-         "  pcl_bayesian_icp source.pcd target.pcd -o out\n"
-         "  pcl_bayesian_icp_transform source.pcd moved.ply --pose "
-         "out/posterior.json --use mean\n";
+  help << R"(Usage: pcl_bayesian_icp_transform INPUT OUTPUT --pose POSE|FILE [options]
+
+Moves a cloud, a .pcd or .ply file in metres. It moves points and viewpoint,
+rotates normals, and keeps all other fields. The name of OUTPUT decides the
+format: a compressed PCD or a binary PLY. OUTPUT is complete, or there is none.
+
+)" << describeOptions()
+       << R"(
+Exit codes:
+  0    done
+  1    out of memory
+  2    wrong usage
+  3    a file cannot be read, used or written
+  130  interrupted while writing (Ctrl-C or SIGTERM); OUTPUT has been written
+
+Example:
+  pcl_bayesian_icp source.pcd target.pcd -o out
+  pcl_bayesian_icp_transform source.pcd moved.ply --pose out/posterior.json \
+      --use mean
+)";
   return help.str();
 }
 

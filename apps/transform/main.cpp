@@ -42,7 +42,7 @@ transformCloud(const Request& request)
   if (!request.may_overwrite_input &&
       fs::equivalent(request.input_file, request.output_file, ignored))
     throw io::UsageError(request.output_file +
-                         " is the input; --overwrite replaces it all the same");
+                         " is the input; use --overwrite to replace it");
   const Eigen::Affine3d motion(motionOf(request));
   const io::CloudFile cloud = io::readCloud(request.input_file);
   io::OutputFolder folder(io::folderOf(request.output_file));

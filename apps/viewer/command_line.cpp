@@ -36,18 +36,18 @@ takeFiles(const po::variables_map& given, Request& request)
     else if (request.posterior_file.empty())
       request.posterior_file = file;
     else
-      throw io::UsageError(io::quoted(file) + " is one posterior too many");
+      throw io::UsageError("expected one posterior, but got a second: " +
+                           io::quoted(file));
   }
   if (clouds.empty() && !request.posterior_file.empty())
     return;
   if (clouds.size() != 2)
-    throw io::UsageError("two clouds are needed, a source and a target, or a "
-                         "posterior.json");
+    throw io::UsageError("expected a source and a target cloud, or a posterior.json");
   request.source_file = clouds[0];
   request.target_file = clouds[1];
 }
 
-/** Of pcl_viewer: given once a cloud. */
+/** Options of pcl_viewer that are given once for each cloud. */
 template <typename Value, typename Read>
 void
 takeRepeated(const po::variables_map& given,
@@ -59,7 +59,7 @@ takeRepeated(const po::variables_map& given,
     values.push_back(read(name, text));
   if (values.size() > 3)
     throw io::UsageError("-" + name +
-                         ": is given more than three times (source, target, aligned)");
+                         ": given more than three times (source, target, aligned)");
 }
 
 void
@@ -103,19 +103,18 @@ takeOwnOptions(const po::variables_map& given, ViewOptions& view)
     readSize(textOf("size"), view.width, view.height);
 }
 
-/** Options of a registration that does not take place. */
+/** Refuses options of a registration, because none takes place. */
 void
 refuseSettings(const po::variables_map& given)
 {
   if (given.count("live") > 0)
-    throw io::UsageError(
-        "--live: has no effect with a posterior that is there already");
+    throw io::UsageError("--live: has no effect with a finished posterior");
   po::options_description settings;
   app::describeSettings(app::Settings(), settings);
   for (const auto& option : settings.options())
     if (given.count(option->long_name()) > 0)
       throw io::UsageError("--" + option->long_name() +
-                           ": has no effect with a posterior that is there already");
+                           ": has no effect with a finished posterior");
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 /** \file
- * \brief The viewer's keys beside pcl_viewer's.
+ * \brief The viewer's keys, in addition to those of pcl_viewer.
  */
 #pragma once
 

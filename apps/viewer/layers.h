@@ -28,19 +28,18 @@ constexpr std::array<LayerName, 7> layer_names = {
      {Layer::Deviation,
       "deviation",
       'm',
-      "the source, moved by the posterior mean; colours are the standard deviation of "
-      "each point under all draws [mm or m]"},
+      "the source, moved by the posterior mean and coloured by the standard deviation "
+      "of each point over all draws [mm or m]"},
      {Layer::Draws, "draws", 'd', "the source, moved by some of the draws"},
      {Layer::Position,
       "position",
       'v',
-      "covariance of the position: ellipsoid of 95 % (3 degrees of freedom) at the "
-      "mean"},
+      "the ellipsoid of 95 % (3 degrees of freedom) of the position, at the mean"},
      {Layer::Rotation,
       "rotation",
       'z',
-      "covariance of the rotation: what the source's axes x, y, z sweep within 95 % (3 "
-      "degrees of freedom), as cones at the mean"}}};
+      "the cones that the source's axes x, y, z sweep within 95 % (3 degrees of "
+      "freedom), at the mean"}}};
 
 using Layers = std::set<Layer>;
 

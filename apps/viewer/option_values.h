@@ -29,7 +29,7 @@ readNonNegative(const std::string& option, const std::string& text);
 bool
 readSwitch(const std::string& option, const std::string& text);
 
-/** \brief Names of layers with commas between, or "all". */
+/** \brief Names of layers separated by commas, or "all". */
 Layers
 readLayers(const std::string& text);
 

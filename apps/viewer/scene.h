@@ -16,7 +16,7 @@ namespace bayesian_icp::viewer {
 
 /** \brief A registration and its posterior. Matrices are T_target_source. */
 struct Scene {
-  /** x, y, z [m], one a column, points that are not finite included. */
+  /** x, y, z [m], each column is one point, points that are not finite included. */
   Eigen::Matrix3Xf source;
   Eigen::Matrix3Xf target;
   /** Where the target's sensor stood, target frame [m]. */
@@ -39,7 +39,7 @@ struct Uncertainty {
   /** Of each source point [m]; NaN where the point is. */
   Eigen::VectorXd point_deviations;
   double largest_point_deviation = 0.0;
-  /** Deviations from the mean are drawn so many times larger. */
+  /** Factor by which deviations from the mean are magnified. */
   double magnification = 1.0;
   /** T_target_source of the chosen draws, magnified. */
   std::vector<Eigen::Matrix4d> shown_draws;

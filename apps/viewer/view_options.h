@@ -32,7 +32,7 @@ struct ViewOptions {
   Layers layers = {Layer::Target, Layer::Deviation, Layer::Position, Layer::Rotation};
   Reference reference = Reference::Centroid;
   int num_draws = 20;
-  /** Deviations from the mean are drawn so many times larger; 0 is automatic. */
+  /** Factor by which deviations from the mean are magnified; 0 is automatic. */
   double magnification = 0.0;
   bool is_live = false;
   /** Empty if there is to be a window. */

@@ -1,6 +1,6 @@
 /** \file
- * \brief What the data say about the pose, direction by direction, and what in them
- * calls for caution (preset `calibrated`).
+ * \brief Preset `calibrated`: what the data say about the pose in each direction, and
+ * the warnings about them.
  */
 #pragma once
 
@@ -13,26 +13,27 @@
 
 namespace bayesian_icp {
 
-/** \brief How well the data hold a motion. */
+/** \brief How well the data determine a motion. */
 enum class Observability {
-  /** By the data. */
+  /** The data determine it. */
   Observed,
-  /** By the data, but hardly above their noise, or less than by the prior. */
+  /** The data determine it, but hardly above their noise, or less than the prior does.
+   */
   Weak,
-  /** Not by the data: the posterior is the prior. */
+  /** The data do not determine it: the posterior is the prior. */
   PriorOnly
 };
 
-/** \brief Share of the information along a direction that is above its noise, below
- * which the direction is weak. */
+/** \brief A direction is Weak if less than this share of its information is above the
+ * noise. */
 constexpr double min_observed_share_above_noise = 0.5;
-/** \brief Ratio of posterior to prior standard deviation from which a direction is
- * weak: the data then say less about it than the prior does. */
+/** \brief A direction is Weak from this ratio of posterior to prior standard deviation
+ * on: the data then say less about it than the prior does. */
 constexpr double max_observed_share_of_prior = 0.7071;
-/** \brief Ratio of posterior to prior standard deviation from which a direction is held
- * by the prior only, whatever little the data add. */
+/** \brief A direction is PriorOnly from this ratio of posterior to prior standard
+ * deviation on, even if the data add a little. */
 constexpr double max_share_of_prior = 0.99;
-/** \brief Flags are raised beyond these; why there: docs/calibration_flags.md. */
+/** \brief Thresholds of the flags; docs/calibration_flags.md gives the reasons. */
 constexpr double max_basin_distance = 3.0;
 constexpr double max_other_cost_ratio = 1.02;
 constexpr double min_active_fraction = 0.4;
@@ -45,45 +46,45 @@ constexpr double min_prior_probability = 0.001;
 BAYESIAN_ICP_EXPORT const char*
 toString(Observability observability);
 
-/** \brief One motion and how well it is known. The six of a report are independent of
- * each other, both in the posterior and in the prior. */
+/** \brief One motion and how well it is known. The six motions of a report are
+ * independent of each other, in the posterior and in the prior. */
 struct DataDirection {
-  /** Left twist (v, w) about DataReport::centre, target frame, of unit root mean
-   * squared displacement of the source's points [1, rad/m]. */
+  /** Left twist (v, w) about DataReport::centre, target frame. Its scale is such that
+   * the root mean squared displacement of the source's points is one [1, rad/m]. */
   Vector6d twist = Vector6d::Zero();
-  /** Posterior and prior standard deviation along it, as root mean squared displacement
-   * of the source's points [m]. */
+  /** Posterior and prior standard deviation along the twist, as root mean squared
+   * displacement of the source's points [m]. */
   double standard_deviation = std::numeric_limits<double>::quiet_NaN();
   double prior_standard_deviation = std::numeric_limits<double>::quiet_NaN();
-  /** lambda: information of the data along it, in units of the prior's. The posterior's
-   * standard deviation is the prior's / sqrt(1 + lambda). */
+  /** lambda: information of the data along the twist, in units of the prior's. The
+   * standard deviation of the posterior is that of the prior / sqrt(1 + lambda). */
   double relative_information = 0.0;
   Observability observability = Observability::Observed;
-  /** In words: see describeTwist(). */
+  /** The twist in words: see describeTwist(). */
   std::string description;
 };
 
-/** \brief Things that make a posterior doubtful. */
+/** \brief Reasons to doubt a posterior. Any of them turns Status::Ok into
+ * Status::Doubtful. */
 struct DataFlags {
-  /** The two starts ended more than max_basin_distance apart, and the worse of the two
-   * ends costs no more than max_other_cost_ratio times the better one: either may be
-   * right. */
+  /** The two starts ended more than max_basin_distance apart, and the worse end costs
+   * no more than max_other_cost_ratio times the better one. Either may be right. */
   bool wrong_basin = false;
   /** Less than min_active_fraction of the source points lie on the target's surface. */
   bool low_support = false;
-  /** Fewer than min_effective_patches independent patches hold the pose, or fewer than
-   * 28 where residual_scale is above 3: too few to rely on the width. */
+  /** Fewer than min_effective_patches independent patches determine the pose, or fewer
+   * than 28 where residual_scale is above 3. Do not rely on the width. */
   bool few_patches = false;
-  /** The surfaces disagree by more than the noise: residual_scale above
-   * max_residual_scale, or above max_residual_scale_if_free where the prior alone holds
-   * a direction, which the disagreement may hide. Or they agree better than the
-   * target's noise allows, as clouds without noise do: residual_scale is at its floor
-   * of 0.3. */
+  /** The surfaces disagree by more than the noise: residual_scale is above
+   * max_residual_scale, or above max_residual_scale_if_free if the prior alone
+   * determines a direction, which may hide the disagreement. Also raised if the
+   * surfaces agree better than the target's noise allows, as clouds without noise do:
+   * residual_scale is at its floor of 0.3. */
   bool misfit = false;
-  /** All six directions are held by the prior only. */
+  /** The prior alone determines all six directions. */
   bool no_information = false;
-  /** The clouds put the pose where the prior has it with a probability below
-   * min_prior_probability: one of the two is wrong. */
+  /** The pose that the clouds ask for has a probability below min_prior_probability
+   * under the prior: one of the two is wrong. */
   bool prior_conflict = false;
 
   bool
@@ -94,36 +95,38 @@ struct DataFlags {
   }
 };
 
-/** \brief The report of preset `calibrated`; of the heaviest mode if there are several.
- */
+/** \brief The report of preset `calibrated`. If there are several modes, it describes
+ * the heaviest one. */
 struct BAYESIAN_ICP_EXPORT DataReport {
-  /** False for the other presets: all else is then meaningless. */
+  /** False for the other presets: all other members are then meaningless. */
   bool is_available = false;
   /** Standard deviation of a source point's distance to the target's surface [m]. */
   double noise_scale = std::numeric_limits<double>::quiet_NaN();
-  /** The same in units of the target's own noise: 1 to 1.5 if all is well. */
+  /** noise_scale in units of the target's own noise: 1 to 1.5 if all is well. */
   double residual_scale = std::numeric_limits<double>::quiet_NaN();
-  /** Number of independent patches of surface that the information amounts to: 96
-   * kappa_48 / kappa_inf, about 96 where neighbouring points are independent. */
+  /** Number of independent patches of surface with the same information: 96 kappa_48 /
+   * kappa_inf. About 96 if neighbouring points are independent. */
   double effective_patches = std::numeric_limits<double>::quiet_NaN();
   /** Share of the source points that lie on the target's surface, in [0, 1]. */
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
-  /** kappa_inf: by how much neighbouring points repeat each other. */
+  /** kappa_inf: factor by which correlation between neighbouring points inflates the
+   * covariance of the score. */
   double correlation_factor = std::numeric_limits<double>::quiet_NaN();
-  /** nu of Student's t distribution, scaled to the covariance, that the draws have
-   * along the directions that the data hold: its 95 % region in six of them is at a
-   * squared Mahalanobis distance of 5.4 F_0.95(6, nu) = 14.0 for nu = 20, not 12.6. */
+  /** nu of Student's t distribution, which the draws have in the directions that the
+   * data determine. It is scaled to the covariance: in six such directions the 95 %
+   * region ends at a squared Mahalanobis distance of 5.4 F_0.95(6, nu) = 14.0 for nu =
+   * 20, not 12.6. */
   int degrees_of_freedom = 0;
-  /** Mahalanobis distance between the ends of the two starts, without what is held by
-   * the prior only. Its covariance is the posterior's, widened by half the noise, as
-   * starts do not converge further. */
+  /** Mahalanobis distance between the ends of the two starts, without the directions
+   * that are PriorOnly. Its covariance is the posterior's, widened by half the noise,
+   * because starts do not converge further. */
   double basin_distance = std::numeric_limits<double>::quiet_NaN();
-  /** Mean capped residual at the worse of the two ends, in units of the better one's.
-   */
+  /** Mean capped residual at the worse of the two ends, divided by that at the better
+   * one. */
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
   /** Probability that a pose drawn from the prior is further from the prior's mean than
-   * the posterior's mean is, along the directions that are not held by the prior only.
-   * Uniform in [0, 1] if poses are drawn from the prior. */
+   * the posterior's mean is, without the directions that are PriorOnly. Uniform in
+   * [0, 1] if the poses are drawn from the prior. */
   double prior_probability = std::numeric_limits<double>::quiet_NaN();
   /** Centre of the twists: the moved source's centroid, target frame [m]. */
   Eigen::Vector3d centre =
@@ -133,22 +136,25 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   DataFlags flags;
 };
 
-/** \brief The flags of a report's numbers. A number that is not finite raises its flag.
- */
+/** \brief Compute the flags from a report's numbers. A number that is not finite raises
+ * its flag. */
 BAYESIAN_ICP_EXPORT DataFlags
 flagsOf(const DataReport& report);
 
-/** \brief A twist in words: "translation along (0.98, 0.10, 0.10)", "rotation about
- * (0.00, 0.00, 1.00) through (0.100, 0.200, 0.050) m", "screw about ... with a pitch of
- * 0.250 m/rad". Opposite twists have the same words. Translation is what moves all
- * points nearly alike; the point is the axis' nearest to the centre.
+/** \brief Describe a twist in words: "translation along (0.98, 0.10, 0.10)", "rotation
+ * about (0.00, 0.00, 1.00) through (0.100, 0.200, 0.050) m", "screw about ... with a
+ * pitch of 0.250 m/rad".
+ *
+ * Opposite twists have the same description. A motion counts as a translation if it
+ * moves all points nearly alike. The point given is the one of the axis nearest to the
+ * centre.
  * \param[in] twist left, target frame, of unit rms displacement [1, rad/m]
  * \param[in] centre of the twist, target frame [m] */
 BAYESIAN_ICP_EXPORT std::string
 describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre);
 
-/** \brief The raised flags in words, each with its number and threshold; empty if none.
- */
+/** \brief Describe the raised flags, each with its number and threshold. Empty if none
+ * is raised. */
 BAYESIAN_ICP_EXPORT std::vector<std::string>
 describeFlags(const DataReport& report);
 

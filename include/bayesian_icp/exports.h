@@ -2,10 +2,11 @@
  * \brief A pose and its covariance in the conventions and text formats of other
  * robotics software: ROS 2, g2o, GTSAM, TUM trajectories, CSV.
  *
- * The pose is always the posterior mean T_target_source, which the covariance is about:
- * the source frame as seen from the target frame, in metres and radians. Texts consist
- * of whole lines; numbers do not depend on the locale and read back without loss.
- * docs/exports.md has the formats side by side, with examples.
+ * The pose is always the posterior mean T_target_source, because the covariance is
+ * about the mean. It is the pose of the source frame as seen from the target frame, in
+ * metres and radians. Texts consist of whole lines. Their numbers do not depend on the
+ * locale and read back without loss. docs/exports.md compares the formats and has
+ * examples.
  */
 #pragma once
 
@@ -19,15 +20,15 @@
 
 namespace bayesian_icp {
 
-/** \brief What is exported: of a Summary, or of one that was read from a file. */
+/** \brief What is exported. It comes from a Summary, or from a file. */
 struct BAYESIAN_ICP_EXPORT PoseEstimate {
   Status status = Status::NotRun;
   /** Posterior mean T_target_source (x, y, z, roll, pitch, yaw) [m, rad]. */
   Vector6d mean;
-  /** One for each CovarianceConvention, in their order [m, rad]. */
+  /** One covariance for each CovarianceConvention, in their order [m, rad]. */
   std::array<Matrix6d, 4> covariances;
 
-  /** \brief Nothing is known: all numbers are NaN. */
+  /** \brief An unknown estimate: all numbers are NaN. */
   PoseEstimate();
   explicit PoseEstimate(const Summary& summary);
 
@@ -35,12 +36,12 @@ struct BAYESIAN_ICP_EXPORT PoseEstimate {
   covariance(CovarianceConvention convention) const;
 };
 
-/** \brief The status of this short name, as posterior.json has it.
- * \return whether there is one; \p status is unchanged if not */
+/** \brief Find the status with this short name, as in posterior.json.
+ * \return whether it exists; if not, \p status is unchanged */
 BAYESIAN_ICP_EXPORT bool
 readStatus(const std::string& name, Status& status);
 
-/** \brief What the formats want to know beside the pose. */
+/** \brief What the formats need besides the pose. */
 struct ExportOptions {
   /** Names of the frames: one or more characters of A-Z a-z 0-9 _ - . / */
   std::string target_frame = "target";
@@ -51,39 +52,39 @@ struct ExportOptions {
   int target_vertex = 0;
   int source_vertex = 1;
   /** Also export a posterior that has not mixed, has several modes, lost chains or was
-   * cancelled, as long as its numbers are there. */
+   * cancelled, if its numbers are finite. */
   bool accept_unreliable = false;
 
-  /** \brief What is wrong with the first bad field, with its name; empty if all is
-   * well. */
+  /** \brief Describe what is wrong with the first bad field, with its name. Empty if
+   * all fields are valid. */
   BAYESIAN_ICP_EXPORT std::string
   validate() const;
 };
 
-/** \brief Why \p estimate cannot be exported, as a part of a sentence; empty if it can.
+/** \brief Why \p estimate cannot be exported, as part of a sentence. Empty if it can.
  *
- * Its status has to be Ok or Doubtful (see ExportOptions::accept_unreliable), mean and
- * covariance finite and, if \p needs_information, the covariance well enough
- * conditioned to be inverted. */
+ * The status has to be Ok or Doubtful (see ExportOptions::accept_unreliable). Mean and
+ * covariance have to be finite. If \p needs_information, the covariance also has to be
+ * conditioned well enough to be inverted. */
 BAYESIAN_ICP_EXPORT std::string
 complaintAboutExport(const PoseEstimate& estimate,
                      bool needs_information,
                      bool accept_unreliable = false);
 
 /** \brief Inverse of a covariance.
- * \throws std::invalid_argument if it is not finite, or so near to singular that fewer
- * than about five digits of the inverse would be right */
+ * \throws std::invalid_argument if the covariance is not finite, or so close to
+ * singular that the inverse would have fewer than about five correct digits */
 BAYESIAN_ICP_EXPORT Matrix6d
 informationOf(const Matrix6d& covariance);
 
-/** \brief Covariance in g2o's coordinates of an SE(3) edge: translation [m], then
- * vector part of the unit quaternion, both of T_mean^-1 T; that is half the angles of
- * CovarianceConvention::RightSE3 \p right_se3. */
+/** \brief Convert CovarianceConvention::RightSE3 \p right_se3 to g2o's coordinates of
+ * an SE(3) edge: translation [m], then the vector part of the unit quaternion, both of
+ * T_mean^-1 T. The vector part is half of the angles of RightSE3. */
 BAYESIAN_ICP_EXPORT Matrix6d
 g2oCovariance(const Matrix6d& right_se3);
 
-/** \brief Covariance in GTSAM's coordinates of a Pose3: those of
- * CovarianceConvention::RightSE3 \p right_se3, rotation first. */
+/** \brief Convert CovarianceConvention::RightSE3 \p right_se3 to GTSAM's coordinates of
+ * a Pose3: the same errors, rotation first. */
 BAYESIAN_ICP_EXPORT Matrix6d
 gtsamCovariance(const Matrix6d& right_se3);
 
@@ -98,31 +99,33 @@ g2oEdge(const PoseEstimate& estimate, const ExportOptions& options);
 BAYESIAN_ICP_EXPORT std::string
 g2oVertex(const Eigen::Matrix4d& pose, int id);
 
-/** \brief Rows of numbers below lines that begin with #: the 4x4 matrix of the pose,
- * GTSAM's 6x6 covariance and the 6x6 information.
+/** \brief The 4x4 matrix of the pose, GTSAM's 6x6 covariance and the 6x6 information as
+ * rows of numbers. Lines that begin with # separate them.
  * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 gtsamText(const PoseEstimate& estimate, const ExportOptions& options);
 
-/** \brief A geometry_msgs/msg/PoseWithCovarianceStamped as the YAML that `ros2 topic
- * pub` takes: frame_id is the target's, covariance of CovarianceConvention::R3xSO3.
+/** \brief A geometry_msgs/msg/PoseWithCovarianceStamped in the YAML that `ros2 topic
+ * pub` accepts. frame_id is the target's; the covariance is that of
+ * CovarianceConvention::R3xSO3.
  * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 rosYaml(const PoseEstimate& estimate, const ExportOptions& options);
 
-/** \brief A line of a TUM trajectory: "timestamp x y z qx qy qz qw".
+/** \brief One line of a TUM trajectory: "timestamp x y z qx qy qz qw".
  * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 tumLine(const PoseEstimate& estimate, const ExportOptions& options);
 
-/** \brief The covariance that belongs to tumLine(): the same timestamp, then 36
- * numbers, row by row, of CovarianceConvention::R3xSO3.
+/** \brief The covariance of tumLine(): the same timestamp, then the 36 numbers of
+ * CovarianceConvention::R3xSO3, row by row.
  * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 tumCovarianceLine(const PoseEstimate& estimate, const ExportOptions& options);
 
-/** \brief A header with units and a row: timestamp, frames, status, the six parameters
- * and the upper triangle of their covariance, CovarianceConvention::Parameters.
+/** \brief A header with units and one row: timestamp, frames, status, the six
+ * parameters and the upper triangle of their covariance
+ * (CovarianceConvention::Parameters).
  * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 BAYESIAN_ICP_EXPORT std::string
 csvText(const PoseEstimate& estimate, const ExportOptions& options);

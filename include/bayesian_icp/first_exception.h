@@ -1,5 +1,6 @@
 /** \file
- * \brief An exception on its way out of a parallel region, which none may leave.
+ * \brief Carries an exception out of a parallel region, which no exception may leave by
+ * itself.
  */
 #pragma once
 
@@ -9,12 +10,13 @@
 
 namespace bayesian_icp {
 
-/** \brief Keeps the first exception of several threads for the one that started them.
- */
+/** \brief Keeps the first exception of several threads, for the thread that started
+ * them. */
 class FirstException {
 public:
-  /** \brief Run \p work and keep what it throws; do nothing once something was thrown.
-   * \return whether \p work was run to its end */
+  /** \brief Run \p work and keep the exception that it throws. Does nothing after an
+   * exception.
+   * \return whether \p work ran to its end */
   template <typename Work>
   bool
   guard(const Work& work)
@@ -34,7 +36,8 @@ public:
     }
   }
 
-  /** \brief After the parallel region: throw what was kept, if anything was. */
+  /** \brief Throw the exception that was kept, if any. Call this after the parallel
+   * region. */
   void
   rethrow() const
   {

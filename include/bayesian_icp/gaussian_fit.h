@@ -1,6 +1,6 @@
 /** \file
- * \brief The Gaussian nearest to a density, learned from noisy gradients: mean and
- * preconditioner of the sampler.
+ * \brief The Gaussian nearest to a density, learned from noisy gradients. It gives the
+ * sampler its mean and preconditioner.
  */
 #pragma once
 
@@ -60,16 +60,17 @@ private:
   Matrix6d inverse_factor_ = Matrix6d::Identity();
 };
 
-/** \brief What a regression of gradients on positions is made of: sums over antithetic
- * pairs mean +- L z, in units of the Gaussian they were drawn from. Sums of several
- * chains can be added. */
+/** \brief Sums for a regression of gradients on positions. They run over antithetic
+ * pairs mean +- L z, in units of the Gaussian from which the pairs were drawn. Sums of
+ * several chains can be added. */
 struct RegressionSums {
   int num_pairs = 0;
   Vector6d mean_gradient = Vector6d::Zero();
   Matrix6d gradient_position = Matrix6d::Zero();
   Matrix6d position_position = Matrix6d::Zero();
   Matrix6d gradient_gradient = Matrix6d::Zero();
-  /** Of L^T C L, C a term's covariance, and of its part in the pairs' gradients. */
+  /** Sums of L^T C L, where C is the covariance of a term, and of its part in the
+   * gradients of the pairs. */
   int num_noise_samples = 0;
   Matrix6d term_noise = Matrix6d::Zero();
   Matrix6d pair_noise = Matrix6d::Zero();
@@ -78,12 +79,12 @@ struct RegressionSums {
   operator+=(const RegressionSums& other);
 };
 
-/** \brief A Gaussian on its way to the density. */
+/** \brief State of the fit of a Gaussian to the density. */
 struct GaussianFit {
   Gaussian gaussian;
-  /** Covariance C of a term's gradient, averaged over the Gaussian. */
+  /** Covariance C of the gradient of a term, averaged over the Gaussian. */
   Matrix6d term_covariance = Matrix6d::Zero();
-  /** Covariance of what the regression leaves over beyond that noise: the density is
+  /** Covariance of the residuals of the regression beyond that noise: the density is
    * not Gaussian. */
   Matrix6d nonlinearity = Matrix6d::Zero();
   double temperature = 1.0;
@@ -91,31 +92,31 @@ struct GaussianFit {
   bool has_converged = false;
 };
 
-/** \brief Evaluate gradients of \p num_pairs pairs at the fit's temperature, in batches
- * large enough to learn from. */
+/** \brief Evaluate the gradients of \p num_pairs pairs at the temperature of the fit,
+ * in batches large enough to learn from. */
 BAYESIAN_ICP_EXPORT RegressionSums
 collectGradients(StochasticEnergy& energy,
                  const GaussianFit& fit,
                  int num_pairs,
                  Random& random);
 
-/** \brief One step of the regression: new mean, precision and noise.
+/** \brief Do one step of the regression: new mean, precision and noise.
  * \param[in] sums from collectGradients() at \p fit
  * \param[in] gain in (0, 1], share of the new slope in the precision
- * \param[in] prior_precision its half bounds the precision from below
- * \param[in,out] fit to be improved */
+ * \param[in] prior_precision half of it bounds the precision from below
+ * \param[in,out] fit to improve */
 BAYESIAN_ICP_EXPORT void
 updateFit(const RegressionSums& sums,
           double gain,
           const Matrix6d& prior_precision,
           GaussianFit& fit);
 
-/** \brief Fit a Gaussian at \p start: from a tempered one that looks over the roughness
- * of the likelihood down to temperature 1. Serves one chain.
+/** \brief Fit a Gaussian at \p start. The temperature falls to 1 from a value that
+ * smooths the roughness of the likelihood. Use one call for each chain.
  * \param[in] energy -log density and its stochastic gradients
  * \param[in] start near a mode
  * \param[in] random generator of the chain
- * \param[in] keep_going asked after each iteration; returning false ends the fit */
+ * \param[in] keep_going called after each iteration; returning false ends the fit */
 BAYESIAN_ICP_EXPORT GaussianFit
 fitTempered(StochasticEnergy& energy,
             const Vector6d& start,

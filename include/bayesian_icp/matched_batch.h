@@ -9,8 +9,8 @@
 
 namespace bayesian_icp {
 
-/** \brief Draws mini-batches and finds their correspondences, in buffers of its own.
- * The source and the search are shared and only read. */
+/** \brief Draws mini-batches and finds their correspondences, in its own buffers. It
+ * shares the source and the search, and only reads them. */
 class BAYESIAN_ICP_EXPORT MatchedBatch {
 public:
   /** \param[in] source_points 3 x n, source frame [m]; must outlive this object, like
@@ -25,13 +25,13 @@ public:
   void
   draw(const Vector6d& pose, Random& random);
 
-  /** \brief Keep each target point in its pair with the nearest source point of the
-   * mini-batch only, the first among equally near ones. Target points at the very same
-   * place count as one. */
+  /** \brief Keep only the pair with the nearest source point of the mini-batch for each
+   * target point; of equally near ones, keep the first. Target points at exactly the
+   * same place count as one. */
   void
   makeOneToOne();
 
-  /** \brief meanGradient() of the mini-batch at the pose that it was drawn at. */
+  /** \brief meanGradient() of the mini-batch at the pose of its draw(). */
   Vector6d
   meanGradient() const;
 

@@ -1,11 +1,11 @@
 /** \file
- * \brief What the clouds alone say of the pose: a posterior without its prior, for
- * filters and pose graphs that know by themselves what the prior knew.
+ * \brief What the clouds alone say about the pose: a posterior without its prior. Use
+ * it in filters and pose graphs that already contain the knowledge of the prior.
  *
- * Mean and covariance of a posterior contain its prior. Who fuses them with the
- * odometry from which the prior was made counts the odometry twice, and becomes too
- * sure where the clouds say little. docs/pose_graph_and_filter.md says when to use
- * what.
+ * Mean and covariance of a posterior contain its prior. If the prior was made from
+ * odometry, and the posterior is fused with that odometry again, the odometry counts
+ * twice. The result is then too sure where the clouds say little.
+ * docs/pose_graph_and_filter.md says what to use when.
  */
 #pragma once
 
@@ -16,30 +16,32 @@
 namespace bayesian_icp {
 
 /** \brief Ratio of posterior to prior standard deviation above which draws cannot tell
- * a direction from one that the clouds do not see: of min_ess draws whose variance is 1
- * in all six directions, the smallest is (1 - sqrt(6 / 400))^2 = 0.77, give or take
- * 0.03, and this is four times that below. */
+ * a direction from one that the clouds do not see. Reason: for min_ess draws whose
+ * variance is 1 in all six directions, the smallest variance is (1 - sqrt(6 / 400))^2
+ * = 0.77 +- 0.03. The square of this constant is four times that uncertainty below it.
+ */
 constexpr double max_measured_share_of_prior = 0.8;
 
-/** \brief Standard deviation given to directions that the clouds do not see, in units
- * of the prior's: their information is a ten-thousandth of the prior's. */
+/** \brief Standard deviation of directions that the clouds do not see, in units of the
+ * prior's. Their information is then a ten-thousandth of the prior's. */
 constexpr double unmeasured_deviation = 100.0;
 
 /** \brief A posterior as a measurement that is independent of its prior. */
 struct BAYESIAN_ICP_EXPORT PoseMeasurement {
-  /** Mean and covariances of the clouds' likelihood, as a Gaussian. Where they say
-   * nothing the mean is the posterior's and the standard deviation
+  /** Mean and covariances of the clouds' likelihood, as a Gaussian. In directions that
+   * the clouds do not see, the mean is the posterior's, and the standard deviation is
    * unmeasured_deviation times the prior's, so that the covariance can be inverted. */
   PoseEstimate estimate;
-  /** Number of directions in which they say nothing, 0 to 6. */
+  /** Number of directions that the clouds do not see, 0 to 6. */
   int num_unmeasured = 0;
 };
 
-/** \brief Take the prior out of a posterior: information and mean (in information form)
- * of the posterior minus those of the prior, linearised at the posterior mean.
+/** \brief Remove the prior from a posterior. In information form, information and mean
+ * of the prior are subtracted from those of the posterior, linearised at the posterior
+ * mean.
  *
- * Fused with the prior again it is the posterior. Right as far as the posterior is
- * nearly Gaussian.
+ * Fused with the prior again, the result is the posterior. It is right if the posterior
+ * is nearly Gaussian.
  * \param[in] posterior mean and covariances
  * \param[in] prior with which \p posterior was sampled
  * \return NaN if \p posterior has no finite mean and covariance */

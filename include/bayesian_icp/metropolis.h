@@ -1,5 +1,5 @@
 /** \file
- * \brief Metropolis steps with proposals that were learned before and then frozen.
+ * \brief Metropolis steps with proposals that were learned before and are now frozen.
  */
 #pragma once
 
@@ -13,48 +13,47 @@ namespace bayesian_icp {
 
 /** \brief What chains propose. */
 struct MetropolisProposal {
-  /** Of jumps, independent of where the chain is. */
+  /** Proposal of jumps. It does not depend on the position of the chain. */
   TMixture jumps;
-  /** F of a random walk x + F z, z standard normal. */
+  /** F of a random walk x + F z, where z is standard normal. */
   Matrix6d walk_factor;
 };
 
-/** \brief One chain of Metropolis-Hastings on StochasticEnergy::fullEnergy(): a random
- * walk, a jump, and so on. Jumps take the chain across the density, walks free it from
- * where the mixture is far too low. */
+/** \brief One chain of Metropolis-Hastings on StochasticEnergy::fullEnergy(). It
+ * alternates a random walk and a jump. Jumps take the chain across the density. Walks
+ * free it from places where the mixture is far too low. */
 class BAYESIAN_ICP_EXPORT MetropolisChain : public SamplingChain {
 public:
   /** \p energy and \p random must outlive this object. */
   MetropolisChain(const Vector6d& start, StochasticEnergy& energy, Random& random);
 
-  /** \brief Propose from this in step(). */
+  /** \brief Set the proposal of step(). */
   void
   setProposal(std::shared_ptr<const MetropolisProposal> proposal);
 
-  /** \brief One step; a proposal must be set. */
+  /** \brief Do one step. A proposal must be set. */
   void
   step() override;
 
-  /** \brief One random walk with \p factor or, every other time, 0.3 of it, which is
-   * accepted where the density is rough.
-   * \param[in] factor L of the step L z, z standard normal
+  /** \brief Do one random walk with \p factor or, every other time, with 0.3 of it,
+   * which is accepted where the density is rough.
+   * \param[in] factor L of the step L z, where z is standard normal
    * \param[in] temperature the density is exp(-U / temperature)
-   * \return whether it was accepted */
+   * \return whether the walk was accepted */
   bool
   walk(const Matrix6d& factor, double temperature);
 
   const Vector6d&
   position() const override;
 
-  /** \brief Share of the walks in step() that were accepted since setProposal(), in
-   * [0, 1]. */
+  /** \brief Share of accepted walks in step() since setProposal(), in [0, 1]. */
   double
   walkAcceptance() const
   {
     return walks_.acceptance();
   }
 
-  /** \brief The same of the jumps. */
+  /** \brief Share of accepted jumps in step() since setProposal(), in [0, 1]. */
   double
   jumpAcceptance() const
   {

@@ -1,6 +1,5 @@
 /** \file
- * \brief All options of the estimate in one place, each with its unit, range and
- * source.
+ * \brief All options of the estimate, each with its unit, range and source.
  */
 #pragma once
 
@@ -21,15 +20,17 @@ enum class Preset {
   /** Algorithm 1 of the paper, literally: a reproduction. Its covariance has an
    * implicit measurement_sigma of 1 m. */
   Paper,
-  /** A sampler whose draws are right for the stated likelihood and prior. */
+  /** A sampler that draws correctly from the posterior of the stated likelihood and
+   * prior. */
   Exact,
-  /** A likelihood whose scale and correlations are found from the clouds: distances to
-   * the target's surface in units of its own noise, and a covariance that is that of
-   * the robust estimate. Motions that the clouds do not hold stay at the prior. */
+  /** A likelihood whose scale and correlations are estimated from the clouds. Residuals
+   * are distances to the target's surface in units of its own noise, and the
+   * covariance is that of the robust estimate. Motions that the clouds do not
+   * determine stay at the prior. */
   Calibrated
 };
 
-/** \brief The preset of whoever does not choose one. */
+/** \brief The default preset. */
 constexpr Preset default_preset = Preset::Calibrated;
 
 /** \brief Short name: "paper", "exact", "calibrated". */
@@ -38,54 +39,56 @@ toString(Preset preset);
 
 /** \brief Mini-batches of Algorithm 1. */
 struct MiniBatchOptions {
-  /** m, number of source points a step; positive, more than the source has is taken as
-   * all of it. */
+  /** m, number of source points in each step. Positive; if it exceeds the size of the
+   * source, the whole source is used. */
   int batch_size = 160;
   MiniBatchSampling sampling = MiniBatchSampling::WithReplacement;
 };
 
-/** \brief What preset `exact` has and the paper has not. */
+/** \brief Options of preset `exact` that Algorithm 1 does not have. */
 struct ExactOptions {
   ResidualOptions residual;
-  /** Metropolis steps in place of Langevin steps: asymptotically exact, each looks at
-   * the whole source. Automatic uses them where Langevin steps would need mini-batches
-   * of (nearly) the whole source; never if mini_batch.batch_size or sgld.step_size are
-   * set, which are of Langevin steps. */
+  /** Metropolis steps instead of Langevin steps. They are asymptotically exact, and
+   * each step evaluates the whole source. Automatic uses them where Langevin steps
+   * would need mini-batches of (nearly) the whole source. It never uses them if
+   * mini_batch.batch_size or sgld.step_size is set, because these are options of
+   * Langevin steps. */
   MetropolisUse metropolis = MetropolisUse::Automatic;
   /** Largest number of source points that are used; a larger source is thinned to it,
-   * evenly over its order. The energy is N / sigma^2 times a mean over the source,
-   * which some thousand points give; more only take longer. Not with a search of the
-   * user's own, which knows points by their index. Positive. */
+   * evenly over its order. The energy is N / sigma^2 times a mean over the source, and
+   * some thousand points give that mean; more points only take longer. Not applied
+   * with a search of the user's own, which knows points by their index. Positive. */
   int max_source_points = 4000;
 };
 
-/** \brief What only preset `calibrated` has. */
+/** \brief Options of preset `calibrated`. */
 struct CalibratedOptions {
-  /** Largest number of source points that are used; of a larger source so many that
-   * cover it evenly. Time is proportional to it. At least min_calibrated_points. */
+  /** Largest number of source points that are used; of a larger source, this many
+   * points that cover it evenly. Time is proportional to it. At least
+   * min_calibrated_points. */
   int max_source_points = 2000;
-  /** Of these, points on which the starts are followed to their modes. At least
-   * min_calibrated_points; more than there are is taken as all. */
+  /** Number of these points that are used to follow the starts to their modes. At least
+   * min_calibrated_points; if it exceeds the number of points, all are used. */
   int num_mode_points = 500;
 };
 
-/** \brief Fewest points of a cloud with which preset `calibrated` can do anything:
- * those of one neighbourhood of its surface model. */
+/** \brief Smallest number of points of a cloud for preset `calibrated`: one
+ * neighbourhood of its surface model. */
 constexpr int min_calibrated_points = 30;
 
-/** \brief Options of the estimate; defaults of numbers are the paper's.
+/** \brief Options of the estimate. Default numbers are the paper's.
  *
- * Preset `exact` finds mini_batch.batch_size, sgld.step_size, chains.num_burn_in and
- * chains.thinning itself where they have their defaults; any other value is obeyed
- * (step_size in (0, 1] is then the largest step, 1 a Newton step). Its chains start
- * chains.initial_spread about the initial guess; where that is zero, as widely as the
- * prior allows, but at most 0.5 m and 0.5 rad. It draws its mini-batches without
- * replacement and uses no other field of sgld.
+ * Preset `exact` chooses mini_batch.batch_size, sgld.step_size, chains.num_burn_in and
+ * chains.thinning automatically if they have their defaults, and obeys any other value
+ * (step_size in (0, 1] is then the largest step; 1 is a Newton step). Its chains start
+ * with the spread chains.initial_spread about the initial guess. If that is zero, they
+ * start as widely as the prior allows, but at most 0.5 m and 0.5 rad. Mini-batches are
+ * drawn without replacement. No other field of sgld has an effect.
  *
- * Preset `calibrated` finds its scale, step sizes and starts itself: it uses prior,
- * whose variances must be finite, chains but for chains.initial_spread, and calibrated;
- * all else has no effect on it. chains.num_burn_in and chains.thinning are automatic
- * where they have their defaults. It starts at the prior's mean. */
+ * Preset `calibrated` finds its scale, step sizes and starts itself. It uses prior
+ * (whose variances must be finite), chains without chains.initial_spread, and
+ * calibrated. All other options have no effect. chains.num_burn_in and chains.thinning
+ * are automatic if they have their defaults. The search starts at the prior's mean. */
 struct Options {
   Preset preset = default_preset;
   LikelihoodOptions likelihood;
@@ -97,30 +100,31 @@ struct Options {
   CalibratedOptions calibrated;
 
   /** \brief Check every field.
-   * \return what is wrong with the first bad one: its name, its value and the allowed
-   *         range. Empty if all is well. */
+   * \return the first error: the name of the field, its value and the allowed range.
+   * Empty if all fields are valid. */
   BAYESIAN_ICP_EXPORT std::string
   validate() const;
 };
 
-/** \brief The frame of the prior of a run: prior.frame, or what Automatic stands for.
+/** \brief Resolve the frame of the prior.
  *
  * Automatic is Origin for presets `paper` and `exact`. For `calibrated` it is Origin if
- * the origin of the source frame is no further from the source's centroid than 1.5
- * times the points' root mean square distance from it: such a cloud is a scan, and a
- * guess about it errs by a motion of the sensor. Other clouds are objects that a sensor
- * looks at, and their frame is SourceCentroid.
- * \param[in] options of the run
- * \param[in] source_points of the run, source frame [m]; those not finite do not count
- */
+ * the source's centroid is no further from the origin than 1.5 times the points' root
+ * mean square distance from the centroid: such a cloud is a scan, and the error of its
+ * guess is a motion of the sensor. Other clouds are objects, and their frame is
+ * SourceCentroid.
+ * \param[in] options options of the run
+ * \param[in] source_points points of the run, source frame [m]; points that are not
+ *            finite do not count
+ * \return Origin or SourceCentroid */
 BAYESIAN_ICP_EXPORT PriorFrame
 priorFrameOf(const Options& options, const Eigen::Matrix3Xd& source_points);
 
-/** \brief The prior of a run.
- * \param[in] options of the run
- * \param[in] initial_pose its guess, which is the mean of a prior that has none
- * \param[in] source_points of the run, source frame [m]; those not finite do not count
- */
+/** \brief Make the prior of a run.
+ * \param[in] options options of the run
+ * \param[in] initial_pose guess of the run, which is the mean if prior.mean is NaN
+ * \param[in] source_points points of the run, source frame [m]; points that are not
+ *            finite do not count */
 BAYESIAN_ICP_EXPORT Prior
 priorOf(const Options& options,
         const Vector6d& initial_pose,

@@ -1,5 +1,5 @@
 /** \file
- * \brief The front door without PCL: from points and a search to a posterior.
+ * \brief The entry point without PCL: from points and a search to a posterior.
  */
 #pragma once
 
@@ -10,29 +10,31 @@
 
 namespace bayesian_icp {
 
-/** \brief Draws and what they say. */
+/** \brief The draws and their summary. */
 struct PosteriorEstimate {
   Summary summary;
-  /** Every chain, the diverged ones included. */
+  /** Every chain, including the diverged ones. */
   std::vector<Chain> chains;
   /** Draws of the chains that did not diverge, chain after chain. */
   PoseMatrix samples;
 };
 
-/** \brief Fewest source points with a correspondence at the initial guess. */
+/** \brief Smallest number of source points that must have a correspondence at the
+ * initial guess. */
 constexpr std::size_t min_correspondences = 3;
 
-/** \brief Sample the posterior of the source-to-target pose by options.preset.
+/** \brief Sample the posterior of the source-to-target pose with options.preset.
  * \param[in] source_points 3 x n, finite, source frame [m]
- * \param[in] search finds correspondences in the target, within its gate; preset
- *            `calibrated`, which needs the target's points, is refused here
+ * \param[in] search finds correspondences in the target, within its gate. Preset
+ *            `calibrated` needs the target's points and gives Status::InvalidOptions
+ *            here
  * \param[in] initial_pose start of the chains, and mean of the prior unless the options
- *            say otherwise [m, rad]
- * \param[in] options preset, prior, chains and what else the preset uses
- * \param[in] progress told of every step; returns false to cancel
- * \return an estimate whose summary.status says what happened; bad options or input
+ *            state one [m, rad]
+ * \param[in] options preset, prior, chains and everything else that the preset uses
+ * \param[in] progress called after every step; returns false to cancel
+ * \return an estimate whose summary.status says what happened. Bad options or input
  * give a status, not an exception. Exceptions of \p search and \p progress pass
- *         through. */
+ * through. */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const CorrespondenceSearch& search,
@@ -40,10 +42,11 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());
 
-/** \brief The same for a target given by its points, of which it makes what the preset
- * needs: the one way for preset `calibrated` that keeps all digits of far coordinates.
+/** \brief The same for a target given by its points. This overload makes everything
+ * that the preset needs. It is the only one for preset `calibrated` that keeps all
+ * digits of far coordinates.
  * \param[in] source_points 3 x n, finite, source frame [m]
- * \param[in] target_points 3 x n, target frame [m]; not finite ones are left out
+ * \param[in] target_points 3 x n, target frame [m]; non-finite points are left out
  * \param[in] initial_pose as above
  * \param[in] options as above; any preset
  * \param[in] progress as above
@@ -56,9 +59,9 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const ProgressCallback& progress = ProgressCallback());
 
 /** \brief The same with nearest neighbours in \p target_tree, within
- * options.exact.residual.max_distance: the fast way for preset `exact`, and the only
- * one with Residual::PointToPlane (normals are those of patches of the target). Preset
- * `calibrated` takes the tree's points. */
+ * options.exact.residual.max_distance. This is the fast overload for preset `exact`,
+ * and the only one with Residual::PointToPlane (normals are those of patches of the
+ * target). Preset `calibrated` uses the tree's points. */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const KdTree& target_tree,
@@ -66,13 +69,13 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());
 
-/** \brief Where the clouds were in 32 bits: whether that was too coarse for the noise.
- * If so the message says it, and Ok becomes Doubtful.
- * \param[in] coordinate a usual |x|, |y| or |z| of the clouds, the largest of the three
- *            axes [m]
- * \param[in] options those of the estimate; their measurement_sigma is the noise where
- *            \p summary has none
- * \param[in,out] summary of an estimate; one that was not sampled stays as it is */
+/** \brief Check whether 32-bit coordinates were too coarse for the noise. If so, the
+ * message says it, and Ok becomes Doubtful.
+ * \param[in] coordinate a typical |x|, |y| or |z| of the clouds, the largest of the
+ *            three axes [m]
+ * \param[in] options of the estimate; their measurement_sigma is the noise if \p
+ *            summary has none
+ * \param[in,out] summary of an estimate; it is unchanged if nothing was sampled */
 BAYESIAN_ICP_EXPORT void
 doubtRounding(double coordinate, const Options& options, Summary& summary);
 

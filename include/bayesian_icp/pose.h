@@ -1,10 +1,10 @@
 /** \file
- * \brief The pose, its matrix, its derivatives, and every convention of the project.
+ * \brief The pose, its matrix, its derivatives, and all conventions of the project.
  *
  * A pose is theta = (x, y, z, roll, pitch, yaw) in metres and radians. It maps source
- * points into the target frame, p = R s + u with u = (x, y, z) in the target frame and
- * R = Rz(yaw) Ry(pitch) Rx(roll) about the origin of the source frame.
- * A twist or pose error is always ordered translation first, then rotation.
+ * points into the target frame: p = R s + u, with u = (x, y, z) in the target frame and
+ * R = Rz(yaw) Ry(pitch) Rx(roll) about the origin of the source frame. Twists and pose
+ * errors always have translation first, then rotation.
  */
 #pragma once
 
@@ -19,26 +19,27 @@ namespace bayesian_icp {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/** \brief Poses, one a row: (number of draws) x 6, columns x y z roll pitch yaw. */
+/** \brief Poses: (number of draws) x 6. Each row is one pose; the columns are x y z
+ * roll pitch yaw. */
 using PoseMatrix = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
-/** \brief The coordinates in which a 6x6 covariance is expressed. Units are metres and
- * radians, order is translation first in all of them. */
+/** \brief The coordinates of a 6x6 covariance. In all of them units are metres and
+ * radians, and translation comes first. */
 enum class CovarianceConvention {
   /** (x, y, z, roll, pitch, yaw), the paper's parameters. */
   Parameters,
   /** Position error in the target frame, and a small rotation w about the target's
-   * fixed axes: R = exp(w) R_mean, t = t_mean + dt. The meaning of ROS
+   * fixed axes: R = exp(w) R_mean, t = t_mean + dt. This is the convention of ROS
    * PoseWithCovariance. */
   R3xSO3,
   /** T = exp(xi) T_mean, xi = (v, w) in the target frame. */
   LeftSE3,
-  /** T = T_mean exp(xi), xi = (v, w) in the source (body) frame. GTSAM's, which in
-   * addition puts the rotation first. */
+  /** T = T_mean exp(xi), xi = (v, w) in the source (body) frame. GTSAM uses it with
+   * rotation first. */
   RightSE3
 };
 
-/** \brief All of them, in their order. */
+/** \brief All conventions, in their order. */
 constexpr std::array<CovarianceConvention, 4> covariance_conventions = {
     {CovarianceConvention::Parameters,
      CovarianceConvention::R3xSO3,
@@ -50,12 +51,12 @@ constexpr std::array<CovarianceConvention, 4> covariance_conventions = {
 BAYESIAN_ICP_EXPORT const char*
 toString(CovarianceConvention convention);
 
-/** \brief The angle brought to (-pi, pi] [rad]. */
+/** \brief Wrap an angle to (-pi, pi] [rad]. */
 BAYESIAN_ICP_EXPORT double
 wrapAngle(double angle);
 
-/** \brief The same rotation and position with |pitch| <= pi/2 and angles in (-pi, pi].
- */
+/** \brief The pose with the same rotation and position, |pitch| <= pi/2 and angles in
+ * (-pi, pi]. */
 BAYESIAN_ICP_EXPORT Vector6d
 canonicalPose(const Vector6d& pose);
 
@@ -71,9 +72,11 @@ rotationDerivativesOf(const Vector6d& pose);
 BAYESIAN_ICP_EXPORT Eigen::Matrix4d
 matrixOf(const Vector6d& pose);
 
-/** \brief The canonical pose of a homogeneous matrix. Its rotation block is first
- * brought to the nearest rotation, so float round-off does no harm; at gimbal lock
- * (|pitch| = pi/2) roll is 0. Non-finite input gives a pose of NaN. */
+/** \brief The canonical pose of a homogeneous matrix.
+ *
+ * The rotation block is first replaced by the nearest rotation, so float round-off does
+ * no harm. At gimbal lock (|pitch| = pi/2) roll is 0. Non-finite input gives a pose of
+ * NaN. */
 BAYESIAN_ICP_EXPORT Vector6d
 poseOf(const Eigen::Matrix4d& T_target_source);
 
@@ -81,11 +84,11 @@ poseOf(const Eigen::Matrix4d& T_target_source);
 BAYESIAN_ICP_EXPORT Eigen::Matrix3d
 crossMatrix(const Eigen::Vector3d& v);
 
-/** \brief exp: R^3 -> SO(3), rotation vector [rad] to matrix. */
+/** \brief exp: R^3 -> SO(3). Converts a rotation vector [rad] to a matrix. */
 BAYESIAN_ICP_EXPORT Eigen::Matrix3d
 expSO3(const Eigen::Vector3d& rotation_vector);
 
-/** \brief log: SO(3) -> R^3, the rotation vector with norm in [0, pi]. */
+/** \brief log: SO(3) -> R^3. The rotation vector has a norm in [0, pi]. */
 BAYESIAN_ICP_EXPORT Eigen::Vector3d
 logSO3(const Eigen::Matrix3d& rotation);
 
@@ -97,9 +100,9 @@ expSE3(const Vector6d& twist);
 BAYESIAN_ICP_EXPORT Vector6d
 logSE3(const Eigen::Matrix4d& transform);
 
-/** \brief The error of \p pose relative to \p mean in the given convention: the vector
- * whose second moment over draws is the covariance of that convention. Angles are
- * wrapped about the mean. */
+/** \brief The error of \p pose relative to \p mean in the given convention. The second
+ * moment of this vector over the draws is the covariance of that convention. Angles
+ * are wrapped about the mean. */
 BAYESIAN_ICP_EXPORT Vector6d
 poseError(const Vector6d& pose, const Vector6d& mean, CovarianceConvention convention);
 

@@ -9,7 +9,7 @@
 
 namespace bayesian_icp {
 
-/** \brief Buffers of one thread, and the neighbours it has found so far. */
+/** \brief Buffers of one thread, with the neighbours found so far. */
 struct EnergyWorkspace {
   NeighborHints hints;
   Eigen::Matrix3Xf arms;
@@ -20,12 +20,12 @@ struct EnergyWorkspace {
 /** \brief Likelihood of a batch of source points: means over the batch, before the
  * weight. Derivatives are with respect to the centred pose of PoseEnergy. */
 struct BatchTerms {
-  /** What is computed on top of the gradient. */
+  /** \brief What is computed besides the gradient. */
   enum Extras { Nothing, SecondMoment, Curvature };
 
   /** Mean of rho(r_i) [m^2]. */
   double energy = 0.0;
-  /** Mean of squared match distances [m^2], unmatched points left out. */
+  /** Mean of squared match distances [m^2]; unmatched points are left out. */
   double squared_distance = 0.0;
   Vector6d gradient = Vector6d::Zero();
   /** Extras SecondMoment: mean outer product of the points' gradients. */
@@ -36,25 +36,24 @@ struct BatchTerms {
   Matrix6d plane_curvature = Matrix6d::Zero();
 };
 
-/** \brief U = weight * mean_i rho(r_i) - log prior, rho within the gate of
+/** \brief U = weight * mean_i rho(r_i) - log prior, with rho and gate of
  * ResidualOptions.
  *
  * Functions of the pose take theta = (x, y, z, roll, pitch, yaw) [m, rad]. The sampler
- * works in the centred pose phi = (t', roll, pitch, yaw) with p = R (s - c) + c + t', c
- * the centroid of the source: rotations and translations are then nearly independent.
- * The map between them has determinant 1, so both have the same energy.
+ * works in the centred pose phi = (t', roll, pitch, yaw) with p = R (s - c) + c + t',
+ * where c is the centroid of the source. Rotations and translations are then nearly
+ * independent. The map between theta and phi has determinant 1, so both have the same
+ * energy.
  *
- * All functions are const and may be called from several threads if
- * target().isThreadSafe().
- */
+ * All functions are const. Several threads may call them if target().isThreadSafe(). */
 class BAYESIAN_ICP_EXPORT PoseEnergy {
 public:
   /** \param[in] source_points 3 x n, finite, source frame [m]
-   * \param[in] target must outlive this object; with normals for
+   * \param[in] target must outlive this object; needs normals for
    *            Residual::PointToPlane
    * \param[in] prior of theta
    * \param[in] weight N / sigma^2 [1/m^2]
-   * \param[in] residual what a distance costs */
+   * \param[in] residual residual, kernel and gate */
   PoseEnergy(const Eigen::Matrix3Xd& source_points,
              const Target& target,
              const Prior& prior,
@@ -65,8 +64,8 @@ public:
   double
   energy(const Vector6d& theta) const;
 
-  /** \brief The same value, faster from the second call on with one workspace: the
-   * neighbours of the last call start the search. */
+  /** \brief The same value. From the second call with one workspace on it is faster,
+   * because the search starts at the neighbours of the last call. */
   double
   energy(const Vector6d& theta, EnergyWorkspace& workspace) const;
 
@@ -83,8 +82,8 @@ public:
   /** \brief Likelihood terms of a batch at the centred pose \p phi.
    * \param[in] phi centred pose [m, rad]
    * \param[in] indices source points of the batch, at least one
-   * \param[in] extras what is wanted beside the gradient
-   * \param[in] residual in place of residual(): burn-in starts without a kernel
+   * \param[in] extras what to compute besides the gradient
+   * \param[in] residual replaces residual(): burn-in starts without a kernel
    * \param[in,out] workspace of this thread */
   BatchTerms
   batchTerms(const Vector6d& phi,
@@ -97,15 +96,16 @@ public:
   double
   priorEnergy(const Vector6d& phi) const;
 
-  /** \brief Its gradient with respect to the centred pose. */
+  /** \brief Gradient of priorEnergy() with respect to the centred pose. */
   Vector6d
   priorGradient(const Vector6d& phi) const;
 
-  /** \brief Its Hessian at the prior's mean, with respect to the centred pose. */
+  /** \brief Hessian of priorEnergy() at the prior's mean, with respect to the centred
+   * pose. */
   Matrix6d
   priorPrecision() const;
 
-  /** \brief A workspace that knows no neighbours yet. */
+  /** \brief An empty workspace, without neighbours. */
   EnergyWorkspace
   makeWorkspace() const;
 

@@ -1,6 +1,6 @@
 /** \file
- * \brief The posterior density of the pose, as the sampler sees it: correspondence
- * search, likelihood gradient of a mini-batch, prior gradient.
+ * \brief The posterior density of the pose for the sampler of Algorithm 1:
+ * correspondence search, likelihood gradient of a mini-batch, prior gradient.
  */
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace bayesian_icp {
 
-/** \brief Stochastic energy gradients of one chain. Owns the chain's mini-batches and
- * buffers; the source, the search and the prior are shared and only read. */
+/** \brief Stochastic energy gradients for one chain. It owns the chain's mini-batches
+ * and buffers. It shares the source, the search and the prior, and only reads them. */
 class BAYESIAN_ICP_EXPORT PosteriorGradient {
 public:
   /** \param[in] source_points 3 x n, source frame [m]; must outlive this object, like
@@ -27,7 +27,8 @@ public:
                     const MiniBatches& mini_batches);
 
   /** \brief Gradient of -log posterior at \p pose, estimated from the next mini-batch:
-   * weight times the mean gradient (2, 3) plus the prior's (6, 7). */
+   * weight times the mean gradient, eqs. (2) and (3), plus the prior's, eqs. (6) and
+   * (7). */
   EnergyGradient
   operator()(const Vector6d& pose, Random& random);
 

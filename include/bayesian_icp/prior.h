@@ -10,12 +10,12 @@
 
 namespace bayesian_icp {
 
-/** \brief The point whose translation the prior speaks of. */
+/** \brief The point whose translation the prior describes. */
 enum class PriorFrame {
-  /** The origin of the source frame, the paper's. */
+  /** The origin of the source frame, as in the paper. */
   Origin,
-  /** The centroid of the source points: the natural one for objects away from the
-   * sensor, where a rotation about the origin would move the object far. */
+  /** The centroid of the source points. This suits objects away from the sensor,
+   * because a rotation about the origin would move such an object far. */
   SourceCentroid,
   /** Origin; for preset `calibrated` SourceCentroid if the cloud is far from the origin
    * for its size: see priorFrameOf(). */
@@ -26,15 +26,15 @@ enum class PriorFrame {
 BAYESIAN_ICP_EXPORT const char*
 toString(PriorFrame frame);
 
-/** \brief What is believed of the pose before the clouds are seen. */
+/** \brief What is known about the pose before the clouds are seen. */
 struct PriorOptions {
-  /** Mean pose (x, y, z, roll, pitch, yaw) [m, rad], as a source-to-target pose. Six
-   * NaN (the default) mean: the initial guess. */
+  /** Mean source-to-target pose (x, y, z, roll, pitch, yaw) [m, rad]. Six NaN (the
+   * default) mean the initial guess. */
   Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
-  /** Variance of x, y, z [m^2] and 1/kappa of roll, pitch, yaw [rad^2] (eqs. 6 and 7).
-   * Positive; infinity means no prior on that coordinate. */
+  /** Variance of x, y, z [m^2] and 1/kappa of roll, pitch, yaw [rad^2], eqs. (6) and
+   * (7). Positive; infinity means no prior on that coordinate. */
   Vector6d variance = Vector6d::Constant(0.125);
-  /** The point whose translation x, y, z of the prior describe. */
+  /** The point whose translation x, y, z describe. */
   PriorFrame frame = PriorFrame::Automatic;
 };
 
@@ -62,7 +62,8 @@ public:
   Vector6d
   energyGradient(const Vector6d& pose) const;
 
-  /** \brief d of the class description and theta_k - mean_k, not wrapped [m, rad]. */
+  /** \brief d of the class description, and theta_k - mean_k without wrapping [m, rad].
+   */
   Vector6d
   deviation(const Vector6d& pose) const;
 

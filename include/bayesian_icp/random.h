@@ -13,11 +13,10 @@
 
 namespace bayesian_icp {
 
-/** \brief Random numbers of one stream, determined by (seed, stream) alone.
+/** \brief Random numbers of one stream, which depend on (seed, stream) alone.
  *
- * std::mt19937_64 seeded through std::seed_seq: both are fixed by the C++ standard,
- * while std::normal_distribution and std::uniform_int_distribution are not.
- */
+ * It uses std::mt19937_64 seeded by std::seed_seq, because the C++ standard fixes both.
+ * It does not fix std::normal_distribution and std::uniform_int_distribution. */
 class BAYESIAN_ICP_EXPORT Random {
 public:
   Random(std::uint64_t seed, std::uint64_t stream);
@@ -45,9 +44,9 @@ private:
   bool has_spare_normal_ = false;
 };
 
-/** \brief \p size different numbers of 0 ... count - 1 in random order, so that any
- * part of them is a random choice as well; all of them in random order if there are
- * fewer. */
+/** \brief Choose \p size different numbers of 0 ... count - 1 in random order. Any part
+ * of them is a random choice again. If there are fewer numbers than \p size, all of
+ * them are returned in random order. */
 BAYESIAN_ICP_EXPORT std::vector<Eigen::Index>
 randomChoice(Eigen::Index count, Eigen::Index size, Random& random);
 

@@ -1,6 +1,6 @@
 /** \file
- * \brief What a matched source point contributes to the energy: the residual and its
- * robust kernel.
+ * \brief The contribution of a matched source point to the energy: residual and robust
+ * kernel.
  */
 #pragma once
 
@@ -10,12 +10,12 @@
 
 namespace bayesian_icp {
 
-/** \brief The length r whose energy is rho(r). */
+/** \brief Definition of the residual r, whose energy is rho(r). */
 enum class Residual {
   /** Distance of the moved source point to the nearest target point. */
   PointToPoint,
   /** Distance along the target's normal at the nearest target point. Its energy jumps
-   * where the nearest point changes; only metropolis steps are exact for it. */
+   * where the nearest point changes, so only Metropolis steps are exact for it. */
   PointToPlane
 };
 
@@ -23,10 +23,10 @@ enum class Residual {
 enum class RobustKernel {
   /** r^2 / 2. */
   None,
-  /** r^2 / 2 up to the width k, beyond it k (r - k/2). */
+  /** r^2 / 2 up to the width k, and k (r - k/2) beyond it. */
   Huber,
-  /** k^2/6 (1 - (1 - (r/k)^2)^3) up to the width k, beyond it k^2/6: Tukey's biweight.
-   */
+  /** Tukey's biweight: k^2/6 (1 - (1 - (r/k)^2)^3) up to the width k, and k^2/6 beyond
+   * it. */
   Tukey
 };
 
@@ -44,9 +44,10 @@ struct ResidualOptions {
   RobustKernel kernel = RobustKernel::None;
   /** Width k of the kernel [m], positive. Not used by RobustKernel::None. */
   double kernel_width = 0.01;
-  /** d_max, gate on the distance to the nearest target point [m], positive; infinity
-   * is none. A point without a target point within it contributes rho(d_max). A search
-   * of the user's own has its own gate: this should be the same. */
+  /** d_max, the gate on the distance to the nearest target point [m]. Positive;
+   * infinity means no gate. A point without a target point within the gate contributes
+   * rho(d_max). A search of the user's own has its own gate: set this value to the
+   * same one. */
   double max_distance = std::numeric_limits<double>::infinity();
 };
 
@@ -58,8 +59,8 @@ robustEnergy(const ResidualOptions& options, double squared_residual);
 BAYESIAN_ICP_EXPORT double
 robustWeight(const ResidualOptions& options, double squared_residual);
 
-/** \brief Energy of a point without a match [m^2]: rho(d_max), or 0 without a gate,
- * when only a user's rejectors leave points unmatched. */
+/** \brief Energy of a point without a match [m^2]: rho(d_max), or 0 without a gate. In
+ * the latter case only a user's rejectors leave points unmatched. */
 BAYESIAN_ICP_EXPORT double
 unmatchedEnergy(const ResidualOptions& options);
 

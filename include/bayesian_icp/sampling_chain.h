@@ -1,7 +1,7 @@
 /** \file
- * \brief A Markov chain in six dimensions, whatever its steps are: those of Algorithm 1
- * with the paper's RMSProp preconditioner (SgldChain), of a preconditioner that is
- * learned before and then frozen (LangevinChain), or of Metropolis (MetropolisChain).
+ * \brief Interface of a Markov chain in six dimensions. The implementations are
+ * Algorithm 1 with the paper's RMSProp preconditioner (SgldChain), Langevin steps with
+ * a frozen preconditioner (LangevinChain), and Metropolis steps (MetropolisChain).
  */
 #pragma once
 
@@ -10,16 +10,16 @@
 
 namespace bayesian_icp {
 
-/** \brief State of a chain that has a preconditioner and samples. */
+/** \brief State of a Markov chain. */
 class BAYESIAN_ICP_EXPORT SamplingChain {
 public:
   virtual ~SamplingChain();
 
-  /** \brief One step. */
+  /** \brief Do one step. */
   virtual void
   step() = 0;
 
-  /** \brief Where the chain is, in the sampler's space. */
+  /** \brief Position of the chain in the sampler's space. */
   virtual const Vector6d&
   position() const = 0;
 };

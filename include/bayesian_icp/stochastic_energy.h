@@ -1,6 +1,6 @@
 /** \file
- * \brief A density in six dimensions as the preconditioned sampler sees it. Knows
- * nothing of poses or point clouds.
+ * \brief Interface of a six-dimensional density for the preconditioned sampler. It
+ * knows nothing about poses or point clouds.
  */
 #pragma once
 
@@ -12,29 +12,30 @@
 
 namespace bayesian_icp {
 
-/** \brief Gradient of the energy -log density, in its two parts. */
+/** \brief Gradient of the energy -log density, in two parts. */
 struct SplitGradient {
-  /** Of the likelihood, estimated from a batch of its terms. */
+  /** Gradient of the likelihood, estimated from a batch of its terms. */
   Vector6d likelihood;
-  /** Of the prior, exact. */
+  /** Gradient of the prior, exact. */
   Vector6d prior;
 };
 
-/** \brief What Langevin steps need of a density: noisy gradients of -log density, the
- * likelihood's part from a batch of its terms. One object belongs to one chain. */
+/** \brief Interface of a density for Langevin steps: noisy gradients of -log density.
+ * The part of the likelihood comes from a batch of its terms. Each chain has its own
+ * object. */
 class BAYESIAN_ICP_EXPORT StochasticGradient {
 public:
   virtual ~StochasticGradient();
 
-  /** \brief Gradient from \p batch_size terms, at most all, drawn without replacement.
-   */
+  /** \brief Gradient from \p batch_size terms, drawn without replacement; at most all
+   * terms. */
   virtual SplitGradient
   gradient(const Vector6d& x, std::size_t batch_size, Random& random) = 0;
 };
 
-/** \brief Energy U(x) = likelihood + prior, the likelihood a mean of n terms of which a
- * batch may be looked at. One object belongs to one chain: it may keep buffers and
- * remember what speeds it up, but its answers must depend on the arguments alone. */
+/** \brief Energy U(x) = likelihood + prior. The likelihood is a mean of n terms, and a
+ * batch of them may be used. Each chain has its own object: it may keep buffers and
+ * remember what makes it faster, but its results must depend on the arguments alone. */
 class BAYESIAN_ICP_EXPORT StochasticEnergy : public StochasticGradient {
 public:
   ~StochasticEnergy() override;
@@ -43,13 +44,13 @@ public:
   virtual std::size_t
   numTerms() const = 0;
 
-  /** \brief Covariance C of the gradient of a single term, such that the likelihood
-   * gradient of m terms has the covariance C (1/m - 1/n). May be an estimate. */
+  /** \brief Covariance C of the gradient of a single term: the likelihood gradient of m
+   * terms has the covariance C (1/m - 1/n). May be an estimate. */
   virtual Matrix6d
   termCovariance(const Vector6d& x, Random& random) = 0;
 
-  /** \brief Rough Hessian of the likelihood, positive semidefinite: where the warm-up
-   * starts from. */
+  /** \brief Rough Hessian of the likelihood, positive semidefinite. The warm-up starts
+   * from it. */
   virtual Matrix6d
   roughCurvature(const Vector6d& x, Random& random) = 0;
 
@@ -57,13 +58,13 @@ public:
   virtual Matrix6d
   priorPrecision() const = 0;
 
-  /** \brief U(x) up to a constant, always from the same terms, so that values can be
+  /** \brief U(x) up to a constant. It always uses the same terms, so that values can be
    * compared. */
   virtual double
   energy(const Vector6d& x) = 0;
 
-  /** \brief U(x) up to a constant from all terms: what Metropolis steps sample. The
-   * default is energy(), for densities that have no fewer terms there. */
+  /** \brief U(x) up to a constant, from all terms. Metropolis steps sample it. The
+   * default is energy(), for densities whose energy() uses all terms. */
   virtual double
   fullEnergy(const Vector6d& x);
 
@@ -71,20 +72,20 @@ public:
   virtual Vector6d
   drawStart(Random& random) = 0;
 
-  /** \brief A point near a mode, reached from \p start. The default takes Newton steps
+  /** \brief Move from \p start to a point near a mode. The default takes Newton steps
    * with roughCurvature(). */
   virtual Vector6d
   burnIn(const Vector6d& start, Random& random);
 
-  /** \brief Temperature from which the warm-up cools down: one at which a Gaussian is
-   * wide enough to look over the roughness of the likelihood. The default is 1.
+  /** \brief Temperature at which the warm-up starts: a Gaussian at that temperature is
+   * wide enough to smooth the roughness of the likelihood. The default is 1.
    * \param[in] x near a mode
    * \param[in] covariance of the Gaussian at temperature 1
    * \param[in] random generator of the chain */
   virtual double
   initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random);
 
-  /** \brief Whether \p x is so far out that the chain has to be stopped. */
+  /** \brief Whether \p x is so far away that the chain has to stop. */
   virtual bool
   hasDiverged(const Vector6d& x) const;
 };

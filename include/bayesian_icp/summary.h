@@ -1,5 +1,5 @@
 /** \file
- * \brief What the draws say: mean pose, covariance, quantiles, diagnostics, status.
+ * \brief Summary of the draws: mean pose, covariance, quantiles, diagnostics, status.
  */
 #pragma once
 
@@ -19,30 +19,30 @@ enum class Status {
   NotRun,
   /** Every R-hat <= 1.01 and every bulk and tail ESS >= 400. */
   Ok,
-  /** As Ok, but something calls for caution: see Summary::data (preset `calibrated`),
-   * or the kernel leaves out nearly all points (`exact`). The draws are good ones of a
-   * posterior that may be wrong. */
+  /** As Ok, but with a warning: see Summary::data (preset `calibrated`), or the kernel
+   * leaves out nearly all points (`exact`). The draws are good draws from a posterior
+   * that may be wrong. */
   Doubtful,
-  /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them undefined: mean
-   * and covariance describe the draws, but not reliably the posterior. */
+  /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them is undefined.
+   * Mean and covariance describe the draws, but they may not describe the posterior. */
   NotMixed,
-  /** Chains are in modes between which they do not travel: see Summary::modes. Mean and
-   * covariance of all draws mix them in proportion to their draws: with preset `exact`
-   * to their chains, not their weight. */
+  /** The chains are in modes between which they do not travel: see Summary::modes. Mean
+   * and covariance of all draws mix the modes in proportion to their draws. With
+   * preset `exact` that is the proportion of their chains, not of their weights. */
   SeveralModes,
   /** At least one chain ran away, became non-finite, or jumped by more than half a turn
-   * in most of its steps (white noise on the circle). Its draws are left out of the
-   * samples, the mean and the covariance. */
+   * in most of its steps (white noise on the circle). Samples, mean and covariance
+   * leave out its draws. */
   Diverged,
-  /** The callback asked to stop; what was drawn until then is there. */
+  /** The callback stopped the run. The draws until then are available. */
   Cancelled,
-  /** Too few source points have a target point within the maximum correspondence
-   * distance at the initial guess, or (preset `calibrated`) lie on a usable surface of
-   * the target; nothing was drawn. */
+  /** At the initial guess, too few source points have a target point within the maximum
+   * correspondence distance or, with preset `calibrated`, lie on a usable surface of
+   * the target. Nothing was drawn. */
   TooFewCorrespondences,
-  /** An option is out of its range; nothing was drawn. */
+  /** An option is outside its range. Nothing was drawn. */
   InvalidOptions,
-  /** The clouds or the guess cannot be used; nothing was drawn. */
+  /** The clouds or the guess cannot be used. Nothing was drawn. */
   InvalidInput
 };
 
@@ -50,23 +50,24 @@ enum class Status {
 BAYESIAN_ICP_EXPORT const char*
 toString(Status status);
 
-/** \brief Whether mean and covariance describe one posterior, well or badly: Ok,
- * Doubtful or NotMixed. */
+/** \brief Whether mean and covariance describe a single posterior, well or badly: true
+ * for Ok, Doubtful and NotMixed. */
 BAYESIAN_ICP_EXPORT bool
 hasUsableMean(Status status);
 
-/** \brief Largest R-hat and smallest bulk and tail effective sample size that count as
- * mixed (Vehtari et al. 2021). */
+/** \brief Chains count as mixed up to this R-hat, and from this bulk and tail effective
+ * sample size on (Vehtari et al. 2021). */
 constexpr double max_rhat = 1.01;
 constexpr double min_ess = 400.0;
 
-/** \brief Marginal posterior of one pose coordinate, in metres or radians. NaN where
- * undefined. Quantiles of an angle are unwrapped about its mean, so that they are in
- * order even where the interval crosses +-pi. */
+/** \brief Marginal posterior of one pose coordinate, in metres or radians. Undefined
+ * numbers are NaN. Quantiles of an angle are unwrapped about its mean, so they are in
+ * order even if the interval crosses +-pi. */
 struct CoordinateSummary {
-  /** Mean of this coordinate alone: coordinateMeans(), not Summary::mean. */
+  /** Mean of this coordinate alone: an element of coordinateMeans(), not of
+   * Summary::mean. */
   double mean = std::numeric_limits<double>::quiet_NaN();
-  /** About that mean, of an angle wrapped about it. */
+  /** Standard deviation about that mean; an angle is wrapped about it. */
   double standard_deviation = std::numeric_limits<double>::quiet_NaN();
   double quantile_2_5 = std::numeric_limits<double>::quiet_NaN();
   double median = std::numeric_limits<double>::quiet_NaN();
@@ -80,7 +81,7 @@ struct CoordinateSummary {
 
 /** \brief One mode of the posterior. */
 struct Mode {
-  /** Share of the posterior among the modes found, in [0, 1]: an estimate from a
+  /** Share of the posterior among the modes found, in [0, 1]. It is an estimate from a
    * Gaussian at each mode, good to a factor of a few. */
   double weight = 1.0;
   /** Mean pose of its draws [m, rad]. */
@@ -103,17 +104,18 @@ struct BAYESIAN_ICP_EXPORT Summary {
   std::array<CoordinateSummary, 6> coordinates;
   int num_chains = 0;
   int num_diverged_chains = 0;
-  /** Draws behind mean and covariance: those of the chains that did not diverge. */
+  /** Number of draws behind mean and covariance: those of the chains that did not
+   * diverge. */
   long num_draws = 0;
-  /** Modes in which the chains are, heaviest first; empty if nobody looked for them
-   * (preset `paper`) or, with preset `calibrated`, if there is one. */
+  /** The modes of the chains, heaviest first. Empty for preset `paper`, which does not
+   * look for modes, and for preset `calibrated` if there is only one. */
   std::vector<Mode> modes;
   /** What the clouds say about the pose (preset `calibrated`). */
   DataReport data;
 
-  /** 6x6 covariances [m, rad], one a CovarianceConvention in its order: second moment
-   * of the draws' poseError about the mean, over num_draws - 1. NaN with fewer than two
-   * draws. */
+  /** 6x6 covariances [m, rad], one for each CovarianceConvention in its order: the
+   * second moment of the draws' poseError about the mean, with num_draws - 1 in the
+   * denominator. NaN with fewer than two draws. */
   std::array<Matrix6d, 4> covariances;
 
   Summary();
@@ -127,33 +129,35 @@ struct BAYESIAN_ICP_EXPORT Summary {
 BAYESIAN_ICP_EXPORT PoseMatrix
 pooledDraws(const std::vector<Chain>& chains);
 
-/** \brief Mean of each of x, y, z, roll, pitch, yaw of \p draws on its own [m, rad];
- * that of an angle is circular, atan2(mean sin, mean cos). NaN without draws. As a pose
- * it depends on both frames: c metres away from their origins, and with angles of
- * variance s^2, it lies some c s^2 off the draws. */
+/** \brief Mean of each coordinate x, y, z, roll, pitch, yaw of \p draws on its own [m,
+ * rad]. The mean of an angle is circular: atan2(mean sin, mean cos). NaN without
+ * draws.
+ *
+ * As a pose it depends on both frames: c metres away from their origins, and with
+ * angles of variance s^2, it lies about c s^2 away from the draws. */
 BAYESIAN_ICP_EXPORT Vector6d
 coordinateMeans(const PoseMatrix& draws);
 
 /** \brief Mean pose of \p draws (rows are canonical poses) [m, rad]; NaN without draws.
  *
- * The pose M for which the sum of log(M^-1 X) over the draws X is zero: the
+ * It is the pose M for which the sum of log(M^-1 X) over the draws X is zero: the
  * bi-invariant mean on SE(3) (Pennec and Arsigny 2012). It is the same motion of the
- * points whatever the frames: draws A X B have the mean A M B. Draws that spread too
- * far to have one (turned from it by 1 rad in root mean square, or one of them by 3
- * rad) have their coordinateMeans() instead. */
+ * points in all frames: draws A X B have the mean A M B. If the draws spread too far,
+ * there is no such mean, and coordinateMeans() is returned. This is so if they turn
+ * from it by 1 rad in root mean square, or one of them by 3 rad. */
 BAYESIAN_ICP_EXPORT Vector6d
 meanPose(const PoseMatrix& draws);
 
-/** \brief Second moment of the draws' poseError about \p mean, over (number of draws -
- * 1); NaN with fewer than two draws. */
+/** \brief Second moment of the draws' poseError about \p mean, divided by (number of
+ * draws - 1). NaN with fewer than two draws. */
 BAYESIAN_ICP_EXPORT Matrix6d
 covarianceAbout(const Vector6d& mean,
                 const PoseMatrix& draws,
                 CovarianceConvention convention);
 
-/** \brief Summarise a run. Chains that diverged are reported and left out. Diagnostics
- * are taken of the draws' errors about the coordinateMeans(), over the first draws that
- * all chains have. */
+/** \brief Summarise a run. Diverged chains are reported and left out. Diagnostics use
+ * the draws' errors about the coordinateMeans(), over the first draws that all chains
+ * have. */
 BAYESIAN_ICP_EXPORT Summary
 summarize(const ChainSet& chain_set);
 

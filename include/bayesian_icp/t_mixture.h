@@ -1,6 +1,6 @@
 /** \file
- * \brief A mixture of multivariate t distributions: the proposal with which Metropolis
- * steps cross a bent or many-moded density.
+ * \brief A mixture of multivariate t distributions. Metropolis steps use it as the
+ * proposal that crosses a bent or multi-modal density.
  */
 #pragma once
 
@@ -14,37 +14,38 @@
 
 namespace bayesian_icp {
 
-/** \brief Components from expectation maximisation of Gaussians, sampled with heavier
- * (multivariate t) tails, so that the mixture covers the tails of what it was fitted
- * to. */
+/** \brief Components are fitted as Gaussians by expectation maximisation, and sampled
+ * as multivariate t distributions. These have heavier tails, so the mixture covers the
+ * tails of the fitted draws. */
 class BAYESIAN_ICP_EXPORT TMixture {
 public:
-  /** \brief No component yet: add() one before use. */
+  /** \brief An empty mixture: call add() before use. */
   TMixture() = default;
 
-  /** \param[in] draws many rows, finite and not in a plane; components get at least 60
-   *            of them, so that there may be fewer
-   * \param[in] num_components wanted
+  /** \param[in] draws many rows, finite and not in a plane
+   * \param[in] num_components largest number of components; each needs at least 60
+   *            draws, so there may be fewer
    * \param[in] random chooses the first centres */
   TMixture(const PoseMatrix& draws, int num_components, Random& random);
 
-  /** \brief One more component.
+  /** \brief Add a component.
    * \param[in] mean of the component
-   * \param[in] covariance positive definite; of the t's Gaussian, not of the t
-   * \param[in] weight in (0, 1], what it weighs in the mixture thereafter; not used for
-   *            the first component */
+   * \param[in] covariance positive definite; that of the Gaussian of the t
+   *            distribution, not of the t distribution itself
+   * \param[in] weight in (0, 1], weight of this component in the new mixture; not used
+   *            for the first component */
   void
   add(const Vector6d& mean, const Matrix6d& covariance, double weight);
 
   Vector6d
   draw(Random& random) const;
 
-  /** \brief Normalised. */
+  /** \brief Normalised log density. */
   double
   logDensity(const Vector6d& x) const;
 
-  /** \brief Mean of the components' covariances, by weight: how far the density reaches
-   * where it is nearly Gaussian. */
+  /** \brief Weighted mean of the components' covariances. It says how far the density
+   * reaches where it is nearly Gaussian. */
   Matrix6d
   covarianceWithin() const;
 
@@ -63,7 +64,7 @@ private:
   static double
   squaredDistance(const Component& component, const Vector6d& x);
 
-  /** Rows: share of each component in each draw. */
+  /** Share of each component in each draw; each row is one draw. */
   Eigen::MatrixXd
   responsibilities(const PoseMatrix& draws) const;
 

@@ -1,5 +1,5 @@
 /** \file
- * \brief The target as the energy of preset `exact` sees it: matches of moved points.
+ * \brief The target of preset `exact`: it finds the matches of moved points.
  */
 #pragma once
 
@@ -11,31 +11,31 @@
 
 namespace bayesian_icp {
 
-/** \brief The target point that a moved source point is compared with. */
+/** \brief The target point with which a moved source point is compared. */
 struct TargetMatch {
   /** Column of the moved points. */
   std::size_t column;
   /** Target frame [m]. */
   Eigen::Vector3f point;
-  /** Unit normal there; zero if the target has none. */
+  /** Unit normal at that point; zero if the target has none. */
   Eigen::Vector3f normal;
 };
 
-/** \brief Last neighbour of each source point, KdTree::none if unknown. The matches do
- * not depend on them, only the time they take. One vector a thread. */
+/** \brief Last neighbour of each source point; KdTree::none if unknown. Hints change
+ * the speed of the search, but not its matches. Each thread has its own vector. */
 using NeighborHints = std::vector<std::uint32_t>;
 
-/** \brief Finds matches within the gate. */
+/** \brief Interface: finds matches within the gate. */
 class BAYESIAN_ICP_EXPORT Target {
 public:
   virtual ~Target();
 
   /** \brief Match moved source points.
-   * \param[in] pose the source-to-target pose that moved them [m, rad]
-   * \param[in] indices the points' indices in the source, one a column of \p moved
+   * \param[in] pose source-to-target pose that moved the points [m, rad]
+   * \param[in] indices index in the source of each column of \p moved
    * \param[in] moved 3 x m, target frame [m]
-   * \param[in,out] hints one for every source point
-   * \param[out] matches at most one a column, in the order of the columns */
+   * \param[in,out] hints one for each source point
+   * \param[out] matches at most one for each column, in the order of the columns */
   virtual void
   match(const Vector6d& pose,
         const std::vector<std::size_t>& indices,
@@ -43,11 +43,11 @@ public:
         NeighborHints& hints,
         std::vector<TargetMatch>& matches) const = 0;
 
-  /** \brief Whether match() gives normals. */
+  /** \brief Whether match() returns normals. */
   virtual bool
   hasNormals() const = 0;
 
-  /** \brief Whether several threads may call match() at once. */
+  /** \brief Whether several threads may call match() at the same time. */
   virtual bool
   isThreadSafe() const = 0;
 };
@@ -56,9 +56,8 @@ public:
 class BAYESIAN_ICP_EXPORT TreeTarget : public Target {
 public:
   /** \param[in] tree must outlive this object
-   * \param[in] max_distance gate [m], infinity is none
-   * \param[in] normals 3 x (columns of the tree's points), unit or zero; may be empty
-   */
+   * \param[in] max_distance gate [m]; infinity means no gate
+   * \param[in] normals 3 x (number of the tree's points), unit or zero; may be empty */
   TreeTarget(const KdTree& tree,
              double max_distance,
              Eigen::Matrix3Xf normals = Eigen::Matrix3Xf());
@@ -82,7 +81,7 @@ private:
   Eigen::Matrix3Xf normals_;
 };
 
-/** \brief What a user's CorrespondenceSearch finds; without hints and normals. */
+/** \brief Matches of a user's CorrespondenceSearch, without hints and normals. */
 class BAYESIAN_ICP_EXPORT SearchTarget : public Target {
 public:
   /** \param[in] search must outlive this object */
@@ -105,10 +104,11 @@ private:
   const CorrespondenceSearch& search_;
 };
 
-/** \brief Unit normals of patches of about 16 neighbouring points (leaves of a balanced
- * kd-split; the direction of least variance, its sign arbitrary).
- * \param[in] points 3 x n; zero normals where not finite or fewer than 3 points in all
- */
+/** \brief Unit normals of patches of about 16 neighbouring points. Patches are leaves
+ * of a balanced kd-split; the normal is the direction of least variance with an
+ * arbitrary sign.
+ * \param[in] points 3 x n. The normal of a non-finite point is zero, and so are all
+ *            normals if there are fewer than 3 points. */
 BAYESIAN_ICP_EXPORT Eigen::Matrix3Xf
 patchNormals(const Eigen::Matrix3Xf& points);
 

@@ -11,11 +11,12 @@
 
 namespace bayesian_icp {
 
-/** \brief The nearest target point within the gate, in single precision as the tree. */
+/** \brief Finds the nearest target point within the gate, in single precision like the
+ * tree. */
 class BAYESIAN_ICP_EXPORT TreeSearch : public CorrespondenceSearch {
 public:
   /** \param[in] target must outlive this object
-   * \param[in] max_distance gate [m], infinity is none */
+   * \param[in] max_distance gate [m]; infinity means no gate */
   explicit TreeSearch(const KdTree& target,
                       double max_distance = std::numeric_limits<double>::infinity());
 

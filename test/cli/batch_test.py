@@ -202,7 +202,7 @@ class BatchRefused(BatchTest):
     def test_usage(self):
         manifest = self.seeds(1)
         for words, *parts in (
-            ([], "manifest is needed"),
+            ([], "expected a manifest"),
             ([manifest, "more"], "'more'"),
             ([manifest, "--sigma", "x"], "--sigma"),
             ([manifest, "--suggested-prior", "--prior-variance", "1"], "exclude"),

@@ -120,7 +120,7 @@ class Options(ExactTest):
 
     def test_help_tells_what_exact_finds_itself(self):
         text = " ".join(run("--help").stdout.split())
-        self.assertIn("It finds --batch-size, --thinning, --burn-in and --step-size itself", text)
+        self.assertIn("It chooses --batch-size, --thinning, --burn-in and --step-size itself", text)
         for name, default in (("kernel-width", "0.01"), ("max-source-points", "4000")):
             self.assertRegex(text, rf"--{name} \w [^-]*\(default {default}\)")
 

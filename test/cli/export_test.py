@@ -196,7 +196,7 @@ class ExportRefusals(ExportTest):
             (["--export=g2"], "--export: 'g2' is not ros, g2o, gtsam, tum or csv"),
             (["--export=g2o,"], "--export: ''"),
             (["--export="], "--export"),
-            (["--export=g2o,tum"], "need a folder"),
+            (["--export=g2o,tum"], "several formats need --output"),
             (["--export=g2o", "--json"], "excludes --json"),
             (["--export=g2o", "--quiet"], "excludes --json and --quiet"),
             (["--timestamp=5"], "--timestamp: has no effect without --export"),

@@ -200,7 +200,7 @@ class SgdIcpRefusals(ToolTest):
                 self.refuse([*SGD, f"--{name}={value}"], f"--{name}")
 
     def test_clouds_and_outputs(self):
-        self.assert_refused(2, run("a.pcd", *SGD), "two clouds are needed")
+        self.assert_refused(2, run("a.pcd", *SGD), "expected a source and a target cloud")
         self.assert_refused(2, run("a.pcd", "b.pcd", "c.pcd", *SGD), "'c.pcd'")
         self.refuse([*SGD, "--json", "--quiet"], "--json", "--quiet")
         self.refuse([*SGD, "-o", ""], "output")

@@ -178,7 +178,7 @@ class TransformRefusals(TransformTest):
 
     def test_usage(self):
         source, output = self.cloud(), self.folder / "out.pcd"
-        self.assert_refused(2, transform(source, "--pose", WORDS), "two files are needed")
+        self.assert_refused(2, transform(source, "--pose", WORDS), "expected two files")
         self.assert_refused(2, transform(source, output), "--pose is missing")
         self.assert_refused(2, transform(source, output, "--pose", "1,2,3"), "--pose: '1,2,3'")
         self.assert_refused(2, transform(source, output, "--pose", WORDS, "--use=x"), "--use: 'x'")

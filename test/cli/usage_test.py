@@ -56,8 +56,8 @@ class Usage(ToolTest):
 
     def test_two_clouds_are_needed(self):
         for clouds in ([], ["a.pcd"]):
-            self.assert_refused(2, run(*clouds), "two clouds are needed")
-        self.assert_refused(2, run("a.pcd", "b.pcd", "c.pcd"), "'c.pcd'")
+            self.assert_refused(2, run(*clouds), "expected a source and a target cloud")
+        self.assert_refused(2, run("a.pcd", "b.pcd", "c.pcd"), "third file: 'c.pcd'")
 
     def test_unknown_and_incomplete_options(self):
         self.assert_refused(2, run("a.pcd", "b.pcd", "--sample", "9"), "'--sample'")

@@ -283,7 +283,7 @@ class ViewerUsage(ViewerTest):
 
     def test_files_are_counted(self):
         for files in ([], ["a.pcd"], ["a.pcd", "b.pcd", "c.pcd"], ["p.json", "a.pcd"]):
-            self.refuse(2, *files, parts=["two clouds"])
+            self.refuse(2, *files, parts=["a source and a target cloud"])
         self.refuse(2, "p.json", "q.json", parts=["q.json"])
 
     def test_a_saved_posterior_is_not_registered_again(self):

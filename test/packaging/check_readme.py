@@ -1,5 +1,5 @@
 """Fails unless the README's first C++ block is the quick start program's marked part, and
-the README is at most 120 lines long."""
+the README is at most 60 lines long."""
 
 import difflib
 import pathlib
@@ -7,7 +7,7 @@ import re
 import sys
 import textwrap
 
-MAX_LINES = 120
+MAX_LINES = 60
 
 
 def between(text, start, end, file):

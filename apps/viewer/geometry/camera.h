@@ -24,7 +24,7 @@ struct ViewDirection {
 /** \brief From the sensor if it stands outside the box of \p points, as pcl_viewer
  * does, with y downwards where it looks along z (a camera's optical frame); otherwise
  * from obliquely above, z upwards.
- * \param[in] points finite ones, one a column [m]
+ * \param[in] points finite points, one in each column [m]
  * \param[in] sensor_origin [m] */
 ViewDirection
 defaultView(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& sensor_origin);

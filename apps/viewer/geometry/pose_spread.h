@@ -21,7 +21,7 @@ Eigen::Vector3d
 centroidOf(const Eigen::Matrix3Xf& points);
 
 /** \brief Draws whose position is that of \p reference (source frame) in the target
- * frame [m, rad], one a row. */
+ * frame [m, rad], one in each row. */
 PoseMatrix
 posesAt(const Eigen::Vector3d& reference, const PoseMatrix& draws);
 
@@ -55,8 +55,8 @@ struct PoseSpread {
   meanMatrix() const;
 };
 
-/** \brief The spread of at least two \p draws (source frame's origin, one a row) at
- * \p reference. */
+/** \brief The spread of at least two \p draws (source frame's origin, one in each row)
+ * at \p reference. */
 PoseSpread
 spreadAt(const Eigen::Vector3d& reference, const PoseMatrix& draws);
 
@@ -67,7 +67,7 @@ magnified(const Vector6d& draw, const PoseSpread& spread, double factor);
 
 /** \brief Standard deviation of each point under the draws: root of the summed
  * variances of its three coordinates [m], exact for all draws; NaN where the point is.
- * \param[in] points source frame [m], one a column
+ * \param[in] points source frame [m], one in each column
  * \param[in] draws at least two */
 Eigen::VectorXd
 pointDeviations(const Eigen::Matrix3Xf& points, const PoseMatrix& draws);

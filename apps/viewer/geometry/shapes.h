@@ -9,7 +9,7 @@ namespace bayesian_icp::viewer {
 
 /** \brief A surface of triangles. */
 struct Mesh {
-  /** [m], one a column. */
+  /** [m], one in each column. */
   Eigen::Matrix3Xd vertices;
   /** Indices of vertices, one triangle a column. */
   Eigen::Matrix3Xi triangles;
