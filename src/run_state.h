@@ -57,7 +57,8 @@ public:
     first_exception_.rethrow();
   }
 
-  /** \brief Counts a step of \p chain and tells the callback.
+  /** \brief Counts a step of \p chain and tells the callback. As long as the run has
+   * no length the chain warms up, which counts as no step.
    * \param[in] poseNow returns the pose at which the chain is; asked only if there is a
    *            callback */
   template <typename PoseFunction>
@@ -66,6 +67,8 @@ public:
   {
     if (!progress_)
       return;
+    if (total_steps_ == 0)
+      return reportWarmUp(chain);
     const Vector6d pose = canonicalPose(poseNow());
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_, pose}))

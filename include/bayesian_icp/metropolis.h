@@ -46,6 +46,9 @@ public:
   const Vector6d&
   position() const override;
 
+  bool
+  hasDiverged() const override;
+
   /** \brief Share of the walks in step() that were accepted since setProposal(), in
    * [0, 1]. */
   double

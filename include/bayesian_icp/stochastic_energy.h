@@ -1,6 +1,6 @@
 /** \file
  * \brief A density in six dimensions as the preconditioned sampler sees it. Knows
- * nothing of poses or point clouds.
+ * nothing of point clouds.
  */
 #pragma once
 
@@ -24,12 +24,20 @@ struct SplitGradient {
  * likelihood's part from a batch of its terms. One object belongs to one chain. */
 class BAYESIAN_ICP_EXPORT StochasticGradient {
 public:
-  virtual ~StochasticGradient();
+  virtual ~StochasticGradient() = default;
 
   /** \brief Gradient from \p batch_size terms, at most all, drawn without replacement.
    */
   virtual SplitGradient
   gradient(const Vector6d& x, std::size_t batch_size, Random& random) = 0;
+
+  /** \brief Whether \p x is so far out that the chain has to be stopped; by default, if
+   * it is not finite. */
+  virtual bool
+  hasDiverged(const Vector6d& x) const
+  {
+    return !x.allFinite();
+  }
 };
 
 /** \brief Energy U(x) = likelihood + prior, the likelihood a mean of n terms of which a
@@ -37,8 +45,6 @@ public:
  * remember what speeds it up, but its answers must depend on the arguments alone. */
 class BAYESIAN_ICP_EXPORT StochasticEnergy : public StochasticGradient {
 public:
-  ~StochasticEnergy() override;
-
   /** \brief n, at least 1. A batch of n terms has no noise. */
   virtual std::size_t
   numTerms() const = 0;
@@ -62,31 +68,29 @@ public:
   virtual double
   energy(const Vector6d& x) = 0;
 
-  /** \brief U(x) up to a constant from all terms: what Metropolis steps sample. The
-   * default is energy(), for densities that have no fewer terms there. */
+  /** \brief U(x) up to a constant from all terms: what Metropolis steps sample. */
   virtual double
-  fullEnergy(const Vector6d& x);
+  fullEnergy(const Vector6d& x) = 0;
+
+  /** \brief The pose that \p x stands for [m, rad]. */
+  virtual Vector6d
+  toPose(const Vector6d& x) const = 0;
 
   /** \brief A starting point, over-dispersed with respect to the density. */
   virtual Vector6d
   drawStart(Random& random) = 0;
 
-  /** \brief A point near a mode, reached from \p start. The default takes Newton steps
-   * with roughCurvature(). */
+  /** \brief A point near a mode, reached from \p start. */
   virtual Vector6d
-  burnIn(const Vector6d& start, Random& random);
+  burnIn(const Vector6d& start, Random& random) = 0;
 
   /** \brief Temperature from which the warm-up cools down: one at which a Gaussian is
-   * wide enough to look over the roughness of the likelihood. The default is 1.
+   * wide enough to look over the roughness of the likelihood.
    * \param[in] x near a mode
    * \param[in] covariance of the Gaussian at temperature 1
    * \param[in] random generator of the chain */
   virtual double
-  initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random);
-
-  /** \brief Whether \p x is so far out that the chain has to be stopped. */
-  virtual bool
-  hasDiverged(const Vector6d& x) const;
+  initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random) = 0;
 };
 
 } // namespace bayesian_icp
