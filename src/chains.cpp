@@ -46,7 +46,7 @@ runChains(const Vector6d& start,
   result.chains.resize(static_cast<std::size_t>(options.num_chains));
   RunState run(progress, numStepsOf(options));
   forEachChain(options.num_chains,
-               numThreadsFor(options, target.is_thread_safe),
+               target.is_thread_safe ? options.num_threads : 1,
                run,
                [&](int i) {
                  result.chains[static_cast<std::size_t>(i)] =

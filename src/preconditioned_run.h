@@ -18,19 +18,13 @@ namespace bayesian_icp {
 
 /** \brief One chain, from its warm-up to its draws. */
 struct PreconditionedChain {
-  PreconditionedChain(std::unique_ptr<StochasticEnergy> its_energy,
-                      const Random& its_random)
-  : energy(std::move(its_energy))
-  , random(its_random)
-  {}
-
   std::unique_ptr<StochasticEnergy> energy;
   Random random;
   /** Of the chain's own warm-up, or of the best mode if the chain was moved there:
    * Metropolis chains start apart, so that R-hat sees where they disagree. */
-  Gaussian start;
-  std::unique_ptr<SamplingChain> sampler;
-  Path path;
+  Gaussian start = Gaussian();
+  std::unique_ptr<SamplingChain> sampler = nullptr;
+  Path path = Path();
 };
 
 /** \brief One run. */
@@ -44,7 +38,7 @@ struct PreconditionedRun {
   , state(progress)
   {
     for (std::size_t i = 0; i < energies.size(); ++i)
-      chains.emplace_back(std::move(energies[i]), Random(options.seed, i));
+      chains.push_back({std::move(energies[i]), Random(options.seed, i)});
     result.chains.resize(chains.size());
   }
 
@@ -54,7 +48,7 @@ struct PreconditionedRun {
   forEachChain(const Work& work)
   {
     bayesian_icp::forEachChain(options.num_chains,
-                               numThreadsFor(options.num_threads, options.num_chains),
+                               options.num_threads,
                                state,
                                [&](int i) { work(static_cast<std::size_t>(i)); });
   }

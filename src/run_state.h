@@ -97,20 +97,15 @@ private:
   std::mutex mutex_;
 };
 
-/** \brief Threads for the chains of a run. */
-inline int
-numThreadsFor(const ChainOptions& options, bool is_thread_safe)
-{
-  return is_thread_safe ? numThreadsFor(options.num_threads, options.num_chains) : 1;
-}
-
 /** \brief work(chain) for every chain; a thread owns whole chains. Rethrows the first
- * exception. */
+ * exception.
+ * \param[in] num_threads as asked for, 0: as OpenMP would */
 template <typename Work>
 void
 forEachChain(int num_chains, int num_threads, RunState& run, const Work& work)
 {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(num_threads)
+#pragma omp parallel for schedule(dynamic, 1)                                          \
+    num_threads(numThreadsFor(num_threads, num_chains))
   for (int i = 0; i < num_chains; ++i)
     run.guard([&] { work(i); });
   run.rethrow();

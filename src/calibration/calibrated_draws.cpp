@@ -86,13 +86,12 @@ sample(std::vector<ModeRun>& modes,
   for (std::size_t m = 0; m < modes.size(); ++m)
     plan(plan_stream - m, modes[m], run);
   const int num_chains = options.num_chains * static_cast<int>(modes.size());
-  forEachChain(
-      num_chains, numThreadsFor(options.num_threads, num_chains), run, [&](int i) {
-        sampleChain(i,
-                    i % options.num_chains,
-                    modes[static_cast<std::size_t>(i / options.num_chains)],
-                    run);
-      });
+  forEachChain(num_chains, options.num_threads, run, [&](int i) {
+    sampleChain(i,
+                i % options.num_chains,
+                modes[static_cast<std::size_t>(i / options.num_chains)],
+                run);
+  });
   ChainSet result;
   Random random(options.seed, scale_stream);
   for (ModeRun& mode : modes) {
