@@ -137,9 +137,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
     return failure(Status::Cancelled, "interrupted before the first draw");
 
   PosteriorEstimate result = estimateOf(
-      modes.size() > 1
-          ? sampleCalibrated(scorer, prior, modes, options.chains, progress)
-          : sampleCalibrated(scorer, prior, heaviest, options.chains, progress));
+      sampleCalibrated(scoresOf(scorer), prior, modes, options.chains, progress));
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data =

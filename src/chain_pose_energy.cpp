@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 namespace bayesian_icp {
 
@@ -26,6 +25,14 @@ constexpr double max_step_length = 0.5, max_step_angle = 0.3; // [m], [rad]
 /** The tempered Gaussian spans so many root mean square match distances. */
 constexpr double tempered_span = 3.0;
 constexpr double max_temperature = 4096.0;
+
+std::vector<std::size_t>
+upTo(std::size_t num_points)
+{
+  std::vector<std::size_t> points(num_points);
+  std::iota(points.begin(), points.end(), std::size_t(0));
+  return points;
+}
 
 double
 gainOf(int step)
@@ -48,32 +55,15 @@ ChainPoseEnergy::ChainPoseEnergy(const PoseEnergy& pose_energy,
 : pose_energy_(pose_energy)
 , settings_(settings)
 , prior_precision_(pose_energy.priorPrecision())
-, all_points_(pose_energy.numPoints())
+, all_points_(upTo(pose_energy.numPoints()))
 , workspace_(pose_energy.makeWorkspace())
-{
-  std::iota(all_points_.begin(), all_points_.end(), std::size_t(0));
-  shuffled_ = all_points_;
-}
+, batches_(all_points_)
+{}
 
 std::size_t
 ChainPoseEnergy::numTerms() const
 {
   return pose_energy_.numPoints();
-}
-
-const std::vector<std::size_t>&
-ChainPoseEnergy::drawBatch(std::size_t size, Random& random)
-{
-  if (size >= shuffled_.size())
-    return shuffled_;
-  // The first steps of a Fisher-Yates shuffle: a uniform subset whatever the order
-  // left by the last batch.
-  batch_.resize(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    std::swap(shuffled_[i], shuffled_[i + random.index(shuffled_.size() - i)]);
-    batch_[i] = shuffled_[i];
-  }
-  return batch_;
 }
 
 BatchTerms
@@ -88,14 +78,15 @@ ChainPoseEnergy::terms(const Vector6d& phi,
 SplitGradient
 ChainPoseEnergy::gradient(const Vector6d& phi, std::size_t batch_size, Random& random)
 {
-  const auto batch = terms(phi, drawBatch(batch_size, random), BatchTerms::Nothing);
+  const auto batch =
+      terms(phi, batches_.subset(batch_size, random), BatchTerms::Nothing);
   return {pose_energy_.weight() * batch.gradient, pose_energy_.priorGradient(phi)};
 }
 
 Matrix6d
 ChainPoseEnergy::termCovariance(const Vector6d& phi, Random& random)
 {
-  const auto& indices = drawBatch(probe_size, random);
+  const auto& indices = batches_.subset(probe_size, random);
   const auto batch = terms(phi, indices, BatchTerms::SecondMoment);
   const double m = static_cast<double>(indices.size());
   const double unbiased = m > 1.0 ? m / (m - 1.0) : 0.0;
@@ -137,6 +128,12 @@ ChainPoseEnergy::fullEnergy(const Vector6d& phi)
 }
 
 Vector6d
+ChainPoseEnergy::toPose(const Vector6d& phi) const
+{
+  return pose_energy_.toTheta(phi);
+}
+
+Vector6d
 ChainPoseEnergy::drawStart(Random& random)
 {
   return settings_.start_centre + settings_.start_spread.cwiseProduct(random.normal6());
@@ -156,7 +153,7 @@ ChainPoseEnergy::burnIn(const Vector6d& start, Random& random)
       residual.residual = Residual::PointToPoint;
     }
     const auto batch = pose_energy_.batchTerms(phi,
-                                               drawBatch(probe_size, random),
+                                               batches_.subset(probe_size, random),
                                                BatchTerms::Curvature,
                                                residual,
                                                workspace_);
@@ -193,7 +190,7 @@ ChainPoseEnergy::initialTemperature(const Vector6d& phi,
 bool
 ChainPoseEnergy::hasDiverged(const Vector6d& phi) const
 {
-  return !phi.allFinite() || settings_.has_diverged(pose_energy_.toTheta(phi));
+  return !phi.allFinite() || settings_.has_diverged(toPose(phi));
 }
 
 } // namespace bayesian_icp

@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include <bayesian_icp/mini_batch.h>
 #include <bayesian_icp/pose_energy.h>
 #include <bayesian_icp/stochastic_energy.h>
 
@@ -49,6 +50,9 @@ public:
   fullEnergy(const Vector6d& phi) override;
 
   Vector6d
+  toPose(const Vector6d& phi) const override;
+
+  Vector6d
   drawStart(Random& random) override;
 
   Vector6d
@@ -66,9 +70,6 @@ private:
   double
   energyOf(const std::vector<std::size_t>& batch, const Vector6d& phi);
 
-  const std::vector<std::size_t>&
-  drawBatch(std::size_t size, Random& random);
-
   BatchTerms
   terms(const Vector6d& phi,
         const std::vector<std::size_t>& batch,
@@ -79,8 +80,7 @@ private:
   Matrix6d prior_precision_;
   std::vector<std::size_t> all_points_;
   EnergyWorkspace workspace_;
-  std::vector<std::size_t> shuffled_;
-  std::vector<std::size_t> batch_;
+  MiniBatches batches_;
 };
 
 } // namespace bayesian_icp

@@ -115,14 +115,14 @@ sampleExact(const PoseEnergy& energy,
   settings.fixed_batch = evenlySpread(energy.numPoints(), fixed_batch_size);
   settings.has_diverged = has_diverged;
 
-  PreconditionedTarget target;
-  target.make_energy = [&](int) {
-    return std::make_unique<ChainPoseEnergy>(energy, settings);
-  };
-  target.to_pose = [&](const Vector6d& phi) { return energy.toTheta(phi); };
-  target.is_thread_safe = energy.target().isThreadSafe();
+  ChainOptions chains = options.chains;
+  if (!energy.target().isThreadSafe())
+    chains.num_threads = 1;
+  std::vector<std::unique_ptr<StochasticEnergy>> energies;
+  for (int i = 0; i < chains.num_chains; ++i)
+    energies.push_back(std::make_unique<ChainPoseEnergy>(energy, settings));
   return runPreconditionedChains(
-      target, samplerOptions(options), options.chains, progress);
+      std::move(energies), samplerOptions(options), chains, progress);
 }
 
 double

@@ -219,8 +219,7 @@ fitTempered(StochasticEnergy& energy,
   const Matrix6d curvature = energy.roughCurvature(start, random);
   const Gaussian untempered(start, atLeastHalfThePrior(curvature + prior, prior));
   GaussianFit fit;
-  fit.temperature = energy.initialTemperature(
-      start, untempered.factor() * untempered.factor().transpose(), random);
+  fit.temperature = energy.initialTemperature(start, untempered.covariance(), random);
   fit.gaussian =
       Gaussian(start, atLeastHalfThePrior(curvature / fit.temperature + prior, prior));
 

@@ -115,4 +115,10 @@ LangevinChain::position() const
   return position_;
 }
 
+bool
+LangevinChain::hasDiverged() const
+{
+  return gradient_.hasDiverged(position_);
+}
+
 } // namespace bayesian_icp

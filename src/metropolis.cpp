@@ -11,8 +11,6 @@ constexpr double short_walk = 0.3;
 
 } // namespace
 
-SamplingChain::~SamplingChain() = default;
-
 MetropolisChain::MetropolisChain(const Vector6d& start,
                                  StochasticEnergy& energy,
                                  Random& random)
@@ -76,6 +74,12 @@ const Vector6d&
 MetropolisChain::position() const
 {
   return position_;
+}
+
+bool
+MetropolisChain::hasDiverged() const
+{
+  return energy_.hasDiverged(position_);
 }
 
 } // namespace bayesian_icp

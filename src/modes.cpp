@@ -21,17 +21,11 @@ constexpr double max_squared_distance_of_draws = 9.0;
 constexpr double max_barrier = 3.0;
 constexpr int num_barrier_points = 9;
 
-Matrix6d
-covarianceOf(const Gaussian& gaussian)
-{
-  return gaussian.factor() * gaussian.factor().transpose();
-}
-
 bool
 overlap(const Gaussian& a, const Gaussian& b)
 {
   const Vector6d difference = a.mean() - b.mean();
-  const Matrix6d covariance = covarianceOf(a) + covarianceOf(b);
+  const Matrix6d covariance = a.covariance() + b.covariance();
   return difference.dot(covariance.ldlt().solve(difference)) <= max_squared_distance;
 }
 

@@ -2,6 +2,7 @@
 #include "preconditioned_run.h"
 
 #include <bayesian_icp/metropolis.h>
+#include <bayesian_icp/summary.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,8 @@
 namespace bayesian_icp {
 
 namespace {
+
+using MetropolisChains = std::vector<MetropolisChain*>;
 
 /** From this temperature down to 1 the chains walk alone, away from where their
  * warm-ups ended: in a rough density these are parts of a mode. */
@@ -37,12 +40,6 @@ adjustedScale(double scale, double acceptance)
   return scale * std::exp(2.0 * (acceptance - walk_acceptance));
 }
 
-Matrix6d
-covarianceOf(const Gaussian& gaussian)
-{
-  return gaussian.factor() * gaussian.factor().transpose();
-}
-
 void
 walkWhileCooling(const Gaussian& gaussian, MetropolisChain& chain)
 {
@@ -57,14 +54,14 @@ walkWhileCooling(const Gaussian& gaussian, MetropolisChain& chain)
   }
 }
 
-/** All Gaussians in equal shares. */
+/** The Gaussians of all starts in equal shares. */
 TMixture
-mixtureOf(const std::vector<Gaussian>& gaussians)
+mixtureOfStarts(const std::vector<PreconditionedChain>& chains)
 {
   TMixture mixture;
   double weight = 1.0;
-  for (const auto& gaussian : gaussians) {
-    mixture.add(gaussian.mean(), covarianceOf(gaussian), weight);
+  for (const auto& chain : chains) {
+    mixture.add(chain.start.mean(), chain.start.covariance(), weight);
     weight = 1.0 / (1.0 + 1.0 / weight);
   }
   return mixture;
@@ -81,26 +78,25 @@ covarianceOf(const PoseMatrix& draws)
 bool
 canBeFitted(const PoseMatrix& draws)
 {
-  return draws.allFinite() &&
+  return draws.rows() > 6 && draws.allFinite() &&
          Eigen::LLT<Matrix6d>(covarianceOf(draws)).info() == Eigen::Success;
 }
 
-} // namespace
-
 std::shared_ptr<const MetropolisProposal>
-PreconditionedRun::firstProposal() const
+firstProposal(const PreconditionedRun& run)
 {
   auto proposal = std::make_shared<MetropolisProposal>();
-  proposal->jumps = mixtureOf(starts_);
+  proposal->jumps = mixtureOfStarts(run.chains);
   const Eigen::LLT<Matrix6d> llt(proposal->jumps.covarianceWithin());
   proposal->walk_factor = walk_length * Matrix6d(llt.matrixL());
   return proposal;
 }
 
 std::shared_ptr<const MetropolisProposal>
-PreconditionedRun::learnProposal(const PoseMatrix& draws,
-                                 double walk_scale,
-                                 Random& random) const
+learnProposal(const PoseMatrix& draws,
+              double walk_scale,
+              const std::vector<GaussianFit>& fits,
+              Random& random)
 {
   auto proposal = std::make_shared<MetropolisProposal>();
   proposal->jumps = TMixture(draws, num_components, random);
@@ -109,47 +105,44 @@ PreconditionedRun::learnProposal(const PoseMatrix& draws,
   proposal->jumps.add(draws.colwise().mean().transpose(),
                       wide_variance * covarianceOf(draws),
                       wide_share);
-  const double share = warm_up_share / static_cast<double>(fits_.size());
-  for (const auto& fit : fits_)
-    proposal->jumps.add(fit.gaussian.mean(), covarianceOf(fit.gaussian), share);
+  const double share = warm_up_share / static_cast<double>(fits.size());
+  for (const auto& fit : fits)
+    proposal->jumps.add(fit.gaussian.mean(), fit.gaussian.covariance(), share);
   return proposal;
 }
 
 /** Positions after every other step of the second part of a round, in the order of the
  * chains. */
 PoseMatrix
-PreconditionedRun::walkAndJump(int num_steps, const MetropolisChains& chains)
+walkAndJump(int num_steps, PreconditionedRun& run)
 {
-  const int num_left_out = num_steps / 8, num_kept = (num_steps - num_left_out) / 2;
-  PoseMatrix positions(num_kept * options_.num_chains, 6);
-  forEach([&](std::size_t i) {
-    auto row = static_cast<Eigen::Index>(i) * num_kept;
-    for (int step = 0; step < num_left_out && !run_.stopped(); ++step)
-      chains[i]->step();
-    for (int k = 0; k < num_kept && !run_.stopped(); ++k) {
-      chains[i]->step();
-      chains[i]->step();
-      positions.row(row++) = chains[i]->position().transpose();
-      run_.reportWarmUp(static_cast<int>(i));
-    }
+  Schedule round;
+  round.num_burn_in = num_steps / 8;
+  round.thinning = 2;
+  round.num_draws = (num_steps - round.num_burn_in) / round.thinning;
+  std::vector<Chain> positions(run.chains.size());
+  run.forEachChain([&](std::size_t i) {
+    Path path;
+    run.advance(i, round, path);
+    positions[i].draws = path.positions.transpose();
   });
-  return positions;
+  return pooledDraws(positions);
 }
 
 /** The chains learn from each other in rounds, put together in their order: the draws
  * do not depend on the threads. Returns the least acceptance of jumps in the last
  * round. */
 double
-PreconditionedRun::learnTogether(const MetropolisChains& chains)
+learnTogether(const MetropolisChains& chains, PreconditionedRun& run)
 {
-  Random random(options_.seed, states_.size());
+  Random random(run.options.seed, chains.size());
   double walk_scale = walk_length, least = 1.0;
-  auto proposal = firstProposal();
+  auto proposal = firstProposal(run);
   for (const int num_steps : round_lengths) {
     for (const auto chain : chains)
       chain->setProposal(proposal);
-    const PoseMatrix draws = walkAndJump(num_steps, chains);
-    if (run_.stopped())
+    const PoseMatrix draws = walkAndJump(num_steps, run);
+    if (run.state.stopped())
       return 1.0;
     double walks = 0.0;
     least = 1.0;
@@ -159,32 +152,33 @@ PreconditionedRun::learnTogether(const MetropolisChains& chains)
     }
     walk_scale = adjustedScale(walk_scale, walks);
     if (canBeFitted(draws))
-      proposal = learnProposal(draws, walk_scale, random);
+      proposal = learnProposal(draws, walk_scale, run.fits, random);
   }
   for (const auto chain : chains)
     chain->setProposal(proposal);
   return least;
 }
 
-StepPlan
-PreconditionedRun::startMetropolis()
+} // namespace
+
+int
+startMetropolis(PreconditionedRun& run)
 {
-  MetropolisChains chains(states_.size());
-  forEach([&](std::size_t i) {
-    auto& state = states_[i];
-    auto chain = std::make_unique<MetropolisChain>(
-        starts_[i].draw(*state.random), *state.energy, *state.random);
-    if (!run_.stopped())
-      walkWhileCooling(starts_[i], *chain);
-    run_.reportWarmUp(static_cast<int>(i));
-    chains[i] = chain.get();
-    state.sampling = std::move(chain);
+  MetropolisChains chains(run.chains.size());
+  run.forEachChain([&](std::size_t i) {
+    auto& chain = run.chains[i];
+    auto sampler = std::make_unique<MetropolisChain>(
+        chain.start.draw(chain.random), *chain.energy, chain.random);
+    if (!run.state.stopped())
+      walkWhileCooling(chain.start, *sampler);
+    run.state.reportWarmUp(static_cast<int>(i));
+    chains[i] = sampler.get();
+    chain.sampler = std::move(sampler);
   });
-  StepPlan common;
-  if (!run_.stopped())
-    common.thinning = static_cast<int>(std::clamp(
-        std::ceil(jump_thinning / learnTogether(chains)), 1.0, max_thinning));
-  return common;
+  if (run.state.stopped())
+    return 1;
+  return static_cast<int>(std::clamp(
+      std::ceil(jump_thinning / learnTogether(chains, run)), 1.0, max_thinning));
 }
 
 } // namespace bayesian_icp

@@ -1,123 +1,100 @@
 /** \file
- * \brief One run of the preconditioned sampler: its state and its phases. The warm-up
- * is in preconditioned_warm_up.cpp, what Metropolis chains learn in
- * preconditioned_metropolis.cpp, the sampling in preconditioned_sampler.cpp.
+ * \brief What the phases of a run of the preconditioned sampler work on: the warm-up
+ * (preconditioned_warm_up.cpp), the learning of Metropolis chains
+ * (preconditioned_metropolis.cpp) and the sampling (preconditioned_sampler.cpp).
  */
 #pragma once
 
-#include "run_state.h"
+#include "sampling.h"
 
-#include <bayesian_icp/langevin.h>
-#include <bayesian_icp/metropolis.h>
+#include <bayesian_icp/gaussian_fit.h>
 #include <bayesian_icp/preconditioned_sampler.h>
 
-#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp {
 
-/** \brief One run, from the starts to the draws. */
-class PreconditionedRun {
-public:
-  PreconditionedRun(const PreconditionedTarget& target,
-                    const PreconditionedOptions& sampler,
-                    const ChainOptions& options,
+/** \brief One chain, from its warm-up to its draws. */
+struct PreconditionedChain {
+  std::unique_ptr<StochasticEnergy> energy;
+  Random random;
+  /** Of the chain's own warm-up, or of the best mode if the chain was moved there:
+   * Metropolis chains start apart, so that R-hat sees where they disagree. */
+  Gaussian start = Gaussian();
+  std::unique_ptr<SamplingChain> sampler = nullptr;
+  Path path = Path();
+};
+
+/** \brief One run. */
+struct PreconditionedRun {
+  PreconditionedRun(std::vector<std::unique_ptr<StochasticEnergy>> energies,
+                    const PreconditionedOptions& the_sampler,
+                    const ChainOptions& the_options,
                     const ProgressCallback& progress)
-  : target_(target)
-  , sampler_(sampler)
-  , options_(options)
-  , num_threads_(numThreadsFor(options, target.is_thread_safe))
-  , run_(progress)
-  {}
-
-  ChainSet
-  run();
-
-private:
-  using MetropolisChains = std::vector<MetropolisChain*>;
-
-  struct ChainState {
-    std::unique_ptr<StochasticEnergy> energy;
-    std::unique_ptr<Random> random;
-    std::unique_ptr<SamplingChain> sampling;
-    long num_steps = 0;
-  };
-
-  template <typename Work>
-  void
-  forEach(const Work& work)
+  : sampler(the_sampler)
+  , options(the_options)
+  , state(progress)
   {
-    forEachChain(options_.num_chains, num_threads_, run_, [&](int i) {
-      work(static_cast<std::size_t>(i));
-    });
+    for (std::size_t i = 0; i < energies.size(); ++i)
+      chains.push_back({std::move(energies[i]), Random(options.seed, i)});
+    result.chains.resize(chains.size());
   }
 
+  /** \brief work(i) for the index of every chain. */
+  template <typename Work>
   void
-  warmUpAlone();
+  forEachChain(const Work& work)
+  {
+    bayesian_icp::forEachChain(options.num_chains,
+                               options.num_threads,
+                               state,
+                               [&](int i) { work(static_cast<std::size_t>(i)); });
+  }
 
+  ToPose
+  toPoseOf(std::size_t i) const
+  {
+    return
+        [&energy = *chains[i].energy](const Vector6d& x) { return energy.toPose(x); };
+  }
+
+  /** \brief Let the sampler of chain \p i make its steps. */
   void
-  poolFits(const std::vector<GaussianFit>& fits);
+  advance(std::size_t i, const Schedule& schedule, Path& path)
+  {
+    bayesian_icp::advance(
+        *chains[i].sampler, schedule, toPoseOf(i), static_cast<int>(i), state, path);
+  }
 
-  void
-  refineJointly();
-
-  bool
-  refineOnce(int iteration);
-
-  void
-  measureEvidence(const std::function<const Gaussian&(std::size_t chain)>& gaussianOf);
-
-  StepPlan
-  startLangevin();
-
-  bool
-  usesMetropolis() const;
-
-  StepPlan
-  startMetropolis();
-
-  std::shared_ptr<const MetropolisProposal>
-  firstProposal() const;
-
-  std::shared_ptr<const MetropolisProposal>
-  learnProposal(const PoseMatrix& draws, double walk_scale, Random& random) const;
-
-  PoseMatrix
-  walkAndJump(int num_steps, const MetropolisChains& chains);
-
-  double
-  learnTogether(const MetropolisChains& chains);
-
-  void
-  startSampling();
-
-  void
-  sample(std::size_t chain, int num_burn_in);
-
-  bool
-  needsExtension() const;
-
-  void
-  extend();
-
+  /** \brief Index of the mode that chain \p i is in. */
   std::size_t
-  modeOf(std::size_t chain) const;
+  modeOf(std::size_t i) const;
 
-  const PreconditionedTarget& target_;
-  const PreconditionedOptions& sampler_;
-  const ChainOptions& options_;
-  int num_threads_;
-  RunState run_;
-  std::vector<ChainState> states_;
-  /** Of each chain's own warm-up, or of the best mode if the chain was moved there:
-   * Metropolis chains start apart, so that R-hat sees where they disagree. */
-  std::vector<Gaussian> starts_;
-  /** One a mode. */
-  std::vector<GaussianFit> fits_;
-  int num_burn_in_ = 0;
-  int thinning_ = 1;
-  ChainSet result_;
+  const PreconditionedOptions& sampler;
+  /** Burn-in and thinning become those that are used. */
+  ChainOptions options;
+  RunState state;
+  std::vector<PreconditionedChain> chains;
+  /** One a mode, in the order of the result's. */
+  std::vector<GaussianFit> fits;
+  ChainSet result;
 };
+
+/** \brief Fit a Gaussian with each chain alone, tell modes apart, and let the chains of
+ * a mode refine its Gaussian together. */
+void
+warmUp(PreconditionedRun& run);
+
+/** \brief Where there are several modes: measure what each of them weighs.
+ * \param[in] gaussians one a chain */
+void
+measureEvidence(const std::vector<Gaussian>& gaussians, PreconditionedRun& run);
+
+/** \brief Make the samplers, let them learn a common proposal, and freeze it.
+ * \return the thinning that makes draws nearly independent */
+int
+startMetropolis(PreconditionedRun& run);
 
 } // namespace bayesian_icp

@@ -1,10 +1,10 @@
 #include "modes.h"
 #include "preconditioned_run.h"
 
+#include <bayesian_icp/langevin.h>
 #include <bayesian_icp/summary.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace bayesian_icp {
 
@@ -15,118 +15,86 @@ namespace {
 constexpr double wanted_ess = 900.0, wanted_ess_share = 0.45;
 constexpr int max_extensions = 3;
 
-} // namespace
-
-ChainSet
-PreconditionedRun::run()
-{
-  const auto num_chains = static_cast<std::size_t>(options_.num_chains);
-  result_.chains.resize(num_chains);
-  for (auto& chain : result_.chains)
-    chain.draws.resize(0, 6);
-  states_.resize(num_chains);
-  warmUpAlone();
-  if (!run_.stopped())
-    refineJointly();
-  if (!run_.stopped()) {
-    startSampling();
-    measureEvidence(
-        [this](std::size_t i) -> const Gaussian& { return fits_[modeOf(i)].gaussian; });
-    forEach([this](std::size_t i) { sample(i, num_burn_in_); });
-    mergeOverlappingModes(result_);
-    for (int i = 0; i < max_extensions && needsExtension(); ++i)
-      extend();
-  }
-  result_.cancelled = run_.cancelled();
-  return std::move(result_);
-}
-
-/** Both return burn-in and thinning that serve all modes. */
-StepPlan
-PreconditionedRun::startLangevin()
-{
-  std::vector<StepPlan> plans;
-  StepPlan common;
-  for (const auto& fit : fits_) {
-    plans.push_back(planSteps(fit,
-                              states_.front().energy->numTerms(),
-                              sampler_.batch_size,
-                              sampler_.max_step_size));
-    common.num_burn_in = std::max(common.num_burn_in, plans.back().num_burn_in);
-    common.thinning = std::max(common.thinning, plans.back().thinning);
-  }
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    auto& state = states_[i];
-    const std::size_t mode = modeOf(i);
-    state.sampling =
-        std::make_unique<LangevinChain>(plans[mode],
-                                        fits_[mode].gaussian.draw(*state.random),
-                                        *state.energy,
-                                        *state.random);
-  }
-  return common;
-}
-
 bool
-PreconditionedRun::usesMetropolis() const
+usesMetropolis(const PreconditionedRun& run)
 {
-  if (sampler_.metropolis != MetropolisUse::Automatic)
-    return sampler_.metropolis == MetropolisUse::Always;
-  const auto num_terms = static_cast<double>(states_.front().energy->numTerms());
-  return std::any_of(fits_.begin(), fits_.end(), [&](const GaussianFit& fit) {
+  if (run.sampler.metropolis != MetropolisUse::Automatic)
+    return run.sampler.metropolis == MetropolisUse::Always;
+  const auto num_terms = static_cast<double>(run.chains.front().energy->numTerms());
+  return std::any_of(run.fits.begin(), run.fits.end(), [&](const GaussianFit& fit) {
     return termNoise(fit).maxCoeff() > num_terms;
   });
 }
 
-void
-PreconditionedRun::startSampling()
+/** Makes the samplers. Returns burn-in and thinning that serve all modes. */
+Schedule
+startLangevin(PreconditionedRun& run)
 {
-  const StepPlan common = usesMetropolis() ? startMetropolis() : startLangevin();
-  num_burn_in_ = options_.num_burn_in > 0 ? options_.num_burn_in : common.num_burn_in;
-  thinning_ = options_.thinning > 1 ? options_.thinning : common.thinning;
-  long total_steps = 0;
-  for (int i = 0; i < options_.num_chains; ++i)
-    total_steps += num_burn_in_ + static_cast<long>(thinning_) * options_.numDrawsOf(i);
-  run_.addSteps(total_steps);
+  std::vector<StepPlan> plans;
+  Schedule common;
+  for (const auto& fit : run.fits) {
+    plans.push_back(planSteps(fit,
+                              run.chains.front().energy->numTerms(),
+                              run.sampler.batch_size,
+                              run.sampler.max_step_size));
+    common.num_burn_in = std::max(common.num_burn_in, plans.back().num_burn_in);
+    common.thinning = std::max(common.thinning, plans.back().thinning);
+  }
+  for (std::size_t i = 0; i < run.chains.size(); ++i) {
+    auto& chain = run.chains[i];
+    const std::size_t mode = run.modeOf(i);
+    chain.sampler =
+        std::make_unique<LangevinChain>(plans[mode],
+                                        run.fits[mode].gaussian.draw(chain.random),
+                                        *chain.energy,
+                                        chain.random);
+  }
+  return common;
 }
 
 void
-PreconditionedRun::sample(std::size_t chain_index, int num_burn_in)
+startSampling(PreconditionedRun& run)
 {
-  auto& state = states_[chain_index];
-  const int num_draws = options_.numDrawsOf(static_cast<int>(chain_index));
-  Chain& chain = result_.chains[chain_index];
-  Eigen::Index num_kept = chain.draws.rows();
-  const long num_steps = num_burn_in + static_cast<long>(thinning_) *
-                                           (num_draws - static_cast<long>(num_kept));
-  chain.draws.conservativeResize(num_draws, 6);
-  const long steps_before = state.num_steps;
-  state.num_steps += num_steps;
-  for (long step = 1; step <= num_steps && !run_.stopped(); ++step) {
-    state.sampling->step();
-    const Vector6d& position = state.sampling->position();
-    if (state.energy->hasDiverged(position)) {
-      chain.diverged = true;
-      break;
-    }
-    const long sampled = step - num_burn_in;
-    if (sampled > 0 && sampled % thinning_ == 0)
-      chain.draws.row(num_kept++) =
-          canonicalPose(target_.to_pose(position)).transpose();
-    run_.reportStep(static_cast<int>(chain_index), steps_before + step, [&] {
-      return target_.to_pose(position);
-    });
-  }
-  chain.draws.conservativeResize(num_kept, 6);
+  Schedule automatic;
+  if (usesMetropolis(run))
+    automatic.thinning = startMetropolis(run);
+  else
+    automatic = startLangevin(run);
+  if (run.options.num_burn_in == 0)
+    run.options.num_burn_in = automatic.num_burn_in;
+  if (run.options.thinning == 1)
+    run.options.thinning = automatic.thinning;
+  std::vector<Gaussian> gaussians;
+  for (std::size_t i = 0; i < run.chains.size(); ++i)
+    gaussians.push_back(run.fits[run.modeOf(i)].gaussian);
+  measureEvidence(gaussians, run);
+}
+
+/** Until all draws are there. */
+void
+sample(PreconditionedRun& run)
+{
+  const auto scheduleOfChain = [&](std::size_t i) {
+    return scheduleOf(run.options, static_cast<int>(i));
+  };
+  long num_steps = 0;
+  for (std::size_t i = 0; i < run.chains.size(); ++i)
+    num_steps += scheduleOfChain(i).numSteps(run.chains[i].path.positions.cols());
+  run.state.addSteps(num_steps);
+  run.forEachChain([&](std::size_t i) {
+    auto& chain = run.chains[i];
+    run.advance(i, scheduleOfChain(i), chain.path);
+    run.result.chains[i] = chainOf(chain.path, run.toPoseOf(i));
+  });
 }
 
 /** Whether one mode's chains fall short of what an automatic thinning is to reach. */
 bool
-PreconditionedRun::needsExtension() const
+needsMoreSteps(const PreconditionedRun& run)
 {
-  if (options_.thinning > 1 || run_.stopped() || result_.modes.size() > 1)
+  if (run.state.stopped() || run.result.modes.size() > 1)
     return false;
-  const Summary summary = summarize(result_);
+  const Summary summary = summarize(run.result);
   if (summary.num_diverged_chains > 0)
     return false;
   const double wanted =
@@ -140,29 +108,40 @@ PreconditionedRun::needsExtension() const
 
 /** Keeps every other draw and makes up for the rest with twice the thinning. */
 void
-PreconditionedRun::extend()
+extend(PreconditionedRun& run)
 {
-  thinning_ *= 2;
-  long more_steps = 0;
-  for (std::size_t i = 0; i < states_.size(); ++i) {
-    PoseMatrix& draws = result_.chains[i].draws;
-    const Eigen::Index half = draws.rows() / 2;
-    for (Eigen::Index row = 0; row < half; ++row)
-      draws.row(row) = draws.row(2 * row + 1).eval();
-    more_steps += static_cast<long>(thinning_) * (draws.rows() - half);
-    draws.conservativeResize(half, 6);
+  for (auto& chain : run.chains) {
+    auto& positions = chain.path.positions;
+    const Eigen::Index half = positions.cols() / 2;
+    for (Eigen::Index i = 0; i < half; ++i)
+      positions.col(i) = positions.col(2 * i + 1).eval();
+    positions.conservativeResize(6, half);
   }
-  run_.addSteps(more_steps);
-  forEach([this](std::size_t i) { sample(i, 0); });
+  run.options.num_burn_in = 0;
+  run.options.thinning *= 2;
+  sample(run);
 }
 
+} // namespace
+
 ChainSet
-runPreconditionedChains(const PreconditionedTarget& target,
+runPreconditionedChains(std::vector<std::unique_ptr<StochasticEnergy>> energies,
                         const PreconditionedOptions& sampler,
                         const ChainOptions& options,
                         const ProgressCallback& progress)
 {
-  return PreconditionedRun(target, sampler, options, progress).run();
+  PreconditionedRun run(std::move(energies), sampler, options, progress);
+  warmUp(run);
+  if (!run.state.stopped()) {
+    startSampling(run);
+    sample(run);
+    mergeOverlappingModes(run.result);
+    const int most = options.thinning > 1 ? 0 : max_extensions;
+    for (int i = 0; i < most && needsMoreSteps(run); ++i)
+      extend(run);
+  }
+  run.result.cancelled = run.state.cancelled();
+  return std::move(run.result);
 }
 
 } // namespace bayesian_icp

@@ -10,116 +10,124 @@ constexpr int num_joint_pairs = 40;
 constexpr int min_joint_iterations = 2;
 constexpr int max_joint_iterations = 8;
 
-} // namespace
-
-void
-PreconditionedRun::warmUpAlone()
+/** One Gaussian a chain. */
+std::vector<GaussianFit>
+fitAlone(PreconditionedRun& run)
 {
-  std::vector<GaussianFit> fits(states_.size());
-  forEach([&](std::size_t i) {
-    const int chain = static_cast<int>(i);
-    auto& state = states_[i];
-    state.energy = target_.make_energy(chain);
-    state.random = std::make_unique<Random>(options_.seed, i);
+  std::vector<GaussianFit> fits(run.chains.size());
+  run.forEachChain([&](std::size_t i) {
+    auto& chain = run.chains[i];
     const Vector6d start =
-        state.energy->burnIn(state.energy->drawStart(*state.random), *state.random);
-    fits[i] = fitTempered(*state.energy, start, *state.random, [&] {
-      run_.reportWarmUp(chain);
-      return !run_.stopped();
+        chain.energy->burnIn(chain.energy->drawStart(chain.random), chain.random);
+    fits[i] = fitTempered(*chain.energy, start, chain.random, [&] {
+      run.state.reportWarmUp(static_cast<int>(i));
+      return !run.state.stopped();
     });
   });
-  if (run_.stopped())
-    return;
-  result_.modes = groupByMode(fits, *states_.front().energy);
-  measureEvidence([&](std::size_t i) -> const Gaussian& { return fits[i].gaussian; });
-  poolFits(fits);
-  std::vector<std::size_t> homes(states_.size());
-  for (std::size_t i = 0; i < homes.size(); ++i)
-    homes[i] = modeOf(i);
-  moveFromWorseModes(result_);
-  fits_.resize(result_.modes.size());
-  for (std::size_t i = 0; i < homes.size(); ++i)
-    starts_.push_back(homes[i] < fits_.size() ? fits[i].gaussian
-                                              : fits_.front().gaussian);
+  return fits;
 }
 
-/** Where there are several modes: what each of them weighs. */
-void
-PreconditionedRun::measureEvidence(
-    const std::function<const Gaussian&(std::size_t chain)>& gaussianOf)
+/** The mean of the members' Gaussians. */
+GaussianFit
+pooled(const ChainMode& mode, const std::vector<Gaussian>& gaussians)
 {
-  if (result_.modes.size() < 2)
-    return;
-  std::vector<double> log_evidences(states_.size());
-  forEach([&](std::size_t i) {
-    log_evidences[i] =
-        logEvidence(*states_[i].energy, gaussianOf(i), *states_[i].random);
-  });
-  sortByEvidence(log_evidences, result_.modes);
-}
-
-void
-PreconditionedRun::poolFits(const std::vector<GaussianFit>& fits)
-{
-  for (const auto& mode : result_.modes) {
-    Vector6d mean = Vector6d::Zero();
-    Matrix6d precision = Matrix6d::Zero();
-    const double share = 1.0 / static_cast<double>(mode.members.size());
-    for (const int member : mode.members) {
-      const auto& gaussian = fits[static_cast<std::size_t>(member)].gaussian;
-      mean += share * gaussian.mean();
-      precision += share * gaussian.precision();
-    }
-    GaussianFit pooled;
-    pooled.gaussian = Gaussian(mean, precision);
-    fits_.push_back(pooled);
+  Vector6d mean = Vector6d::Zero();
+  Matrix6d precision = Matrix6d::Zero();
+  const double share = 1.0 / static_cast<double>(mode.members.size());
+  for (const int member : mode.members) {
+    const auto& gaussian = gaussians[static_cast<std::size_t>(member)];
+    mean += share * gaussian.mean();
+    precision += share * gaussian.precision();
   }
+  GaussianFit fit;
+  fit.gaussian = Gaussian(mean, precision);
+  return fit;
 }
 
+/** Groups the chains by mode, and leaves the modes that are clearly worse. */
 void
-PreconditionedRun::refineJointly()
+tellModesApart(const std::vector<GaussianFit>& fits, PreconditionedRun& run)
 {
-  for (int i = 1; i <= max_joint_iterations; ++i)
-    if (!refineOnce(i) || run_.stopped())
-      return;
+  std::vector<Gaussian> gaussians;
+  for (const auto& fit : fits)
+    gaussians.push_back(fit.gaussian);
+  run.result.modes = groupByMode(fits, *run.chains.front().energy);
+  measureEvidence(gaussians, run);
+  for (const auto& mode : run.result.modes)
+    run.fits.push_back(pooled(mode, gaussians));
+  std::vector<std::size_t> homes;
+  for (std::size_t i = 0; i < run.chains.size(); ++i)
+    homes.push_back(run.modeOf(i));
+  moveFromWorseModes(run.result);
+  run.fits.resize(run.result.modes.size());
+  for (std::size_t i = 0; i < homes.size(); ++i)
+    run.chains[i].start =
+        homes[i] < run.fits.size() ? gaussians[i] : run.fits.front().gaussian;
 }
 
 /** Returns whether another iteration is needed. */
 bool
-PreconditionedRun::refineOnce(int iteration)
+refineOnce(int iteration, PreconditionedRun& run)
 {
-  std::vector<RegressionSums> sums(states_.size());
-  forEach([&](std::size_t i) {
-    const std::size_t mode = modeOf(i);
-    const int members = static_cast<int>(result_.modes[mode].members.size());
-    sums[i] = collectGradients(*states_[i].energy,
-                               fits_[mode],
+  std::vector<RegressionSums> sums(run.chains.size());
+  run.forEachChain([&](std::size_t i) {
+    const std::size_t mode = run.modeOf(i);
+    const int members = static_cast<int>(run.result.modes[mode].members.size());
+    sums[i] = collectGradients(*run.chains[i].energy,
+                               run.fits[mode],
                                (num_joint_pairs + members - 1) / members,
-                               *states_[i].random);
-    run_.reportWarmUp(static_cast<int>(i));
+                               run.chains[i].random);
+    run.state.reportWarmUp(static_cast<int>(i));
   });
   bool is_done = iteration >= min_joint_iterations;
-  for (std::size_t mode = 0; mode < fits_.size(); ++mode) {
+  for (std::size_t mode = 0; mode < run.fits.size(); ++mode) {
     RegressionSums total;
-    for (const int member : result_.modes[mode].members)
+    for (const int member : run.result.modes[mode].members)
       total += sums[static_cast<std::size_t>(member)];
     updateFit(total,
               iteration <= min_joint_iterations ? 1.0 : 0.6,
-              states_.front().energy->priorPrecision(),
-              fits_[mode]);
-    is_done = is_done && fits_[mode].has_converged;
+              run.chains.front().energy->priorPrecision(),
+              run.fits[mode]);
+    is_done = is_done && run.fits[mode].has_converged;
   }
   return !is_done;
 }
 
+} // namespace
+
 std::size_t
-PreconditionedRun::modeOf(std::size_t chain) const
+PreconditionedRun::modeOf(std::size_t i) const
 {
-  for (std::size_t mode = 0; mode < result_.modes.size(); ++mode)
-    for (const int member : result_.modes[mode].members)
-      if (member == static_cast<int>(chain))
+  for (std::size_t mode = 0; mode < result.modes.size(); ++mode)
+    for (const int member : result.modes[mode].members)
+      if (member == static_cast<int>(i))
         return mode;
   return 0;
+}
+
+void
+measureEvidence(const std::vector<Gaussian>& gaussians, PreconditionedRun& run)
+{
+  if (run.result.modes.size() < 2)
+    return;
+  std::vector<double> log_evidences(run.chains.size());
+  run.forEachChain([&](std::size_t i) {
+    log_evidences[i] =
+        logEvidence(*run.chains[i].energy, gaussians[i], run.chains[i].random);
+  });
+  sortByEvidence(log_evidences, run.result.modes);
+}
+
+void
+warmUp(PreconditionedRun& run)
+{
+  const std::vector<GaussianFit> fits = fitAlone(run);
+  if (run.state.stopped())
+    return;
+  tellModesApart(fits, run);
+  for (int i = 1; i <= max_joint_iterations; ++i)
+    if (!refineOnce(i, run) || run.state.stopped())
+      return;
 }
 
 } // namespace bayesian_icp

@@ -57,7 +57,8 @@ public:
     first_exception_.rethrow();
   }
 
-  /** \brief Counts a step of \p chain and tells the callback.
+  /** \brief Counts a step of \p chain and tells the callback. As long as the run has
+   * no length the chain warms up, which counts as no step.
    * \param[in] poseNow returns the pose at which the chain is; asked only if there is a
    *            callback */
   template <typename PoseFunction>
@@ -66,6 +67,8 @@ public:
   {
     if (!progress_)
       return;
+    if (total_steps_ == 0)
+      return reportWarmUp(chain);
     const Vector6d pose = canonicalPose(poseNow());
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_, pose}))
@@ -94,20 +97,15 @@ private:
   std::mutex mutex_;
 };
 
-/** \brief Threads for the chains of a run. */
-inline int
-numThreadsFor(const ChainOptions& options, bool is_thread_safe)
-{
-  return is_thread_safe ? numThreadsFor(options.num_threads, options.num_chains) : 1;
-}
-
 /** \brief work(chain) for every chain; a thread owns whole chains. Rethrows the first
- * exception. */
+ * exception.
+ * \param[in] num_threads as asked for, 0: as OpenMP would */
 template <typename Work>
 void
 forEachChain(int num_chains, int num_threads, RunState& run, const Work& work)
 {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(num_threads)
+#pragma omp parallel for schedule(dynamic, 1)                                          \
+    num_threads(numThreadsFor(num_threads, num_chains))
   for (int i = 0; i < num_chains; ++i)
     run.guard([&] { work(i); });
   run.rethrow();

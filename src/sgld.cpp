@@ -5,6 +5,12 @@
 
 namespace bayesian_icp {
 
+namespace {
+
+constexpr double half_a_turn = 3.14159265358979323846;
+
+} // namespace
+
 RmsPropPreconditioner::RmsPropPreconditioner(const SgldOptions& options)
 : decay_rate_(options.decay_rate)
 , lambda_rms_(options.lambda_rms)
@@ -51,11 +57,13 @@ SgldChain::SgldChain(const SgldOptions& options,
                      long num_steps,
                      const Vector6d& start,
                      MiniBatchGradient gradient,
+                     RunsAway runs_away,
                      Random& random)
 : options_(options)
 , num_steps_(num_steps)
 , pose_(start)
 , gradient_(std::move(gradient))
+, runs_away_(std::move(runs_away))
 , preconditioner_(options)
 , random_(random)
 {}
@@ -66,14 +74,22 @@ SgldChain::step()
   const EnergyGradient gradient = gradient_(pose_, random_);           // (2, 3, 6, 7)
   const Vector6d A = preconditioner_.update(gradient.mini_batch_mean); // (10, 11)
   const double alpha = stepSizeAt(options_, steps_made_++, num_steps_);
+  const Vector6d last_pose = pose_;
   pose_ = sgldStep(
       pose_, gradient.energy, A, alpha, options_.noise_factor, random_); // (5, 8, 9)
+  num_jumps_ += (pose_ - last_pose).tail<3>().cwiseAbs().maxCoeff() > half_a_turn;
 }
 
 const Vector6d&
 SgldChain::position() const
 {
   return pose_;
+}
+
+bool
+SgldChain::hasDiverged() const
+{
+  return SamplingChain::hasDiverged() || runs_away_(pose_);
 }
 
 } // namespace bayesian_icp

@@ -1,6 +1,7 @@
 // Draws of preset `calibrated` from estimates whose posterior is known: no clouds.
 #include "../src/calibration/draw_plan.h"
 #include "calibrated_stand_in.h"
+#include "product_form.h"
 #include "test_support.h"
 
 #include <bayesian_icp/calibration/product_coordinates.h>
@@ -85,10 +86,8 @@ whitenedComponent(const ChainSet& set, const CalibratedEstimate& e, int k)
 ChainSet
 sample(const StandIn& problem, const ChainOptions& options = ChainOptions())
 {
-  return sampleCalibrated([&](const CalibratedEstimate&) { return problem.score(); },
-                          problem.prior,
-                          problem.estimate,
-                          options);
+  return sampleCalibrated(
+      problem.score(), problem.prior, {{problem.estimate}}, options);
 }
 
 /** Standard normal components: mean and second moments within 4.5 Monte Carlo errors,
@@ -173,17 +172,18 @@ TEST(CalibratedDraws, AreStudentsOnlyWhereTheDataHoldThePose)
   const ProductCoordinates coordinates(problem.estimate);
   ASSERT_EQ(coordinates.numPriorOnly(), 1);
   Random random(7, 0);
-  std::vector<Matrix6Xd> chains(2, Matrix6Xd(6, 3));
-  for (Matrix6Xd& chain : chains)
-    chain = Matrix6Xd::NullaryExpr(6, 3, [&] { return random.normal(); });
-  const std::vector<Matrix6Xd> before = chains;
+  std::vector<Path> chains(2);
+  for (Path& chain : chains)
+    chain.positions = Matrix6Xd::NullaryExpr(6, 3, [&] { return random.normal(); });
+  const std::vector<Matrix6Xd> before = {chains[0].positions, chains[1].positions};
   scaleAtRandom(coordinates, 4, random, chains);
   const Vector6d mean = 0.5 * (before[0].rowwise().mean() + before[1].rowwise().mean());
   for (std::size_t c = 0; c < 2; ++c)
     for (Eigen::Index i = 0; i < 3; ++i) {
-      EXPECT_EQ(chains[c](0, i), before[c](0, i));
+      EXPECT_EQ(chains[c].positions(0, i), before[c](0, i));
       // One factor for all of b.
-      const Vector6d old = before[c].col(i) - mean, scaled = chains[c].col(i) - mean;
+      const Vector6d old = before[c].col(i) - mean;
+      const Vector6d scaled = chains[c].positions.col(i) - mean;
       const double factor = scaled[1] / old[1];
       EXPECT_GT(std::abs(factor - 1.0), 1e-6);
       EXPECT_LT((scaled - factor * old).tail<5>().norm(), 1e-12 * old.norm());
@@ -205,14 +205,12 @@ TEST(CalibratedDraws, HaveTheRightSpreadBeforeItIsAdjusted)
   StandIn::Options options;
   options.noise = 0.5; // a batch's noise is 0.6 of the posterior's variance
   const StandIn problem(options);
-  const WeightedScoreModel model(problem.estimate, problem.prior);
-  WeightedScore score(model, problem.score());
+  WeightedScore score(problem.estimate, problem.prior, problem.score());
   Random random(3, 0);
-  const DrawPlan plan = planDraws(score, model, ChainOptions(), random);
-  EXPECT_EQ(plan.steps.batch_size, 32u);
-  score.setShapeGain(plan.shape_gain);
-  const Gaussian& gaussian = model.coordinates.gaussian();
-  LangevinChain chain(plan.steps, gaussian.draw(random), score, random);
+  const StepPlan plan = planDraws(score, random);
+  EXPECT_EQ(plan.batch_size, 32u);
+  const Gaussian& gaussian = score.coordinates().gaussian();
+  LangevinChain chain(plan, gaussian.draw(random), score, random);
   constexpr int num_steps = 20000;
   Matrix6d moments = Matrix6d::Zero();
   for (int i = 0; i < num_steps; ++i) {
@@ -222,7 +220,7 @@ TEST(CalibratedDraws, HaveTheRightSpreadBeforeItIsAdjusted)
     moments += white * white.transpose() / num_steps;
   }
   // A step is worth b/2 draws for the mean and more for the variance.
-  const double ess = 0.5 * plan.steps.step_sizes.minCoeff() * num_steps;
+  const double ess = 0.5 * plan.step_sizes.minCoeff() * num_steps;
   EXPECT_LT((moments - Matrix6d::Identity()).cwiseAbs().maxCoeff(),
             4.5 * std::sqrt(2.0 / ess));
 }
@@ -321,20 +319,21 @@ TEST(CalibratedDraws, FollowTheShapeOfTheScores)
   // deviation's worth of the likelihood.
   const Vector6d best = -e.curvature.ldlt().solve(e.scores.total);
   const double sd = 1.0 / std::sqrt(e.information(0, 0));
-  const auto make_score = [&](const CalibratedEstimate&) {
-    return [&, linear = problem.score()](const Eigen::Isometry3d& pose,
-                                         const std::vector<std::size_t>& indices,
-                                         Vector6d& total) {
-      const int num = linear(pose, indices, total);
-      const Vector6d xi = twistBetween(e.mode, pose, e.centre);
-      const double u = std::clamp((xi - best)[0] / sd, -2.0, 2.0);
-      const double share = static_cast<double>(indices.size()) / StandIn::num_points;
-      total += share * e.curvature.col(0) * sd * 0.25 * (u * u - 1.0);
-      return num;
-    };
+  const BatchScore linear = problem.score();
+  const auto skewed = [&](const CalibratedEstimate& estimate,
+                          const Eigen::Isometry3d& pose,
+                          const std::vector<std::size_t>& indices,
+                          PatchHints& hints,
+                          Vector6d& total) {
+    const int num = linear(estimate, pose, indices, hints, total);
+    const Vector6d xi = twistBetween(e.mode, pose, e.centre);
+    const double u = std::clamp((xi - best)[0] / sd, -2.0, 2.0);
+    const double share = static_cast<double>(indices.size()) / StandIn::num_points;
+    total += share * e.curvature.col(0) * sd * 0.25 * (u * u - 1.0);
+    return num;
   };
   const ChainSet set =
-      sampleCalibrated(make_score, problem.prior, problem.estimate, ChainOptions());
+      sampleCalibrated(skewed, problem.prior, {{problem.estimate}}, ChainOptions());
   const MatrixXd x = ofDraws(set, [&](const Vector6d& pose) {
     return twistBetween(e.mode, isometryOf(pose), e.centre)[0];
   });
@@ -355,22 +354,23 @@ TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
     return Vector6d(L.matrixL().solve(Vector6d(xi - e.mean))).norm();
   };
   enum Fault { Outward, NotANumber, NoPatch };
+  const BatchScore linear = problem.score();
   for (const Fault fault : {Outward, NotANumber, NoPatch}) {
-    const auto make_score = [&](const CalibratedEstimate&) {
-      return [&, linear = problem.score()](const Eigen::Isometry3d& pose,
-                                           const std::vector<std::size_t>& indices,
-                                           Vector6d& total) {
-        const int num = linear(pose, indices, total);
-        if (radius(pose) < 2.5)
-          return num;
-        total *= fault == Outward ? -1000.0 : 1.0;
-        if (fault == NotANumber)
-          total.setConstant(std::nan(""));
-        return fault == NoPatch ? num / 3 : num;
-      };
+    const auto faulty = [&](const CalibratedEstimate& estimate,
+                            const Eigen::Isometry3d& pose,
+                            const std::vector<std::size_t>& indices,
+                            PatchHints& hints,
+                            Vector6d& total) {
+      const int num = linear(estimate, pose, indices, hints, total);
+      if (radius(pose) < 2.5)
+        return num;
+      total *= fault == Outward ? -1000.0 : 1.0;
+      if (fault == NotANumber)
+        total.setConstant(std::nan(""));
+      return fault == NoPatch ? num / 3 : num;
     };
     const ChainSet set =
-        sampleCalibrated(make_score, problem.prior, problem.estimate, ChainOptions());
+        sampleCalibrated(faulty, problem.prior, {{problem.estimate}}, ChainOptions());
     const MatrixXd radii =
         ofDraws(set, [&](const Vector6d& pose) { return radius(isometryOf(pose)); });
     // The likelihood's drift points back from 6 standard deviations on; 6 more for the
@@ -390,15 +390,11 @@ TEST(CalibratedDraws, DoNotDependOnTheNumberOfThreads)
   const ChainSet reference = sample(problem, options);
   EXPECT_EQ(reference.chains[0].draws.rows(), 101);
   EXPECT_EQ(reference.chains[3].draws.rows(), 100);
-  const ChainSet product = sampleProductForm(problem.prior, problem.estimate, options);
   for (const int num_threads : {2, 3}) {
     options.num_threads = num_threads;
     const ChainSet set = sample(problem, options);
-    const ChainSet other = sampleProductForm(problem.prior, problem.estimate, options);
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < 4; ++i)
       EXPECT_EQ(set.chains[i].draws, reference.chains[i].draws);
-      EXPECT_EQ(other.chains[i].draws, product.chains[i].draws);
-    }
   }
   options.seed = 2;
   EXPECT_NE(sample(problem, options).chains[0].draws, reference.chains[0].draws);
@@ -412,11 +408,8 @@ TEST(CalibratedDraws, ReportProgressAndCanBeCancelled)
   options.num_burn_in = 17;
   options.thinning = 3;
   const auto run = [&](const ProgressCallback& progress) {
-    return sampleCalibrated([&](const CalibratedEstimate&) { return problem.score(); },
-                            problem.prior,
-                            problem.estimate,
-                            options,
-                            progress);
+    return sampleCalibrated(
+        problem.score(), problem.prior, {{problem.estimate}}, options, progress);
   };
   long num_calls = 0;
   std::vector<Vector6d> last_poses(4);

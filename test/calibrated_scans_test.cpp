@@ -80,17 +80,16 @@ TEST(CalibratedScans, DrawsMixWithinTheQueriesAllowed)
     SCOPED_TRACE(scene);
     const Case c(scene, 0.06);
     std::atomic<long> num_queries{0};
-    const MakeBatchScore make_score = [&](const CalibratedEstimate&) {
-      return [&, hints = PatchHints()](const Eigen::Isometry3d& pose,
-                                       const std::vector<std::size_t>& indices,
-                                       Vector6d& total) mutable {
-        num_queries += static_cast<long>(indices.size());
-        return c.scorer.batchScore(
-            pose, c.estimate.centre, c.estimate.residual_scale, indices, hints, total);
-      };
+    const BatchScore counted = [&](const CalibratedEstimate& estimate,
+                                   const Eigen::Isometry3d& pose,
+                                   const std::vector<std::size_t>& indices,
+                                   PatchHints& hints,
+                                   Vector6d& total) {
+      num_queries += static_cast<long>(indices.size());
+      return scoresOf(c.scorer)(estimate, pose, indices, hints, total);
     };
     const ChainSet set =
-        sampleCalibrated(make_score, c.prior, c.estimate, ChainOptions());
+        sampleCalibrated(counted, c.prior, {{c.estimate}}, ChainOptions());
     EXPECT_LE(num_queries, 250000);
     const Summary summary = summarize(set);
     EXPECT_EQ(summary.status, Status::Ok) << summary.message;
@@ -99,7 +98,7 @@ TEST(CalibratedScans, DrawsMixWithinTheQueriesAllowed)
     EXPECT_LT(c.distanceOfTruth(set), chi_square_999);
     // What counts the queries does not change the draws.
     const ChainSet same =
-        sampleCalibrated(c.scorer, c.prior, c.estimate, ChainOptions());
+        sampleCalibrated(scoresOf(c.scorer), c.prior, {{c.estimate}}, ChainOptions());
     EXPECT_EQ(same.chains[3].draws, set.chains[3].draws);
   }
 }
@@ -108,7 +107,8 @@ TEST(CalibratedScans, TheYawOfACanKeepsAWidePrior)
 {
   const double yaw_sd = 0.5;
   const Case c("can", yaw_sd);
-  const ChainSet set = sampleCalibrated(c.scorer, c.prior, c.estimate, ChainOptions());
+  const ChainSet set =
+      sampleCalibrated(scoresOf(c.scorer), c.prior, {{c.estimate}}, ChainOptions());
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
   // A von Mises density with 1 / kappa = 0.25 is wider than a Gaussian of this

@@ -71,8 +71,10 @@ struct StandIn {
   BatchScore
   score() const
   {
-    return [this](const Eigen::Isometry3d& pose,
+    return [this](const CalibratedEstimate&,
+                  const Eigen::Isometry3d& pose,
                   const std::vector<std::size_t>& indices,
+                  PatchHints&,
                   Vector6d& total) {
       const Vector6d xi = twistBetween(estimate.mode, pose, estimate.centre);
       total.setZero();

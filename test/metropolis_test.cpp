@@ -140,8 +140,7 @@ TEST(Metropolis, ModesThatChainsTravelBetweenAreOnePosterior)
   options.num_chains = 8;
   PreconditionedOptions sampler;
   sampler.metropolis = MetropolisUse::Always;
-  const ChainSet set =
-      runPreconditionedChains(targetOf(mixture(2.0)), sampler, options);
+  const ChainSet set = sample(mixture(2.0), sampler, options);
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
   EXPECT_EQ(set.modes.size(), 1u);
@@ -163,8 +162,7 @@ TEST(Metropolis, IsChosenWhereBatchesAreTooNoisy)
     energy.term_noise = std::sqrt(100.0 * noise) * Matrix6d::Identity();
     PreconditionedOptions sampler;
     sampler.metropolis = use;
-    return pooledDraws(
-        runPreconditionedChains(targetOf(energy), sampler, chainOptions(40)).chains);
+    return pooledDraws(sample(energy, sampler, chainOptions(40)).chains);
   };
   // Variance of a term's gradient, posterior sd = 1, against 500 terms.
   EXPECT_EQ(drawsWith(MetropolisUse::Automatic, 1000.0),

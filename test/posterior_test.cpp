@@ -176,6 +176,28 @@ TEST(MiniBatch, ABatchNeverRepeatsAPointWithoutReplacement)
   }
 }
 
+TEST(MiniBatch, SubsetsHoldEveryPointAsOftenAndNoneTwice)
+{
+  MiniBatches batches({10, 11, 12, 13, 14, 15, 16, 17});
+  Random random(20, 0), untouched = random;
+  EXPECT_EQ(batches.subset(8, random).size(), 8u);
+  EXPECT_EQ(random.uniform(), untouched.uniform()); // there is but one way to take all
+  std::vector<double> counts(8, 0.0);
+  constexpr int num_subsets = 2000, size = 3;
+  for (int i = 0; i < num_subsets; ++i) {
+    const auto& subset = batches.subset(size, random);
+    EXPECT_EQ(std::set<std::size_t>(subset.begin(), subset.end()).size(), 3u);
+    for (const auto point : subset)
+      counts.at(point - 10) += 1.0;
+  }
+  // Binomial each: five standard deviations.
+  constexpr double share = size / 8.0;
+  for (const double count : counts)
+    EXPECT_NEAR(count,
+                num_subsets * share,
+                5.0 * std::sqrt(num_subsets * share * (1.0 - share)));
+}
+
 TEST(MiniBatch, IsNeverLargerThanTheSource)
 {
   MiniBatches batches(5, 160, MiniBatchSampling::WithReplacement);

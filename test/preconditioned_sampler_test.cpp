@@ -68,8 +68,7 @@ TEST(PreconditionedSampler, GaussiansWellAndBadlyConditioned)
     for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
       PreconditionedOptions sampler;
       sampler.metropolis = metropolis;
-      const ChainSet set =
-          runPreconditionedChains(targetOf(energy), sampler, chainOptions(4000));
+      const ChainSet set = sample(energy, sampler, chainOptions(4000));
       expectMoments(set, mean, precision.inverse());
       EXPECT_EQ(set.modes.size(), 1u);
       EXPECT_EQ(summarize(set).status, Status::Ok) << summarize(set).message;
@@ -90,8 +89,7 @@ TEST(PreconditionedSampler, NoiseOfTheGradientDoesNotWidenTheDraws)
   for (const std::size_t batch_size : {0, 160}) {
     PreconditionedOptions sampler;
     sampler.batch_size = batch_size;
-    const ChainSet set =
-        runPreconditionedChains(targetOf(energy), sampler, chainOptions(4000));
+    const ChainSet set = sample(energy, sampler, chainOptions(4000));
     expectMoments(set, Vector6d::Zero(), precision.inverse());
   }
 }
@@ -103,8 +101,7 @@ TEST(PreconditionedSampler, ADirectionWithoutLikelihoodKeepsItsPrior)
   auto energy = gaussianEnergy(Vector6d::Zero(), precision.asDiagonal());
   energy.prior_precision.setConstant(4.0); // sd 0.5
   energy.start_spread = 0.5;
-  const ChainSet set = runPreconditionedChains(
-      targetOf(energy), PreconditionedOptions(), chainOptions(4000));
+  const ChainSet set = sample(energy, PreconditionedOptions(), chainOptions(4000));
   const Vector6d total = precision + energy.prior_precision;
   expectMoments(set, Vector6d::Zero(), total.cwiseInverse().asDiagonal());
 }
@@ -116,14 +113,13 @@ TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
   variance[1] = 0.05 * 0.05 + 2.0 * bend * bend * std::pow(0.3, 4);
   PreconditionedOptions sampler;
   sampler.metropolis = MetropolisUse::Always;
-  const Summary exact = summarize(
-      runPreconditionedChains(targetOf(banana(bend)), sampler, chainOptions(8000)));
+  const Summary exact = summarize(sample(banana(bend), sampler, chainOptions(8000)));
   // Langevin steps of one length do not resolve a narrow bend: a milder one.
   const double mild_bend = 0.25;
   Vector6d mild_variance = variance;
   mild_variance[1] = 0.05 * 0.05 + 2.0 * mild_bend * mild_bend * std::pow(0.3, 4);
-  const Summary langevin = summarize(runPreconditionedChains(
-      targetOf(banana(mild_bend)), PreconditionedOptions(), chainOptions(8000)));
+  const Summary langevin =
+      summarize(sample(banana(mild_bend), PreconditionedOptions(), chainOptions(8000)));
   EXPECT_EQ(exact.status, Status::Ok) << exact.message;
   for (std::size_t k = 0; k < 6; ++k) {
     const auto& c = exact.coordinates[k];
@@ -140,8 +136,7 @@ TEST(Modes, ThatRemainAreReportedWithWeightMeanAndChains)
 {
   auto options = chainOptions(2000);
   options.num_chains = 8;
-  const ChainSet set =
-      runPreconditionedChains(targetOf(mixture(1.0)), PreconditionedOptions(), options);
+  const ChainSet set = sample(mixture(1.0), PreconditionedOptions(), options);
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
   EXPECT_NE(summary.message.find("2 modes"), std::string::npos) << summary.message;
@@ -161,8 +156,7 @@ TEST(Modes, ThatAreClearlyWorseLoseTheirChains)
 {
   auto options = chainOptions(2000);
   options.num_chains = 8;
-  const ChainSet set = runPreconditionedChains(
-      targetOf(mixture(30.0)), PreconditionedOptions(), options);
+  const ChainSet set = sample(mixture(30.0), PreconditionedOptions(), options);
   EXPECT_GT(set.num_moved_chains, 0);
   EXPECT_NEAR(set.moved_by_nats, 30.0, 2.0);
   const Summary summary = summarize(set);
@@ -182,11 +176,10 @@ TEST(PreconditionedSampler, DrawsDoNotDependOnTheNumberOfThreads)
     sampler.metropolis = metropolis;
     auto options = chainOptions(100);
     options.num_threads = 1;
-    const ChainSet reference =
-        runPreconditionedChains(targetOf(energy), sampler, options);
+    const ChainSet reference = sample(energy, sampler, options);
     for (const int num_threads : {2, 3}) {
       options.num_threads = num_threads;
-      const ChainSet set = runPreconditionedChains(targetOf(energy), sampler, options);
+      const ChainSet set = sample(energy, sampler, options);
       for (std::size_t i = 0; i < 4; ++i)
         EXPECT_EQ(set.chains[i].draws, reference.chains[i].draws);
     }
@@ -200,19 +193,19 @@ TEST(PreconditionedSampler, ObeysBurnInAndThinningAndReportsThem)
   options.thinning = 3;
   long warm_up_calls = 0, steps = 0, total = 0;
   std::vector<Vector6d> kept;
-  const ChainSet set = runPreconditionedChains(
-      targetOf(gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity())),
-      PreconditionedOptions(),
-      options,
-      [&](const Progress& p) {
-        p.steps == 0 ? ++warm_up_calls : ++steps;
-        total = p.total_steps;
-        EXPECT_EQ(p.pose.allFinite(), p.steps > 0);
-        const long sampled = p.chain_steps - 17;
-        if (p.chain == 0 && sampled > 0 && sampled % 3 == 0)
-          kept.push_back(p.pose);
-        return true;
-      });
+  const ChainSet set =
+      sample(gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity()),
+             PreconditionedOptions(),
+             options,
+             [&](const Progress& p) {
+               p.steps == 0 ? ++warm_up_calls : ++steps;
+               total = p.total_steps;
+               EXPECT_EQ(p.pose.allFinite(), p.steps > 0);
+               const long sampled = p.chain_steps - 17;
+               if (p.chain == 0 && sampled > 0 && sampled % 3 == 0)
+                 kept.push_back(p.pose);
+               return true;
+             });
   ASSERT_EQ(kept.size(), 10U);
   for (Eigen::Index i = 0; i < 10; ++i)
     EXPECT_EQ(kept[i], set.chains[0].draws.row(i).transpose());
@@ -223,18 +216,18 @@ TEST(PreconditionedSampler, ObeysBurnInAndThinningAndReportsThem)
 
 TEST(PreconditionedSampler, CanBeCancelledInWarmUpAndInSampling)
 {
-  const auto target =
-      targetOf(gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity()));
-  const ChainSet early = runPreconditionedChains(target,
-                                                 PreconditionedOptions(),
-                                                 chainOptions(400),
-                                                 [](const Progress&) { return false; });
+  const TestEnergy target =
+      gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity());
+  const ChainSet early =
+      sample(target, PreconditionedOptions(), chainOptions(400), [](const Progress&) {
+        return false;
+      });
   EXPECT_TRUE(early.cancelled);
   for (const auto& chain : early.chains)
     EXPECT_EQ(chain.draws.rows(), 0);
   EXPECT_EQ(summarize(early).status, Status::Cancelled);
-  const ChainSet late = runPreconditionedChains(
-      target, PreconditionedOptions(), chainOptions(400), [](const Progress& p) {
+  const ChainSet late =
+      sample(target, PreconditionedOptions(), chainOptions(400), [](const Progress& p) {
         return p.steps < 300;
       });
   EXPECT_TRUE(late.cancelled);
@@ -248,8 +241,7 @@ TEST(PreconditionedSampler, ExceptionsReachTheCaller)
   energy.likelihood_gradient = [](const Vector6d&) -> Vector6d {
     throw std::runtime_error("broken");
   };
-  EXPECT_THROW(runPreconditionedChains(
-                   targetOf(energy), PreconditionedOptions(), chainOptions(40)),
+  EXPECT_THROW(sample(energy, PreconditionedOptions(), chainOptions(40)),
                std::runtime_error);
 }
 

@@ -80,7 +80,7 @@ TEST(SimulationBasedCalibration, RanksOfNarrowDrawsAreNot)
     options.seed = seed;
     options.num_threads = 1;
     const ChainSet chains =
-        sampleCalibrated(model.makeScore(), model.prior(), narrow, options);
+        sampleCalibrated(model.score(), model.prior(), {{narrow}}, options);
     runs.push_back(ranksOf(model.truth(), pooledDraws(chains.chains), model.prior()));
   }
   EXPECT_GT(largestChiSquare(runs), 2.0 * max_rank_chi_square);
@@ -102,7 +102,8 @@ TEST(LinearScoreModel, HasScoresAboutTheTruthWithTheStatedCovariance)
       for (std::size_t i = 0; i < all.size(); ++i)
         all[i] = i;
       Vector6d score;
-      model.makeScore()(e)(coordinates.scoredPose(held), all, score);
+      PatchHints hints;
+      model.score()(e, coordinates.scoredPose(held), all, hints, score);
       sum += score.dot(e.score_covariance.ldlt().solve(score));
     }
     // A chi-square variable with 6 degrees of freedom a model; 4.9 standard errors.

@@ -3,11 +3,15 @@
 
 #include <bayesian_icp/preconditioned_sampler.h>
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace bayesian_icp {
 namespace test {
@@ -64,21 +68,57 @@ public:
     return likelihood(x) + 0.5 * x.dot(prior_precision.cwiseProduct(x));
   }
 
+  double
+  fullEnergy(const Vector6d& x) override
+  {
+    return energy(x);
+  }
+
+  Vector6d
+  toPose(const Vector6d& x) const override
+  {
+    return x;
+  }
+
   Vector6d
   drawStart(Random& random) override
   {
     return start_spread * random.normal6();
   }
+
+  /** Newton steps. */
+  Vector6d
+  burnIn(const Vector6d& start, Random& random) override
+  {
+    Vector6d x = start;
+    const std::size_t batch_size = std::min<std::size_t>(160, num_terms);
+    for (int step = 0; step < 20; ++step) {
+      const SplitGradient g = gradient(x, batch_size, random);
+      x -= (curvature + priorPrecision()).ldlt().solve(g.likelihood + g.prior);
+    }
+    return x;
+  }
+
+  double
+  initialTemperature(const Vector6d& /* x */,
+                     const Matrix6d& /* covariance */,
+                     Random& /* random */) override
+  {
+    return 1.0;
+  }
 };
 
 /** Angles of poses are wrapped: densities are kept well within +-pi there. */
-inline PreconditionedTarget
-targetOf(const TestEnergy& energy)
+inline ChainSet
+sample(const TestEnergy& energy,
+       const PreconditionedOptions& sampler,
+       const ChainOptions& options,
+       const ProgressCallback& progress = ProgressCallback())
 {
-  PreconditionedTarget target;
-  target.make_energy = [energy](int) { return std::make_unique<TestEnergy>(energy); };
-  target.to_pose = [](const Vector6d& x) { return x; };
-  return target;
+  std::vector<std::unique_ptr<StochasticEnergy>> energies;
+  for (int i = 0; i < options.num_chains; ++i)
+    energies.push_back(std::make_unique<TestEnergy>(energy));
+  return runPreconditionedChains(std::move(energies), sampler, options, progress);
 }
 
 /** N(mean, precision^-1) and a flat prior; the warm-up is told a wrong curvature. */

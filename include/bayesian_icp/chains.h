@@ -68,7 +68,7 @@ struct SamplerTarget {
   /** Makes the stochastic gradient of one chain. */
   std::function<MiniBatchGradient(int chain)> make_gradient;
   /** Whether a pose is so far out that the chain has to be stopped. */
-  std::function<bool(const Vector6d&)> has_diverged;
+  RunsAway has_diverged;
   /** Whether gradients of different chains may be evaluated at once. */
   bool is_thread_safe = true;
 };

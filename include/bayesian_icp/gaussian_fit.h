@@ -46,6 +46,12 @@ public:
     return factor_;
   }
 
+  Matrix6d
+  covariance() const
+  {
+    return factor_ * factor_.transpose();
+  }
+
   /** \brief L^-1. */
   const Matrix6d&
   inverseFactor() const

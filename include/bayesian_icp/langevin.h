@@ -59,6 +59,9 @@ public:
   const Vector6d&
   position() const override;
 
+  bool
+  hasDiverged() const override;
+
 private:
   StepPlan plan_;
   Vector6d noise_amplitudes_;

@@ -46,6 +46,9 @@ public:
   const Vector6d&
   position() const override;
 
+  bool
+  hasDiverged() const override;
+
   /** \brief Share of accepted walks in step() since setProposal(), in [0, 1]. */
   double
   walkAcceptance() const

@@ -23,7 +23,8 @@ enum class MiniBatchSampling {
 BAYESIAN_ICP_EXPORT const char*
 toString(MiniBatchSampling sampling);
 
-/** \brief The stream of mini-batches of one chain. */
+/** \brief The stream of mini-batches of one chain: all that a sampler draws from its
+ * points is drawn here. */
 class BAYESIAN_ICP_EXPORT MiniBatches {
 public:
   /** \param[in] num_points size n of the source, positive
@@ -33,17 +34,25 @@ public:
               std::size_t batch_size,
               MiniBatchSampling sampling);
 
+  /** \param[in] points for subset() */
+  explicit MiniBatches(std::vector<std::size_t> points);
+
   /** \brief Indices into the source of the next batch; valid until the next call. */
   const std::vector<std::size_t>&
   next(Random& random);
 
+  /** \brief So many of the points, none twice, whatever was drawn before; without
+   * random numbers all of them if there are no more. Valid until the next call. */
+  const std::vector<std::size_t>&
+  subset(std::size_t size, Random& random);
+
 private:
   void
-  dealFromShuffledSource(Random& random);
+  deal(std::size_t size, Random& random);
 
-  MiniBatchSampling sampling_;
+  MiniBatchSampling sampling_ = MiniBatchSampling::ShuffledEpochs;
   std::vector<std::size_t> shuffled_;
-  std::size_t num_dealt_;
+  std::size_t num_dealt_ = 0;
   std::vector<std::size_t> batch_;
 };
 

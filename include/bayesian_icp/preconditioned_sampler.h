@@ -7,20 +7,10 @@
 #include <bayesian_icp/chains.h>
 #include <bayesian_icp/stochastic_energy.h>
 
-#include <functional>
 #include <memory>
+#include <vector>
 
 namespace bayesian_icp {
-
-/** \brief What the chains sample. */
-struct PreconditionedTarget {
-  /** Makes the energy of one chain. */
-  std::function<std::unique_ptr<StochasticEnergy>(int chain)> make_energy;
-  /** The pose of a point of the sampler's space. */
-  std::function<Vector6d(const Vector6d&)> to_pose;
-  /** Whether energies of different chains may be evaluated at once. */
-  bool is_thread_safe = true;
-};
 
 /** \brief Whether chains make Metropolis steps in place of Langevin steps. */
 enum class MetropolisUse {
@@ -57,14 +47,14 @@ struct PreconditionedOptions {
  * Draws are bit-identical for every number of threads: what the chains share is put
  * together from their results in the order of the chains.
  *
- * \param[in] target makes the energy of each chain
+ * \param[in] energies one a chain
  * \param[in] sampler how the steps are made
  * \param[in] options num_burn_in 0 and thinning 1 are automatic, so that draws are
  *            nearly independent; initial_spread is not used (the energies draw their
  *            starts)
  * \param[in] progress told of every step; returns false to cancel */
 BAYESIAN_ICP_EXPORT ChainSet
-runPreconditionedChains(const PreconditionedTarget& target,
+runPreconditionedChains(std::vector<std::unique_ptr<StochasticEnergy>> energies,
                         const PreconditionedOptions& sampler,
                         const ChainOptions& options,
                         const ProgressCallback& progress = ProgressCallback());

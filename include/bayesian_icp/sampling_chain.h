@@ -13,7 +13,7 @@ namespace bayesian_icp {
 /** \brief State of a Markov chain. */
 class BAYESIAN_ICP_EXPORT SamplingChain {
 public:
-  virtual ~SamplingChain();
+  virtual ~SamplingChain() = default;
 
   /** \brief Do one step. */
   virtual void
@@ -22,6 +22,14 @@ public:
   /** \brief Position of the chain in the sampler's space. */
   virtual const Vector6d&
   position() const = 0;
+
+  /** \brief Whether the chain is so far out that it has to be stopped; by default, if
+   * it is not finite. */
+  virtual bool
+  hasDiverged() const
+  {
+    return !position().allFinite();
+  }
 };
 
 } // namespace bayesian_icp

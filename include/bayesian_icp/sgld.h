@@ -83,6 +83,9 @@ sgldStep(const Vector6d& pose,
          double noise_factor,
          Random& random);
 
+/** \brief Whether a pose is so far out that the chain has to be stopped. */
+using RunsAway = std::function<bool(const Vector6d& pose)>;
+
 /** \brief One chain of Algorithm 1. */
 class BAYESIAN_ICP_EXPORT SgldChain : public SamplingChain {
 public:
@@ -90,11 +93,13 @@ public:
    * \param[in] num_steps length of the chain, for the block decay of the step size
    * \param[in] start first pose [m, rad]
    * \param[in] gradient draws a mini-batch and gives its gradients
+   * \param[in] runs_away whether a finite pose has diverged
    * \param[in] random must outlive this object */
   SgldChain(const SgldOptions& options,
             long num_steps,
             const Vector6d& start,
             MiniBatchGradient gradient,
+            RunsAway runs_away,
             Random& random);
 
   void
@@ -104,12 +109,26 @@ public:
   const Vector6d&
   position() const override;
 
+  bool
+  hasDiverged() const override;
+
+  /** \brief Whether an angle moved by more than half a turn in most of the chain's
+   * steps. Such a chain is white noise on the circle, whose R-hat and effective sample
+   * size are perfect, and no walk through the posterior. */
+  bool
+  isWhiteNoise() const
+  {
+    return 2 * num_jumps_ > num_steps_;
+  }
+
 private:
   const SgldOptions& options_;
   long num_steps_;
   long steps_made_ = 0;
+  long num_jumps_ = 0;
   Vector6d pose_;
   MiniBatchGradient gradient_;
+  RunsAway runs_away_;
   RmsPropPreconditioner preconditioner_;
   Random& random_;
 };

@@ -25,12 +25,20 @@ struct SplitGradient {
  * object. */
 class BAYESIAN_ICP_EXPORT StochasticGradient {
 public:
-  virtual ~StochasticGradient();
+  virtual ~StochasticGradient() = default;
 
   /** \brief Gradient from \p batch_size terms, drawn without replacement; at most all
    * terms. */
   virtual SplitGradient
   gradient(const Vector6d& x, std::size_t batch_size, Random& random) = 0;
+
+  /** \brief Whether \p x is so far out that the chain has to be stopped; by default, if
+   * it is not finite. */
+  virtual bool
+  hasDiverged(const Vector6d& x) const
+  {
+    return !x.allFinite();
+  }
 };
 
 /** \brief Energy U(x) = likelihood + prior. The likelihood is a mean of n terms, and a
@@ -38,8 +46,6 @@ public:
  * remember what makes it faster, but its results must depend on the arguments alone. */
 class BAYESIAN_ICP_EXPORT StochasticEnergy : public StochasticGradient {
 public:
-  ~StochasticEnergy() override;
-
   /** \brief n, at least 1. A batch of n terms has no noise. */
   virtual std::size_t
   numTerms() const = 0;
@@ -63,31 +69,29 @@ public:
   virtual double
   energy(const Vector6d& x) = 0;
 
-  /** \brief U(x) up to a constant, from all terms. Metropolis steps sample it. The
-   * default is energy(), for densities whose energy() uses all terms. */
+  /** \brief U(x) up to a constant, from all terms. Metropolis steps sample it. */
   virtual double
-  fullEnergy(const Vector6d& x);
+  fullEnergy(const Vector6d& x) = 0;
+
+  /** \brief The pose that \p x stands for [m, rad]. */
+  virtual Vector6d
+  toPose(const Vector6d& x) const = 0;
 
   /** \brief A starting point, over-dispersed with respect to the density. */
   virtual Vector6d
   drawStart(Random& random) = 0;
 
-  /** \brief Move from \p start to a point near a mode. The default takes Newton steps
-   * with roughCurvature(). */
+  /** \brief Move from \p start to a point near a mode. */
   virtual Vector6d
-  burnIn(const Vector6d& start, Random& random);
+  burnIn(const Vector6d& start, Random& random) = 0;
 
   /** \brief Temperature at which the warm-up starts: a Gaussian at that temperature is
-   * wide enough to smooth the roughness of the likelihood. The default is 1.
+   * wide enough to smooth the roughness of the likelihood.
    * \param[in] x near a mode
    * \param[in] covariance of the Gaussian at temperature 1
    * \param[in] random generator of the chain */
   virtual double
-  initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random);
-
-  /** \brief Whether \p x is so far away that the chain has to stop. */
-  virtual bool
-  hasDiverged(const Vector6d& x) const;
+  initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random) = 0;
 };
 
 } // namespace bayesian_icp

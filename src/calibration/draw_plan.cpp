@@ -91,34 +91,35 @@ mapBetween(const MatrixXd& covariance, const MatrixXd& wanted)
 }
 
 Index
-numDrawsOf(const std::vector<Matrix6Xd>& positions)
+numDrawsOf(const std::vector<Path>& paths)
 {
   Index num_draws = 0;
-  for (const Matrix6Xd& chain : positions)
-    num_draws += chain.cols();
+  for (const Path& path : paths)
+    num_draws += path.positions.cols();
   return num_draws;
 }
 
 /** b, the last rows, of every chain that has draws: a run may end before others have
  * any, and Eigen has no rows of a matrix without columns. */
 std::vector<Eigen::Block<Matrix6Xd>>
-heldParts(std::vector<Matrix6Xd>& positions, Index num_held)
+heldParts(std::vector<Path>& paths, Index num_held)
 {
   std::vector<Eigen::Block<Matrix6Xd>> parts;
-  for (Matrix6Xd& chain : positions)
-    if (chain.cols() > 0)
-      parts.emplace_back(chain, 6 - num_held, 0, num_held, chain.cols());
+  for (Path& path : paths)
+    if (path.positions.cols() > 0)
+      parts.emplace_back(
+          path.positions, 6 - num_held, 0, num_held, path.positions.cols());
   return parts;
 }
 
 /** Mean of b over all chains. */
 VectorXd
-meanOfHeld(std::vector<Matrix6Xd>& positions, Index num_held)
+meanOfHeld(std::vector<Path>& paths, Index num_held)
 {
   VectorXd sum = VectorXd::Zero(num_held);
-  for (const auto& held : heldParts(positions, num_held))
+  for (const auto& held : heldParts(paths, num_held))
     sum += held.rowwise().sum();
-  return sum / static_cast<double>(numDrawsOf(positions));
+  return sum / static_cast<double>(numDrawsOf(paths));
 }
 
 double
@@ -134,51 +135,42 @@ chiSquared(int degrees_of_freedom, Random& random)
 
 } // namespace
 
-DrawPlan
-planDraws(WeightedScore& score,
-          const WeightedScoreModel& model,
-          const ChainOptions& options,
-          Random& random)
+StepPlan
+planDraws(WeightedScore& score, Random& random)
 {
-  const std::size_t num_terms = std::max<std::size_t>(1, model.active.size());
+  const std::size_t num_terms = std::max<std::size_t>(1, score.numTerms());
   const double share = 1.0 / static_cast<double>(std::min(batch_size, num_terms)) -
                        1.0 / static_cast<double>(num_terms);
   const Matrix6d covariance =
       score.termCovariance(num_noise_positions, num_noise_points, random);
-  DrawPlan plan;
   GaussianFit fit;
-  fit.gaussian = model.coordinates.gaussian();
-  plan.shape_gain = gainFor(share * covariance, fit.gaussian);
-  fit.term_covariance = plan.shape_gain * covariance * plan.shape_gain.transpose();
-  plan.steps = planSteps(fit, num_terms, batch_size, max_step_size);
-  plan.steps.thinning = options.thinning > 1
-                            ? options.thinning
-                            : thinningFor(plan.steps.step_sizes.minCoeff());
-  if (options.num_burn_in > 0)
-    plan.steps.num_burn_in = options.num_burn_in;
+  fit.gaussian = score.coordinates().gaussian();
+  const Matrix6d gain = gainFor(share * covariance, fit.gaussian);
+  score.setShapeGain(gain);
+  fit.term_covariance = gain * covariance * gain.transpose();
+  StepPlan plan = planSteps(fit, num_terms, batch_size, max_step_size);
+  plan.thinning = thinningFor(plan.step_sizes.minCoeff());
   return plan;
 }
 
 void
-spreadAsEstimated(const ProductCoordinates& coordinates,
-                  std::vector<Matrix6Xd>& positions)
+spreadAsEstimated(const ProductCoordinates& coordinates, std::vector<Path>& paths)
 {
   const Index num_held = 6 - coordinates.numPriorOnly();
-  const Index num_draws = numDrawsOf(positions);
+  const Index num_draws = numDrawsOf(paths);
   if (num_held == 0 || num_draws <= num_held)
     return;
-  const VectorXd mean = meanOfHeld(positions, num_held);
+  const VectorXd mean = meanOfHeld(paths, num_held);
   MatrixXd covariance = MatrixXd::Zero(num_held, num_held);
-  for (auto& held : heldParts(positions, num_held)) {
+  for (auto& held : heldParts(paths, num_held)) {
     held.colwise() -= mean;
     covariance += held * held.transpose();
   }
   covariance /= static_cast<double>(num_draws - 1);
-  const Matrix6d& factor = coordinates.gaussian().factor();
-  const Matrix6d wanted = factor * factor.transpose();
+  const Matrix6d wanted = coordinates.gaussian().covariance();
   const MatrixXd map =
       mapBetween(covariance, wanted.bottomRightCorner(num_held, num_held));
-  for (auto& held : heldParts(positions, num_held))
+  for (auto& held : heldParts(paths, num_held))
     held = ((map * held).colwise() + mean).eval();
 }
 
@@ -186,28 +178,19 @@ void
 scaleAtRandom(const ProductCoordinates& coordinates,
               int degrees_of_freedom,
               Random& random,
-              std::vector<Matrix6Xd>& positions)
+              std::vector<Path>& paths)
 {
   const Index num_held = 6 - coordinates.numPriorOnly();
-  if (degrees_of_freedom == 0 || num_held == 0 || numDrawsOf(positions) == 0)
+  if (degrees_of_freedom == 0 || num_held == 0 || numDrawsOf(paths) == 0)
     return;
-  const VectorXd mean = meanOfHeld(positions, num_held);
-  for (Matrix6Xd& chain : positions)
-    for (Index i = 0; i < chain.cols(); ++i) {
+  const VectorXd mean = meanOfHeld(paths, num_held);
+  for (Path& path : paths)
+    for (Index i = 0; i < path.positions.cols(); ++i) {
       const double scale =
           std::sqrt((degrees_of_freedom - 2) / chiSquared(degrees_of_freedom, random));
-      auto held = chain.col(i).tail(num_held);
+      auto held = path.positions.col(i).tail(num_held);
       held = (mean + scale * (held - mean)).eval();
     }
-}
-
-PoseMatrix
-posesOf(const ProductCoordinates& coordinates, const Matrix6Xd& positions)
-{
-  PoseMatrix poses(positions.cols(), 6);
-  for (Index i = 0; i < positions.cols(); ++i)
-    poses.row(i) = poseOf(coordinates.pose(positions.col(i)).matrix()).transpose();
-  return poses;
 }
 
 } // namespace bayesian_icp

@@ -6,29 +6,34 @@
 
 #include <bayesian_icp/calibration/calibrated_draws.h>
 #include <bayesian_icp/calibration/product_coordinates.h>
+#include <bayesian_icp/mini_batch.h>
 #include <bayesian_icp/stochastic_energy.h>
 
 #include <vector>
 
 namespace bayesian_icp {
 
-/** \brief What the chains' scores have in common. */
-struct WeightedScoreModel {
-  /** All must outlive this object. */
-  WeightedScoreModel(const CalibratedEstimate& estimate, const Prior& prior);
-
-  const CalibratedEstimate& estimate;
-  const Prior& prior;
-  ProductCoordinates coordinates;
-  /** Points that have a weight at the mode: those that batches are drawn from. */
-  std::vector<std::size_t> active;
-};
-
-/** \brief Gradient with respect to ProductCoordinates, for one chain. */
+/** \brief Gradient with respect to ProductCoordinates. Each chain has a copy. */
 class WeightedScore : public StochasticGradient {
 public:
-  /** \p model must outlive this object. */
-  WeightedScore(const WeightedScoreModel& model, BatchScore score);
+  /** \p estimate and \p prior must outlive this object. */
+  WeightedScore(const CalibratedEstimate& estimate,
+                const Prior& prior,
+                BatchScore score);
+
+  const ProductCoordinates&
+  coordinates() const
+  {
+    return coordinates_;
+  }
+
+  /** \brief Number of the points that have a weight at the mode: those that batches are
+   * drawn from. */
+  std::size_t
+  numTerms() const
+  {
+    return active_.size();
+  }
 
   /** \brief Follow the shape of the data only in part: the difference between the
    * likelihood's gradient and that of a Gaussian is multiplied by \p gain. */
@@ -43,26 +48,26 @@ public:
   SplitGradient
   gradient(const Vector6d& z, std::size_t batch_size, Random& random) override;
 
-  /** \brief Covariance of a term's gradient as in StochasticEnergy, n = active.size(),
+  /** \brief Covariance of a term's gradient as in StochasticEnergy, n = numTerms(),
    * from single points at draws of the calibrated Gaussian. */
   Matrix6d
   termCovariance(int num_positions, int num_points, Random& random);
 
 private:
-  const std::vector<std::size_t>&
-  drawBatch(std::size_t size, Random& random);
-
   Vector6d
   totalScore(const Vector6d& z, const std::vector<std::size_t>& batch);
 
   Vector6d
   guarded(const Vector6d& z, const Vector6d& likelihood) const;
 
-  const WeightedScoreModel& model_;
+  const CalibratedEstimate& estimate_;
+  const Prior& prior_;
   BatchScore score_;
+  ProductCoordinates coordinates_;
+  std::vector<std::size_t> active_;
   Matrix6d shape_gain_ = Matrix6d::Identity();
-  std::vector<std::size_t> shuffled_;
-  std::vector<std::size_t> batch_;
+  MiniBatches batches_;
+  PatchHints hints_;
 };
 
 } // namespace bayesian_icp

@@ -201,24 +201,23 @@ LinearScoreModel::drawScores(Random& random)
   scores.num_active = static_cast<int>(num_score_points);
 }
 
-MakeBatchScore
-LinearScoreModel::makeScore() const
+BatchScore
+LinearScoreModel::score() const
 {
-  return [this](const CalibratedEstimate&) {
-    return [this](const Eigen::Isometry3d& T_target_source,
-                  const std::vector<std::size_t>& indices,
-                  Vector6d& total) {
-      const SurfaceScores& scores = estimate_.scores;
-      const Vector6d xi =
-          twistBetween(estimate_.mode, T_target_source, estimate_.centre);
-      total.setZero();
-      for (const std::size_t index : indices) {
-        const auto i = static_cast<Index>(index);
-        const auto jacobian = scores.jacobians.col(i);
-        total += scores.scores.col(i) + jacobian * (errors_[i] + jacobian.dot(xi));
-      }
-      return static_cast<int>(indices.size());
-    };
+  return [this](const CalibratedEstimate&,
+                const Eigen::Isometry3d& T_target_source,
+                const std::vector<std::size_t>& indices,
+                PatchHints&,
+                Vector6d& total) {
+    const SurfaceScores& scores = estimate_.scores;
+    const Vector6d xi = twistBetween(estimate_.mode, T_target_source, estimate_.centre);
+    total.setZero();
+    for (const std::size_t index : indices) {
+      const auto i = static_cast<Index>(index);
+      const auto jacobian = scores.jacobians.col(i);
+      total += scores.scores.col(i) + jacobian * (errors_[i] + jacobian.dot(xi));
+    }
+    return static_cast<int>(indices.size());
   };
 }
 

@@ -44,8 +44,8 @@ public:
   LinearScoreModel(bool is_yaw_free, Random& random);
 
   /** \brief Scores of batches; this object must outlive it. */
-  MakeBatchScore
-  makeScore() const;
+  BatchScore
+  score() const;
 
   const Prior&
   prior() const

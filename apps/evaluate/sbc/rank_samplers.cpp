@@ -44,7 +44,7 @@ runLinearScores(std::uint64_t seed)
   options.seed = seed;
   options.num_threads = 1;
   const ChainSet chains =
-      sampleCalibrated(model.makeScore(), model.prior(), model.estimate(), options);
+      sampleCalibrated(model.score(), model.prior(), {{model.estimate()}}, options);
   const PosteriorEstimate estimate = {
       summarize(chains), {}, pooledDraws(chains.chains)};
   if (!hasUsableMean(estimate.summary.status))

@@ -1,12 +1,13 @@
-#include "../run_state.h"
-#include "draw_plan.h"
+#include "product_form.h"
 
-#include <bayesian_icp/calibration/calibrated_draws.h>
+#include "../src/sampling.h"
+
 #include <bayesian_icp/calibration/product_coordinates.h>
 
 #include <cmath>
 
 namespace bayesian_icp {
+namespace test {
 
 namespace {
 
@@ -19,7 +20,7 @@ constexpr double kept_deviation = 0.6;
 constexpr double walk_scale = 2.0;
 
 /** One Metropolis chain in product coordinates. */
-class ProductFormChain {
+class ProductFormChain : public SamplingChain {
 public:
   ProductFormChain(const ProductCoordinates& coordinates,
                    const Prior& prior,
@@ -32,15 +33,15 @@ public:
   , position_(coordinates.gaussian().mean())
   , energy_(energyAt(position_))
   {
-    const Matrix6d& L = coordinates.gaussian().factor();
     const int num_walking = coordinates.numPriorOnly();
     walk_scales_.head(num_walking) =
-        walk_scale * (L * L.transpose()).diagonal().cwiseSqrt().head(num_walking);
+        walk_scale *
+        coordinates.gaussian().covariance().diagonal().cwiseSqrt().head(num_walking);
     held_.head(num_walking).setZero();
   }
 
   void
-  step()
+  step() override
   {
     proposeAnywhere();
     proposeHeld();
@@ -49,7 +50,7 @@ public:
   }
 
   const Vector6d&
-  position() const
+  position() const override
   {
     return position_;
   }
@@ -116,40 +117,26 @@ private:
 ChainSet
 sampleProductForm(const Prior& prior,
                   const CalibratedEstimate& estimate,
-                  const ChainOptions& options,
-                  const ProgressCallback& progress)
+                  ChainOptions options)
 {
+  if (options.num_burn_in == 0)
+    options.num_burn_in = automatic_burn_in;
   const ProductCoordinates coordinates(estimate);
-  const int burn_in = options.num_burn_in > 0 ? options.num_burn_in : automatic_burn_in;
-  const auto stepsOf = [&](int chain) {
-    return burn_in + static_cast<long>(options.thinning) * options.numDrawsOf(chain);
+  const auto to_pose = [&](const Vector6d& z) {
+    return poseOf(coordinates.pose(z).matrix());
   };
+  const ProgressCallback nobody;
+  RunState run(nobody);
   ChainSet result;
-  result.chains.resize(static_cast<std::size_t>(options.num_chains));
-  long total_steps = 0;
-  for (int i = 0; i < options.num_chains; ++i)
-    total_steps += stepsOf(i);
-  RunState run(progress, total_steps);
-  forEachChain(options.num_chains, numThreadsFor(options, true), run, [&](int i) {
+  for (int i = 0; i < options.num_chains; ++i) {
     Random random(options.seed, static_cast<std::uint64_t>(i));
     ProductFormChain chain(coordinates, prior, random);
-    Chain& kept = result.chains[static_cast<std::size_t>(i)];
-    Matrix6Xd positions(6, options.numDrawsOf(i));
-    Eigen::Index num_kept = 0;
-    const long num_steps = stepsOf(i);
-    for (long step = 1; step <= num_steps && !run.stopped(); ++step) {
-      chain.step();
-      const long sampled = step - burn_in;
-      if (sampled > 0 && sampled % options.thinning == 0)
-        positions.col(num_kept++) = chain.position();
-      run.reportStep(
-          i, step, [&] { return poseOf(coordinates.pose(chain.position()).matrix()); });
-    }
-    kept.draws = posesOf(coordinates, positions.leftCols(num_kept));
-    kept.diverged = !kept.draws.allFinite();
-  });
-  result.cancelled = run.cancelled();
+    Path path;
+    advance(chain, scheduleOf(options, i), to_pose, i, run, path);
+    result.chains.push_back(chainOf(path, to_pose));
+  }
   return result;
 }
 
+} // namespace test
 } // namespace bayesian_icp
