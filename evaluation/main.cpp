@@ -2,10 +2,10 @@
  * \brief pcl_bayesian_icp_evaluate: studies of the samplers and the posteriors, one
  * sub-command each.
  */
-#include "coverage_command.h"
-#include "paper_command.h"
-#include "samplers_command.h"
-#include "sbc_command.h"
+#include "coverage/coverage_command.h"
+#include "paper/paper_command.h"
+#include "samplers/samplers_command.h"
+#include "sbc/sbc_command.h"
 
 #include <boost/program_options/errors.hpp>
 

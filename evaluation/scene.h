@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "gold_standard.h"
+#include "samplers/gold_standard.h"
 
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/options.h>

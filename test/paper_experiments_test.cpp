@@ -1,9 +1,9 @@
 // The experiments `runtime` and `accuracy`: rows that are kept, tables that follow from
 // them.
-#include "accuracy_file.h"
-#include "accuracy_methods.h"
 #include "command_helpers.h"
-#include "paper_experiment.h"
+#include "paper/accuracy_file.h"
+#include "paper/accuracy_methods.h"
+#include "paper/paper_experiment.h"
 #include "test_support.h"
 
 #include <bayesian_icp/calibration/twist.h>

@@ -1,12 +1,12 @@
 // The parts of the paper's experiments: pairs, Table I, divergences, curves, reports.
 #include "command_helpers.h"
-#include "distribution_study.h"
-#include "draw_curves.h"
 #include "evaluate_test_support.h"
-#include "kernel_density.h"
+#include "paper/distribution_study.h"
+#include "paper/draw_curves.h"
+#include "paper/kernel_density.h"
+#include "paper/paper_table.h"
+#include "paper/report_document.h"
 #include "paper_pairs.h"
-#include "paper_table.h"
-#include "report_document.h"
 
 #include <gtest/gtest.h>
 

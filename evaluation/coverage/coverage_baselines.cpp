@@ -1,9 +1,9 @@
-#include "coverage_baselines.h"
+#include "coverage/coverage_baselines.h"
 
-#include "baseline_problem.h"
-#include "pcl_baselines.h"
-#include "point_to_point_sandwich.h"
-#include "published_covariances.h"
+#include "methods/baseline_problem.h"
+#include "methods/pcl_baselines.h"
+#include "methods/point_to_point_sandwich.h"
+#include "methods/published_covariances.h"
 
 #include <bayesian_icp/calibration/surface_model.h>
 

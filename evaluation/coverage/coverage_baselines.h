@@ -9,7 +9,7 @@
  */
 #pragma once
 
-#include "coverage_methods.h"
+#include "coverage/coverage_methods.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
-#include "coverage_calibrated.h"
+#include "coverage/coverage_calibrated.h"
 
-#include "coverage_methods.h"
+#include "coverage/coverage_methods.h"
 #include "formatted_text.h"
 
 #include <bayesian_icp/calibration/calibrated_report.h>

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "coverage_case.h"
+#include "coverage/coverage_case.h"
 
 #include <bayesian_icp/calibration/calibrated_estimate.h>
 

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "coverage_region.h"
+#include "coverage/coverage_region.h"
 
 #include <bayesian_icp/pose.h>
 

@@ -1,4 +1,4 @@
-#include "coverage_cases.h"
+#include "coverage/coverage_cases.h"
 
 #include <io/text_hash.h>
 

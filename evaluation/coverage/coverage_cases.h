@@ -4,8 +4,8 @@
  */
 #pragma once
 
-#include "coverage_case.h"
-#include "coverage_setups.h"
+#include "coverage/coverage_case.h"
+#include "coverage/coverage_setups.h"
 
 #include <cstdint>
 #include <string>

@@ -1,12 +1,12 @@
-#include "coverage_command.h"
+#include "coverage/coverage_command.h"
 
-#include "coverage_cases.h"
-#include "coverage_options.h"
-#include "coverage_plots.h"
-#include "coverage_real.h"
-#include "coverage_sequences.h"
-#include "coverage_study.h"
-#include "coverage_table.h"
+#include "coverage/coverage_cases.h"
+#include "coverage/coverage_options.h"
+#include "coverage/coverage_plots.h"
+#include "coverage/coverage_real.h"
+#include "coverage/coverage_sequences.h"
+#include "coverage/coverage_study.h"
+#include "coverage/coverage_table.h"
 #include "formatted_text.h"
 
 #include <boost/algorithm/string/join.hpp>

@@ -1,4 +1,4 @@
-#include "coverage_file.h"
+#include "coverage/coverage_file.h"
 
 #include "csv_fields.h"
 

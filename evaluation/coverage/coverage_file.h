@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "coverage_score.h"
+#include "coverage/coverage_score.h"
 #include "run_file.h"
 
 #include <string>

@@ -1,7 +1,7 @@
-#include "coverage_methods.h"
+#include "coverage/coverage_methods.h"
 
-#include "coverage_baselines.h"
-#include "coverage_calibrated.h"
+#include "coverage/coverage_baselines.h"
+#include "coverage/coverage_calibrated.h"
 
 #include <bayesian_icp/calibration/twist.h>
 

@@ -1,4 +1,4 @@
-#include "coverage_options.h"
+#include "coverage/coverage_options.h"
 
 #include "option_values.h"
 

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "coverage_sequences.h"
+#include "coverage/coverage_sequences.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
-#include "coverage_plots.h"
+#include "coverage/coverage_plots.h"
 
-#include "coverage_summary.h"
-#include "coverage_table.h"
+#include "coverage/coverage_summary.h"
+#include "coverage/coverage_table.h"
 
 #include <io/errors.h>
 #include <io/numbers.h>

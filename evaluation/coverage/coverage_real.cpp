@@ -1,4 +1,4 @@
-#include "coverage_real.h"
+#include "coverage/coverage_real.h"
 
 #include "scene.h"
 

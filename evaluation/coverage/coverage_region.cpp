@@ -1,4 +1,4 @@
-#include "coverage_region.h"
+#include "coverage/coverage_region.h"
 
 #include <boost/math/distributions/chi_squared.hpp>
 

@@ -1,4 +1,4 @@
-#include "coverage_score.h"
+#include "coverage/coverage_score.h"
 
 #include "draw_statistics.h"
 

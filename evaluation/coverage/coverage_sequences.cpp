@@ -1,4 +1,4 @@
-#include "coverage_sequences.h"
+#include "coverage/coverage_sequences.h"
 
 #include "scene.h"
 

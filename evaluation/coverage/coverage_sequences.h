@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "coverage_case.h"
+#include "coverage/coverage_case.h"
 #include "scan_sequences.h"
 
 #include <map>

@@ -1,4 +1,4 @@
-#include "coverage_setups.h"
+#include "coverage/coverage_setups.h"
 
 #include <Eigen/Geometry>
 

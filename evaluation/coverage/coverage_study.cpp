@@ -1,4 +1,4 @@
-#include "coverage_study.h"
+#include "coverage/coverage_study.h"
 
 #include <bayesian_icp/first_exception.h>
 

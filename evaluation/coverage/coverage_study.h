@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "coverage_file.h"
-#include "coverage_methods.h"
+#include "coverage/coverage_file.h"
+#include "coverage/coverage_methods.h"
 
 #include <functional>
 #include <string>

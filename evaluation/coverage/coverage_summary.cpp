@@ -1,4 +1,4 @@
-#include "coverage_summary.h"
+#include "coverage/coverage_summary.h"
 
 #include "draw_statistics.h"
 

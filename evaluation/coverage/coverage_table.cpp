@@ -1,6 +1,6 @@
-#include "coverage_table.h"
+#include "coverage/coverage_table.h"
 
-#include "coverage_summary.h"
+#include "coverage/coverage_summary.h"
 #include "formatted_text.h"
 
 #include <algorithm>

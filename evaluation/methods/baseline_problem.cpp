@@ -1,4 +1,4 @@
-#include "baseline_problem.h"
+#include "methods/baseline_problem.h"
 
 #include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/random.h>

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "coverage_case.h"
+#include "coverage/coverage_case.h"
 
 #include <bayesian_icp/baselines/closed_form_covariance.h>
 #include <bayesian_icp/kd_tree.h>

@@ -1,4 +1,4 @@
-#include "pcl_baselines.h"
+#include "methods/pcl_baselines.h"
 
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>

@@ -1,4 +1,4 @@
-#include "point_to_point_sandwich.h"
+#include "methods/point_to_point_sandwich.h"
 
 #include <bayesian_icp/calibration/curvature.h>
 #include <bayesian_icp/calibration/score_clusters.h>

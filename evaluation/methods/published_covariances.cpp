@@ -1,6 +1,6 @@
-#include "published_covariances.h"
+#include "methods/published_covariances.h"
 
-#include "pcl_baselines.h"
+#include "methods/pcl_baselines.h"
 
 #include <Eigen/Eigenvalues>
 

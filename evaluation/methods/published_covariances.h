@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "baseline_problem.h"
+#include "methods/baseline_problem.h"
 
 namespace bayesian_icp::evaluate {
 

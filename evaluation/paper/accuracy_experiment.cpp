@@ -1,9 +1,9 @@
-#include "accuracy_file.h"
-#include "accuracy_methods.h"
 #include "draw_statistics.h"
 #include "input_hash.h"
-#include "paper_experiment.h"
-#include "paper_table.h"
+#include "paper/accuracy_file.h"
+#include "paper/accuracy_methods.h"
+#include "paper/paper_experiment.h"
+#include "paper/paper_table.h"
 
 #include <bayesian_icp/calibration/twist.h>
 

@@ -1,4 +1,4 @@
-#include "accuracy_methods.h"
+#include "paper/accuracy_methods.h"
 
 #include <bayesian_icp/baselines/iterative_closest_point.h>
 #include <bayesian_icp/baselines/stochastic_gradient_icp.h>

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "paper_methods.h"
+#include "paper/paper_methods.h"
 
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "distribution_tables.h"
+#include "paper/distribution_tables.h"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "draw_curves.h"
+#include "paper/draw_curves.h"
 
 #include <io/numbers.h>
 #include <plot/gnuplot.h>

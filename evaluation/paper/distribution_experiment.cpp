@@ -1,4 +1,4 @@
-#include "distribution_plots.h"
+#include "paper/distribution_plots.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "distribution_file.h"
+#include "paper/distribution_file.h"
 
 #include "csv_fields.h"
 

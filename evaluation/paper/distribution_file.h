@@ -4,7 +4,7 @@
 #pragma once
 
 #include "run_file.h"
-#include "score.h"
+#include "samplers/score.h"
 
 #include <cstdint>
 #include <string>

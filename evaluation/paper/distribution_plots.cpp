@@ -1,7 +1,7 @@
-#include "distribution_plots.h"
+#include "paper/distribution_plots.h"
 
 #include "draw_statistics.h"
-#include "kernel_density.h"
+#include "paper/kernel_density.h"
 
 #include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/diagnostics.h>

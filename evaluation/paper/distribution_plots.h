@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "distribution_tables.h"
+#include "paper/distribution_tables.h"
 
 #include <string>
 #include <utility>

@@ -1,6 +1,6 @@
-#include "distribution_study.h"
+#include "paper/distribution_study.h"
 
-#include "coverage_score.h"
+#include "coverage/coverage_score.h"
 #include "draw_statistics.h"
 
 #include <bayesian_icp/calibration/twist.h>

@@ -3,9 +3,9 @@
  */
 #pragma once
 
-#include "distribution_file.h"
-#include "paper_baseline.h"
-#include "paper_methods.h"
+#include "paper/distribution_file.h"
+#include "paper/paper_baseline.h"
+#include "paper/paper_methods.h"
 
 #include <vector>
 

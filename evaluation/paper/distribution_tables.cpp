@@ -1,6 +1,6 @@
-#include "distribution_tables.h"
+#include "paper/distribution_tables.h"
 
-#include "coverage_summary.h"
+#include "coverage/coverage_summary.h"
 #include "draw_statistics.h"
 
 #include <io/numbers.h>

@@ -3,9 +3,9 @@
  */
 #pragma once
 
-#include "distribution_study.h"
-#include "paper_table.h"
-#include "report_document.h"
+#include "paper/distribution_study.h"
+#include "paper/paper_table.h"
+#include "paper/report_document.h"
 
 #include <functional>
 #include <string>

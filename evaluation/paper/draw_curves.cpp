@@ -1,8 +1,8 @@
-#include "draw_curves.h"
+#include "paper/draw_curves.h"
 
 #include "csv_fields.h"
 #include "draw_statistics.h"
-#include "score.h"
+#include "samplers/score.h"
 
 #include <algorithm>
 #include <limits>

@@ -4,8 +4,8 @@
  */
 #pragma once
 
-#include "paper_baseline.h"
-#include "paper_table.h"
+#include "paper/paper_baseline.h"
+#include "paper/paper_table.h"
 #include "run_file.h"
 
 #include <array>

@@ -1,5 +1,5 @@
 #include "option_values.h"
-#include "paper_experiment.h"
+#include "paper/paper_experiment.h"
 
 #include <io/cloud_file.h>
 #include <io/folders.h>

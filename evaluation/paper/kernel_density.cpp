@@ -1,4 +1,4 @@
-#include "kernel_density.h"
+#include "paper/kernel_density.h"
 
 #include <bayesian_icp/diagnostics.h>
 

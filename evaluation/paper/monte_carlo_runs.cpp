@@ -1,4 +1,4 @@
-#include "monte_carlo_runs.h"
+#include "paper/monte_carlo_runs.h"
 
 #include "csv_fields.h"
 #include "input_hash.h"

@@ -1,7 +1,7 @@
-#include "paper_baseline.h"
+#include "paper/paper_baseline.h"
 
 #include "input_hash.h"
-#include "monte_carlo_runs.h"
+#include "paper/monte_carlo_runs.h"
 
 #include <bayesian_icp/summary.h>
 

@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "paper_experiment.h"
-#include "paper_methods.h"
+#include "paper/paper_experiment.h"
+#include "paper/paper_methods.h"
 
 #include <bayesian_icp/baselines/monte_carlo_icp.h>
 

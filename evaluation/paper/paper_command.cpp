@@ -1,6 +1,6 @@
-#include "paper_command.h"
+#include "paper/paper_command.h"
 
-#include "report_origin.h"
+#include "paper/report_origin.h"
 
 #include <io/output_folder.h>
 

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "paper_experiment.h"
+#include "paper/paper_experiment.h"
 
 #include <string>
 #include <vector>

@@ -4,8 +4,8 @@
  */
 #pragma once
 
-#include "paper_options.h"
-#include "report_document.h"
+#include "paper/paper_options.h"
+#include "paper/report_document.h"
 
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "paper_methods.h"
+#include "paper/paper_methods.h"
 
 #include "cpu_time.h"
 #include "draw_statistics.h"

@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "published_covariances.h"
-#include "sampler_runs.h"
+#include "methods/published_covariances.h"
+#include "samplers/sampler_runs.h"
 #include "scan_pairs.h"
 
 #include <bayesian_icp/kd_tree.h>

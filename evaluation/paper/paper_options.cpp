@@ -1,4 +1,4 @@
-#include "paper_options.h"
+#include "paper/paper_options.h"
 
 #include "option_values.h"
 

@@ -1,4 +1,4 @@
-#include "paper_table.h"
+#include "paper/paper_table.h"
 
 #include "scan_pairs.h"
 

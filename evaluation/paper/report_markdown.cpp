@@ -1,4 +1,4 @@
-#include "report_document.h"
+#include "paper/report_document.h"
 
 #include <ostream>
 

@@ -1,4 +1,4 @@
-#include "report_origin.h"
+#include "paper/report_origin.h"
 
 #include <pcl/pcl_config.h>
 

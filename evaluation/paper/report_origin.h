@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "paper_options.h"
-#include "report_document.h"
+#include "paper/paper_options.h"
+#include "paper/report_document.h"
 
 namespace bayesian_icp::evaluate {
 

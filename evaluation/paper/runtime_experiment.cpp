@@ -1,9 +1,9 @@
 #include "csv_fields.h"
 #include "draw_statistics.h"
 #include "input_hash.h"
-#include "paper_experiment.h"
-#include "paper_methods.h"
-#include "paper_table.h"
+#include "paper/paper_experiment.h"
+#include "paper/paper_methods.h"
+#include "paper/paper_table.h"
 #include "run_file.h"
 
 #include <io/text_hash.h>

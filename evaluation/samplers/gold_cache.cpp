@@ -1,7 +1,7 @@
-#include "gold_cache.h"
+#include "samplers/gold_cache.h"
 
-#include "gold_file.h"
 #include "input_hash.h"
+#include "samplers/gold_file.h"
 
 #include <io/output_folder.h>
 #include <io/text_hash.h>

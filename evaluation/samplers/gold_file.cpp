@@ -1,4 +1,4 @@
-#include "gold_file.h"
+#include "samplers/gold_file.h"
 
 #include <istream>
 #include <ostream>

@@ -1,4 +1,4 @@
-#include "gold_run.h"
+#include "samplers/gold_run.h"
 
 #include "draw_statistics.h"
 

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "gold_standard.h"
+#include "samplers/gold_standard.h"
 
 #include <memory>
 #include <utility>

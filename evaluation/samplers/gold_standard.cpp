@@ -1,6 +1,6 @@
 #include "cpu_time.h"
 #include "draw_statistics.h"
-#include "gold_run.h"
+#include "samplers/gold_run.h"
 
 #include <bayesian_icp/diagnostics.h>
 

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "metropolis_runs.h"
+#include "samplers/metropolis_runs.h"
 
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "metropolis_runs.h"
+#include "samplers/metropolis_runs.h"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "result_table.h"
+#include "samplers/result_table.h"
 
 #include "draw_statistics.h"
 #include "formatted_text.h"

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "score.h"
+#include "samplers/score.h"
 
 #include <iosfwd>
 

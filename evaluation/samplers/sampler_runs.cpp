@@ -1,4 +1,4 @@
-#include "sampler_runs.h"
+#include "samplers/sampler_runs.h"
 
 #include "cpu_time.h"
 #include "draw_statistics.h"

@@ -1,7 +1,7 @@
-#include "samplers_command.h"
+#include "samplers/samplers_command.h"
 
-#include "result_table.h"
-#include "study.h"
+#include "samplers/result_table.h"
+#include "samplers/study.h"
 
 #include <io/cloud_file.h>
 

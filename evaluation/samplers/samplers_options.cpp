@@ -1,4 +1,4 @@
-#include "samplers_options.h"
+#include "samplers/samplers_options.h"
 
 #include "option_values.h"
 

@@ -1,4 +1,4 @@
-#include "score.h"
+#include "samplers/score.h"
 
 #include "draw_statistics.h"
 

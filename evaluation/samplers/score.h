@@ -5,7 +5,7 @@
 #pragma once
 
 #include "row_file.h"
-#include "sampler_runs.h"
+#include "samplers/sampler_runs.h"
 
 #include <bayesian_icp/summary.h>
 

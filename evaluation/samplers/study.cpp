@@ -1,6 +1,6 @@
-#include "study.h"
+#include "samplers/study.h"
 
-#include "gold_cache.h"
+#include "samplers/gold_cache.h"
 
 #include <io/text_hash.h>
 

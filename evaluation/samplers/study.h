@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "samplers_options.h"
-#include "score.h"
+#include "samplers/samplers_options.h"
+#include "samplers/score.h"
 
 #include <functional>
 

@@ -1,4 +1,4 @@
-#include "rank_models.h"
+#include "sbc/rank_models.h"
 
 #include <bayesian_icp/calibration/product_coordinates.h>
 

@@ -1,9 +1,9 @@
-#include "rank_samplers.h"
+#include "sbc/rank_samplers.h"
 
-#include "coverage_calibrated.h"
-#include "coverage_cases.h"
-#include "coverage_methods.h"
-#include "rank_models.h"
+#include "coverage/coverage_calibrated.h"
+#include "coverage/coverage_cases.h"
+#include "coverage/coverage_methods.h"
+#include "sbc/rank_models.h"
 
 #include <bayesian_icp/pipeline.h>
 

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "rank_statistics.h"
+#include "sbc/rank_statistics.h"
 
 #include <cstdint>
 #include <functional>

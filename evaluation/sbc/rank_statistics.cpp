@@ -1,4 +1,4 @@
-#include "rank_statistics.h"
+#include "sbc/rank_statistics.h"
 
 #include <numeric>
 

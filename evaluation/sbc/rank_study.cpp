@@ -1,4 +1,4 @@
-#include "rank_study.h"
+#include "sbc/rank_study.h"
 
 #include "option_values.h"
 

@@ -4,8 +4,8 @@
  */
 #pragma once
 
-#include "rank_samplers.h"
 #include "row_file.h"
+#include "sbc/rank_samplers.h"
 
 #include <map>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "rank_table.h"
+#include "sbc/rank_table.h"
 
 #include "formatted_text.h"
 

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "rank_study.h"
+#include "sbc/rank_study.h"
 
 #include <iosfwd>
 

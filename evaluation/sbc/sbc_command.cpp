@@ -1,8 +1,8 @@
-#include "sbc_command.h"
+#include "sbc/sbc_command.h"
 
-#include "rank_study.h"
-#include "rank_table.h"
-#include "sbc_options.h"
+#include "sbc/rank_study.h"
+#include "sbc/rank_table.h"
+#include "sbc/sbc_options.h"
 
 #include <io/errors.h>
 #include <io/output_folder.h>

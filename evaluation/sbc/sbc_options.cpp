@@ -1,4 +1,4 @@
-#include "sbc_options.h"
+#include "sbc/sbc_options.h"
 
 #include "option_values.h"
 

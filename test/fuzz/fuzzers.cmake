@@ -67,9 +67,6 @@ target_sources(
           ${evaluation}/sbc/rank_study.cpp
           ${apps}/register/data_json.cpp
           ${apps}/register/posterior_json.cpp)
-foreach(folder coverage paper samplers sbc)
-  target_include_directories(fuzz_result_file PRIVATE ${evaluation}/${folder})
-endforeach()
 target_compile_definitions(fuzz_result_file
                            PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
 target_link_libraries(fuzz_result_file PRIVATE Boost::program_options)
