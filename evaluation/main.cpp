@@ -4,6 +4,7 @@
  */
 #include "coverage/coverage_command.h"
 #include "paper/paper_command.h"
+#include "report_program.h"
 #include "samplers/samplers_command.h"
 #include "sbc/sbc_command.h"
 
@@ -53,9 +54,12 @@ subCommands()
     commands.push_back({experiment.name,
                         experiment.summary,
                         [&experiment](int argc, const char* const* argv) {
-                          return evaluate::runExperimentCommand(
-                              experiment.run, experiment.details, argc, argv);
+                          return evaluate::runExperiments(
+                              {experiment.details, experiment.run}, argc, argv);
                         }});
+  commands.push_back({"report",
+                      "report.md, report.html and figures of the CSV files in a folder",
+                      evaluate::runReportCommand});
   return commands;
 }
 

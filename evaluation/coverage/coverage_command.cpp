@@ -2,19 +2,18 @@
 
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_options.h"
-#include "coverage/coverage_plots.h"
 #include "coverage/coverage_real.h"
 #include "coverage/coverage_sequences.h"
 #include "coverage/coverage_study.h"
 #include "coverage/coverage_table.h"
 #include "formatted_text.h"
+#include "report_program.h"
 
 #include <boost/algorithm/string/join.hpp>
 
 #include <io/cloud_file.h>
 #include <io/errors.h>
-#include <io/output_folder.h>
-#include <plot/gnuplot.h>
+#include <io/folders.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -271,19 +270,13 @@ runCoverageCommand(int argc, const char* const* argv)
     return 0;
   }
   io::silencePcl();
-  if (!options.plot_folder.empty()) {
-    plot::requireGnuplot("--plots");
-    const io::OutputFolder can_be_written(options.plot_folder);
-  }
   CoverageStudy study = studyOf(options);
   study.report = reportProgress;
   CoverageFile results(options.result_file);
   runCoverageStudy(study, results);
   const auto runs = runsOf(study, results);
   printCoverageTable(runs, std::cout);
-  if (!options.plot_folder.empty())
-    plotCoverage(runs, options.plot_folder);
-  return 0;
+  return options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
 }
 
 } // namespace bayesian_icp::evaluate

@@ -47,9 +47,9 @@ description()
      "file with pairs of recordings, their guesses and truths, in place of random guesses: a "
      "JSON object a line with set, pair (the target's number), guess and truth (3x4, of a source "
      "that is turned as the truth asks for)")
-    ("output", textOption("evaluation/coverage.csv"),
+    ("output", textOption("results/coverage.csv"),
      "results, a row a run; runs that are there are not made again")
-    ("plots", textOption(""), "folder of plots (SVG and PNG, made by gnuplot); without it, none")
+    ("report", "also make a report, with figures, of all results in that folder")
     ("threads", intOption(0), "cases at a time; 0: as many as there are cores")
     ("quick",
      "two scenes, pairs or recordings, one condition, three seeds or pairs, unless they are given")
@@ -123,7 +123,7 @@ parseCoverageOptions(int argc, const char* const* argv)
   options.methods = split(text("methods"), ',');
   options.result_file = text("output");
   options.real_folder = text("real");
-  options.plot_folder = text("plots");
+  options.has_report = given.count("report") > 0;
   options.num_seeds = integerWithin(given, "seeds", 1, 1000000);
   options.first_seed = seedOf(given, "first-seed");
   options.num_threads = numThreadsOf(given);
@@ -164,7 +164,8 @@ coverageHelp()
          "ones\n"
          "without a flag: lost, or NEES above 27.856).\n"
          "Results of another build of the methods have to be deleted by hand.\n"
-         "Exit codes: 0 good, 2 usage, 3 cannot read or write a file.\n\n"
+         "Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the "
+         "report.\n\n"
       << description();
   return help.str();
 }

@@ -26,8 +26,7 @@ struct CoverageOptions {
   std::string real_folder;
   bool has_sequences = false;
   SequenceOptions sequences;
-  /** Empty: no plots. */
-  std::string plot_folder;
+  bool has_report = false;
   int num_threads = 1;
   /** Few scenes and one condition where none are given. */
   bool is_quick = false;

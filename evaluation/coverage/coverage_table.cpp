@@ -94,6 +94,30 @@ printLine(const std::string& method,
          << '\n';
 }
 
+std::vector<std::string>
+namesOf(const Runs& runs, std::string CoverageRunName::*member)
+{
+  std::vector<std::string> names;
+  for (const CoverageRun& run : runs)
+    if (std::find(names.begin(), names.end(), run.name.*member) == names.end())
+      names.push_back(run.name.*member);
+  return names;
+}
+
+/** The runs of each method, in order of appearance. */
+std::vector<std::pair<std::string, Runs>>
+runsByMethod(const Runs& runs)
+{
+  std::vector<std::pair<std::string, Runs>> methods;
+  for (const std::string& method : namesOf(runs, &CoverageRunName::method)) {
+    methods.emplace_back(method, Runs());
+    for (const CoverageRun& run : runs)
+      if (run.name.method == method)
+        methods.back().second.push_back(run);
+  }
+  return methods;
+}
+
 void
 printBlock(const std::string& title, const Runs& runs, std::ostream& stream)
 {
@@ -115,16 +139,6 @@ select(const Runs& runs, const std::string& scene, const std::string& condition)
         (condition.empty() || run.name.condition == condition))
       selected.push_back(run);
   return selected;
-}
-
-std::vector<std::string>
-namesOf(const Runs& runs, std::string CoverageRunName::*member)
-{
-  std::vector<std::string> names;
-  for (const CoverageRun& run : runs)
-    if (std::find(names.begin(), names.end(), run.name.*member) == names.end())
-      names.push_back(run.name.*member);
-  return names;
 }
 
 void
@@ -154,19 +168,6 @@ printHeader(std::ostream& stream)
 }
 
 } // namespace
-
-std::vector<std::pair<std::string, Runs>>
-runsByMethod(const Runs& runs)
-{
-  std::vector<std::pair<std::string, Runs>> methods;
-  for (const std::string& method : namesOf(runs, &CoverageRunName::method)) {
-    methods.emplace_back(method, Runs());
-    for (const CoverageRun& run : runs)
-      if (run.name.method == method)
-        methods.back().second.push_back(run);
-  }
-  return methods;
-}
 
 void
 printCoverageTable(const Runs& runs, std::ostream& stream)

@@ -15,8 +15,4 @@ namespace bayesian_icp::evaluate {
 void
 printCoverageTable(const std::vector<CoverageRun>& runs, std::ostream& stream);
 
-/** \brief The runs of each method, in order of appearance. */
-std::vector<std::pair<std::string, std::vector<CoverageRun>>>
-runsByMethod(const std::vector<CoverageRun>& runs);
-
 } // namespace bayesian_icp::evaluate

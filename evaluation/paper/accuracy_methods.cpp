@@ -74,10 +74,9 @@ icp(const PaperProblem& problem, const AccuracyStart& start)
 }
 
 AccuracyMethod
-sgdMethod(const char* name, const char* title, bool is_one_to_one)
+sgdMethod(const char* name, bool is_one_to_one)
 {
   return {name,
-          title,
           [is_one_to_one](const PaperProblem& problem, const AccuracyStart& start) {
             return sgdIcp(is_one_to_one, problem, start);
           }};
@@ -86,9 +85,7 @@ sgdMethod(const char* name, const char* title, bool is_one_to_one)
 AccuracyMethod
 bayesianMethod(const char* name, Preset preset)
 {
-  return {name,
-          std::string("Bayesian ICP, ") + name,
-          [preset](const PaperProblem& problem, const AccuracyStart& start) {
+  return {name, [preset](const PaperProblem& problem, const AccuracyStart& start) {
             return bayesianMean(preset, problem, start);
           }};
 }
@@ -102,9 +99,9 @@ accuracyMethods()
       bayesianMethod("paper", Preset::Paper),
       bayesianMethod("exact", Preset::Exact),
       bayesianMethod("calibrated", Preset::Calibrated),
-      sgdMethod("sgd-icp", "SGD-ICP, Adam", false),
-      sgdMethod("sgd-icp-filter", "SGD-ICP, Adam, repeated matches left out", true),
-      {"icp", "ICP to completion", icp}};
+      sgdMethod("sgd-icp", false),
+      sgdMethod("sgd-icp-filter", true),
+      {"icp", icp}};
   return methods;
 }
 

@@ -34,8 +34,6 @@ struct AccuracyStart {
 struct AccuracyMethod {
   /** In the file. */
   std::string name;
-  /** In tables and plots. */
-  std::string title;
   std::function<AccuracyEstimate(const PaperProblem&, const AccuracyStart&)> run;
 };
 

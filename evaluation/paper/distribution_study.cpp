@@ -140,7 +140,7 @@ studyDistribution(const PaperStudy& study,
       made.runs.push_back(*file.find(name));
     }
     if (num_made > 0)
-      study.report(pair.name + ": " + method.title + ", " + std::to_string(num_made) +
+      study.report(pair.name + ": " + method.name + ", " + std::to_string(num_made) +
                    " runs");
   }
   return made;

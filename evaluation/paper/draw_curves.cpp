@@ -46,20 +46,18 @@ public:
     }
   }
 
-  /** Over the runs of a variant, which are complete. */
-  std::array<Spread, 7>
-  spreadsAt(const CurveVariant& variant, int value) const
+  /** The points of a run, which is complete. */
+  void
+  addTo(std::vector<CurvePoint>& points, const CurveVariant& variant, int repeat) const
   {
-    std::array<Spread, 7> spreads;
-    for (std::size_t k = 0; k < spreads.size(); ++k) {
-      std::vector<double> numbers;
-      numbers.reserve(static_cast<std::size_t>(options_.num_repeats));
-      for (int i = 0; i < options_.num_repeats; ++i)
-        numbers.push_back(
-            file_.find(nameOf(variant, i, value))->divergences[Eigen::Index(k)]);
-      spreads[k] = spreadOf(numbers);
-    }
-    return spreads;
+    for (const int value : plan_.values)
+      points.push_back(*file_.find(nameOf(variant, repeat, value)));
+  }
+
+  const std::string&
+  key() const
+  {
+    return key_;
   }
 
 private:
@@ -158,15 +156,13 @@ studyCurves(const PaperStudy& study,
 {
   const PaperProblem problem(pair);
   CurveRuns runs(study, plan, problem, file);
-  PairCurves curves;
-  curves.pair = pair.name;
+  PairCurves curves{runs.key(), {}};
   for (const CurveVariant& variant : plan.variants) {
-    for (int i = 0; i < study.options.num_repeats; ++i)
+    for (int i = 0; i < study.options.num_repeats; ++i) {
       runs.complete(variant, i);
-    study.report(pair.name + ": " + plan.name + ", " + variant.title);
-    auto& spreads = curves.spreads.emplace_back();
-    for (const int value : plan.values)
-      spreads.push_back(runs.spreadsAt(variant, value));
+      runs.addTo(curves.points, variant, i);
+    }
+    study.report(pair.name + ": " + plan.name + ", " + variant.name);
   }
   return curves;
 }

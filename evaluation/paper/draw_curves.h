@@ -5,10 +5,8 @@
 #pragma once
 
 #include "paper/paper_baseline.h"
-#include "paper/paper_table.h"
 #include "run_file.h"
 
-#include <array>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -24,19 +22,17 @@ struct DrawPart {
 
 /** \brief What is drawn from, once per seed. */
 struct CurveVariant {
-  /** In the file, and in tables and plots. */
+  /** In the file. */
   std::string name;
-  std::string title;
   std::string method;
   /** See DrawPlan. */
   double initial_spread = 0.0;
 };
 
-/** \brief A curve: what is on its axis, and the part of a run that each value means. */
+/** \brief A curve: the values on its axis, and the part of a run that each means. */
 struct CurvePlan {
-  /** Of the file and the plot. */
+  /** Of the file. */
   std::string name;
-  std::string axis;
   std::vector<CurveVariant> variants;
   std::vector<int> values;
   DrawPart (*part)(int value);
@@ -88,11 +84,10 @@ struct CurvePoint {
 
 using CurveFile = RunFile<CurvePoint>;
 
-/** \brief The curves of a pair: a variant's spreads, one a value and number. */
+/** \brief A pair's points of all variants, with its key. */
 struct PairCurves {
-  std::string pair;
-  /** [variant][value][coordinate, 6-D last]. */
-  std::vector<std::vector<std::array<Spread, 7>>> spreads;
+  std::string key;
+  std::vector<CurvePoint> points;
 };
 
 /** \brief Take from the files what is there and make the rest. */

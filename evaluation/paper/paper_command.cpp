@@ -1,60 +1,6 @@
 #include "paper/paper_command.h"
 
-#include "paper/report_origin.h"
-
-#include <io/output_folder.h>
-
-#include <iostream>
-
 namespace bayesian_icp::evaluate {
-
-namespace {
-
-ReportSection
-introduction(const PaperStudy& study)
-{
-  ReportSection section;
-  section.title = "What this is";
-  section.blocks.emplace_back(ReportText{
-      "The evaluation of F. Afzal Maken, F. Ramos, L. Ott: Estimating Motion "
-      "Uncertainty with Bayesian ICP, ICRA 2020 (arXiv 2004.07973), repeated. Metres, "
-      "radians, nats. A pose maps source points into the target frame. Bayesian ICP is "
-      "the paper's algorithm with its constants; Online-ICP its competitor, Censi's "
-      "closed form in the point-to-plane form of Prakhya et al.; exact and calibrated "
-      "are this project's."});
-  if (study.num_skipped > 0)
-    section.blocks.emplace_back(
-        ReportText{std::to_string(study.num_skipped) +
-                   " pairs could not be read and are not here."});
-  if (study.options.is_quick)
-    section.blocks.emplace_back(ReportText{
-        "Made with --quick: too few runs for any conclusion, only to see that all of "
-        "it works."});
-  return section;
-}
-
-void
-makeReport(const PaperStudy& study)
-{
-  ReportDocument document;
-  document.title = "Bayesian ICP: the paper's evaluation";
-  document.sections.push_back(introduction(study));
-  for (const NamedExperiment& experiment : paperExperiments()) {
-    study.report("experiment " + experiment.name);
-    document.sections.push_back(experiment.run(study));
-  }
-  document.sections.push_back(originSection(study.options));
-  io::OutputFolder folder(study.options.output_folder);
-  folder.add("report.md",
-             [&](std::ostream& stream) { writeMarkdown(document, stream); });
-  folder.add("report.html", [&](std::ostream& stream) {
-    writeHtml(document, study.options.output_folder, stream);
-  });
-  folder.commit();
-  std::cout << study.path("report.html") << '\n';
-}
-
-} // namespace
 
 const std::vector<NamedExperiment>&
 paperExperiments()
@@ -98,11 +44,16 @@ int
 runPaperCommand(int argc, const char* const* argv)
 {
   std::string summary =
-      "All experiments of the paper into one folder, and a report of them, report.md\n"
-      "and report.html:";
+      "All experiments of the paper into one folder, and a report of them:";
   for (const NamedExperiment& experiment : paperExperiments())
     summary += "\n  " + experiment.name + ": " + experiment.summary;
-  return runExperiments({summary, makeReport}, argc, argv);
+  const auto run_all = [](const PaperStudy& study) {
+    for (const NamedExperiment& experiment : paperExperiments()) {
+      study.report("experiment " + experiment.name);
+      experiment.run(study);
+    }
+  };
+  return runExperiments({summary, run_all}, argc, argv);
 }
 
 } // namespace bayesian_icp::evaluate

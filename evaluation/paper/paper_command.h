@@ -1,6 +1,6 @@
 /** \file
  * \brief The sub-commands of the paper's evaluation: an experiment each, and `paper`,
- * which makes all of them and a report.
+ * which makes all of them.
  */
 #pragma once
 
@@ -24,9 +24,8 @@ struct NamedExperiment {
 const std::vector<NamedExperiment>&
 paperExperiments();
 
-/** \brief Run the sub-command `paper`: all experiments into one folder, with report.md
- * and report.html.
- * \return the exit code: 0, or 3 if a pair had to be skipped
+/** \brief Run the sub-command `paper`: all experiments into one folder.
+ * \return the exit code, see runExperiments()
  * \throws io::UsageError, io::FileError, boost::program_options::error */
 int
 runPaperCommand(int argc, const char* const* argv);

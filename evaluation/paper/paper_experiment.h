@@ -1,11 +1,10 @@
 /** \file
- * \brief What an experiment of the paper is: a sub-command by itself, and a section of
- * the report of `paper`.
+ * \brief What an experiment of the paper is: a sub-command by itself, and a part of
+ * `paper`.
  */
 #pragma once
 
 #include "paper/paper_options.h"
-#include "paper/report_document.h"
 
 #include <functional>
 #include <string>
@@ -15,6 +14,8 @@ namespace bayesian_icp::evaluate {
 
 /** \brief On what an experiment is made. */
 struct PaperStudy {
+  /** The sub-command. */
+  std::string command;
   PaperOptions options;
   /** Those that could be read, thinned; at least one. */
   std::vector<ScanPair> pairs;
@@ -31,52 +32,43 @@ struct PaperStudy {
   }
 };
 
-/** \brief Runs what is not yet in the experiment's files in the output folder, writes
- * plots there, and says what came of all of it.
+/** \brief Runs what is not yet in the experiment's files in the output folder, and
+ * prints medians of all of it.
  * \throws io::FileError */
-using Experiment = std::function<ReportSection(const PaperStudy&)>;
+using Experiment = std::function<void(const PaperStudy&)>;
 
 /** \brief A sub-command that makes experiments. */
 struct ExperimentCommand {
   /** What --help says that it does. */
   std::string summary;
-  std::function<void(const PaperStudy&)> run;
+  Experiment run;
 };
 
-/** \brief Read options and pairs, make the output folder, and run the command;
- * progress goes to the standard error.
- * \return the exit code: 0, or 3 if a pair had to be skipped
+/** \brief Read options and pairs, make the output folder, run the command, and have the
+ * report made; progress goes to the standard error.
+ * \return the exit code: 0, or 3 if a pair had to be skipped or there is no report
  * \throws io::UsageError, io::FileError, boost::program_options::error */
 int
 runExperiments(const ExperimentCommand& command, int argc, const char* const* argv);
 
-/** \brief Run an experiment as a sub-command; its section goes to the standard output
- * as Markdown. Otherwise as runExperiments().
- * \param[in] summary what --help says that it does */
-int
-runExperimentCommand(const Experiment& experiment,
-                     const std::string& summary,
-                     int argc,
-                     const char* const* argv);
-
 /** \brief Table I with everything around it. */
-ReportSection
+void
 distributionExperiment(const PaperStudy& study);
 
 /** \brief KL against the number of draws. */
-ReportSection
+void
 samplesExperiment(const PaperStudy& study);
 
 /** \brief KL against the length of burn-in. */
-ReportSection
+void
 burnInExperiment(const PaperStudy& study);
 
 /** \brief Seconds per 1000 draws for 1, 2, 4 threads. */
-ReportSection
+void
 runtimeExperiment(const PaperStudy& study);
 
 /** \brief Errors of posterior means, SGD-ICP and ICP from random starts. */
-ReportSection
+void
 accuracyExperiment(const PaperStudy& study);
 
 } // namespace bayesian_icp::evaluate

@@ -46,9 +46,9 @@ runPreset(const PaperProblem& problem, const DrawPlan& plan, const OptionChange&
 }
 
 PaperMethod
-preset(const std::string& name, const std::string& title, const OptionChange& change)
+preset(const std::string& name, const OptionChange& change)
 {
-  return {name, title, [change](const PaperProblem& problem, const DrawPlan& plan) {
+  return {name, [change](const PaperProblem& problem, const DrawPlan& plan) {
             return runPreset(problem, plan, change);
           }};
 }
@@ -85,10 +85,9 @@ drawsOf(const TwistGaussian& gaussian, const DrawPlan& plan)
 
 PaperMethod
 gaussian(const std::string& name,
-         const std::string& title,
          const std::function<TwistGaussian(const CoverageCase&)>& fit)
 {
-  return {name, title, [name, fit](const PaperProblem& problem, const DrawPlan& plan) {
+  return {name, [name, fit](const PaperProblem& problem, const DrawPlan& plan) {
             const double begin = cpuSeconds();
             const auto known = problem.gaussians.find(name);
             const TwistGaussian& fitted =
@@ -112,31 +111,23 @@ const std::vector<PaperMethod>&
 paperMethods()
 {
   static const std::vector<PaperMethod> methods = {
-      preset("bayesian-icp",
-             "Bayesian ICP",
-             [](Options& options) { options.preset = Preset::Paper; }),
+      preset("bayesian-icp", [](Options& options) { options.preset = Preset::Paper; }),
       preset("bayesian-icp-1e-5",
-             "Bayesian ICP, step 1e-5",
              [](Options& options) {
                options.preset = Preset::Paper;
                options.sgld.step_size = 1e-5;
              }),
-      preset(
-          "exact", "exact", [](Options& options) { options.preset = Preset::Exact; }),
+      preset("exact", [](Options& options) { options.preset = Preset::Exact; }),
       preset("calibrated",
-             "calibrated",
              [](Options& options) { options.preset = Preset::Calibrated; }),
       gaussian("online-icp",
-               "Online-ICP",
                [](const CoverageCase& c) { return planeClosedForm(c, paper_sigma); }),
       gaussian("online-icp-point",
-               "Online-ICP, point-to-point",
                [](const CoverageCase& c) { return pointClosedForm(c, paper_sigma); }),
       gaussian("online-icp-noise",
-               "Online-ICP, estimated noise",
                [](const CoverageCase& c) { return planeClosedForm(c, estimated); }),
-      gaussian("hessian", "Hessian", pointHessian),
-      gaussian("gicp", "Hessian of GICP", gicpHessian)};
+      gaussian("hessian", pointHessian),
+      gaussian("gicp", gicpHessian)};
   return methods;
 }
 

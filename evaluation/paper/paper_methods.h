@@ -51,10 +51,8 @@ struct PaperRun {
 };
 
 struct PaperMethod {
-  /** In files and --help. */
+  /** In files. */
   std::string name;
-  /** In tables and plots. */
-  std::string title;
   std::function<PaperRun(const PaperProblem&, const DrawPlan&)> run;
 };
 

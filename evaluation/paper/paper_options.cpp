@@ -51,7 +51,7 @@ paperOptionsDescription()
      "manifest.json says")
     ("pairs", textOption(""),
      "names with commas between; without it, all of the manifest, or the paper's six objects")
-    ("output", textOption("evaluation/paper"),
+    ("output", textOption("results/paper"),
      "folder of the results; runs that are there are not made again")
     ("baseline-runs", intOption(1000),
      "runs of Monte Carlo ICP a pair (the paper: 10000); more later only adds to them")
@@ -64,6 +64,7 @@ paperOptionsDescription()
     ("seed", intOption(1), "seed of all random numbers")
     ("threads", intOption(0), "0: as many as there are cores")
     ("quick", "60 baseline runs, 3 repeats and 500 points, unless they are given")
+    ("no-report", "CSV files only; the sub-command report makes the report of them")
     ("help", "show this text");
   // clang-format on
   return options;
@@ -82,6 +83,7 @@ paperOptionsOf(const po::variables_map& given)
   if (options.output_folder.empty())
     throw io::UsageError("--output needs the name of a folder");
   options.is_quick = given.count("quick") > 0;
+  options.has_report = given.count("no-report") == 0;
   options.seed = seedOf(given, "seed");
   options.num_threads = numThreadsOf(given);
   options.num_points = countOf(given, "points", 0, num_quick_points);

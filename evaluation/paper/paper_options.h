@@ -36,6 +36,8 @@ struct PaperOptions {
   int num_repeats = 10;
   /** Fewer of everything, to see that it works. */
   bool is_quick = false;
+  /** Or CSV files and medians only. */
+  bool has_report = true;
 };
 
 /** \brief Their description. An experiment with options of its own adds these to it. */

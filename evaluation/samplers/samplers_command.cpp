@@ -1,9 +1,11 @@
 #include "samplers/samplers_command.h"
 
+#include "report_program.h"
 #include "samplers/result_table.h"
 #include "samplers/study.h"
 
 #include <io/cloud_file.h>
+#include <io/folders.h>
 
 #include <iostream>
 #include <sstream>
@@ -47,7 +49,9 @@ runSamplersCommand(int argc, const char* const* argv)
     }
   }
   printTable(results.runs(), std::cout);
-  return all_converged ? 0 : 1;
+  const int report_code =
+      options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
+  return all_converged ? report_code : 1;
 }
 
 } // namespace bayesian_icp::evaluate

@@ -48,9 +48,10 @@ description()
     ("threads", intOption(1), "threads of the gold standard and the presets")
     ("gold-seconds", po::value<double>()->default_value(60.0),
      "CPU time after which a gold standard ends, converged or not [s]")
-    ("cache", textOption("evaluation"), "folder of the gold standards")
-    ("output", textOption("evaluation/samplers.csv"),
+    ("cache", textOption("results"), "folder of the gold standards")
+    ("output", textOption("results/samplers.csv"),
      "results, a row a run; runs that are there are not made again")
+    ("report", "also make a report of all results in that folder")
     ("quick", "one scene (can), two seeds, 500 points, unless they are given")
     ("help", "show this text");
   // clang-format on
@@ -131,6 +132,7 @@ parseSamplersOptions(int argc, const char* const* argv)
   options.num_seeds = integerWithin(given, "seeds", 1, 1000);
   options.num_points = integerWithin(given, "points", 10, 100000000);
   options.num_threads = integerWithin(given, "threads", 1, max_threads);
+  options.has_report = given.count("report") > 0;
   if (given.count("quick") > 0)
     makeQuick(given, options);
   options.gold.num_threads = options.num_threads;
@@ -157,7 +159,7 @@ samplersHelp()
          "error.\n"
          "Results of another build of the samplers have to be deleted by hand.\n"
          "Exit codes: 0 good, 1 a gold standard did not converge, 2 usage, 3 cannot\n"
-         "read or write a file.\n\n"
+         "read or write a file, or make the report.\n\n"
       << description();
   return help.str();
 }

@@ -16,6 +16,7 @@ struct SamplersOptions {
   std::string data_folder;
   std::string cache_folder;
   std::string result_file;
+  bool has_report = false;
   std::vector<std::string> scenes;
   std::vector<Cell> cells;
   std::vector<std::string> samplers;

@@ -3,8 +3,6 @@
 #include "formatted_text.h"
 
 #include <io/coordinates.h>
-#include <io/folders.h>
-#include <plot/gnuplot.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,16 +18,6 @@ verdictOf(const RankSampler& sampler, bool is_uniform)
   if (!sampler.is_well_specified)
     return "no model of the scans: for information";
   return is_uniform ? "uniform" : "NOT UNIFORM";
-}
-
-/** Lines "bin, runs in it". */
-std::string
-histogramLines(const RankHistogram& histogram)
-{
-  std::string lines;
-  for (std::size_t bin = 0; bin < histogram.size(); ++bin)
-    lines += std::to_string(bin) + ' ' + std::to_string(histogram[bin]) + '\n';
-  return lines;
 }
 
 } // namespace
@@ -58,36 +46,6 @@ printRankTable(const RankStudy& study, const RankFile& results, std::ostream& st
     are_all_uniform = are_all_uniform && (is_uniform || !sampler.is_well_specified);
   }
   return are_all_uniform;
-}
-
-void
-plotRanks(const RankStudy& study, const RankFile& results, const std::string& folder)
-{
-  const std::size_t num_rows = study.samplers.size();
-  std::string data;
-  std::string plot = "set multiplot layout " + std::to_string(num_rows) + ", 6\n";
-  for (std::size_t i = 0; i < num_rows; ++i) {
-    const RankSampler& sampler = study.samplers[i];
-    const std::vector<Ranks> runs = ranksOfSampler(study, sampler, results);
-    const double expected = static_cast<double>(runs.size()) / num_rank_bins;
-    for (int k = 0; k < 6; ++k) {
-      const std::string name = "ranks" + std::to_string(i) + '_' + std::to_string(k);
-      data += plot::dataBlock(name, histogramLines(rankHistogram(runs, k)));
-      plot +=
-          "set title " +
-          plot::quotedForGnuplot(sampler.name + ' ' +
-                                 app::coordinate_names[static_cast<std::size_t>(k)]) +
-          "\nplot $" + name + " using 1:2 with boxes, " + format("%.1f", expected) +
-          " linecolor 'gray'\n";
-    }
-  }
-  plot::savePictures("set encoding utf8\n" + data +
-                         "reset\nunset key\nset style fill solid 0.6 noborder\n"
-                         "set boxwidth 0.9\nset xrange [-0.5:9.5]\nset yrange [0:*]\n" +
-                         plot::pictures("1200, " + std::to_string(180 * num_rows),
-                                        plot + "unset multiplot\n"),
-                     {"ranks"},
-                     folder);
 }
 
 } // namespace bayesian_icp::evaluate

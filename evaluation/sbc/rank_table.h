@@ -1,5 +1,5 @@
 /** \file
- * \brief Ranks as a text table and as pictures.
+ * \brief Ranks as a text table.
  */
 #pragma once
 
@@ -15,11 +15,5 @@ namespace bayesian_icp::evaluate {
  *         every statistic below max_rank_chi_square */
 bool
 printRankTable(const RankStudy& study, const RankFile& results, std::ostream& stream);
-
-/** \brief Write rank histograms, a row a sampler, into a folder, as ranks.svg and
- * ranks.png.
- * \throws io::FileError */
-void
-plotRanks(const RankStudy& study, const RankFile& results, const std::string& folder);
 
 } // namespace bayesian_icp::evaluate

@@ -1,12 +1,12 @@
 #include "sbc/sbc_command.h"
 
+#include "report_program.h"
 #include "sbc/rank_study.h"
 #include "sbc/rank_table.h"
 #include "sbc/sbc_options.h"
 
 #include <io/errors.h>
-#include <io/output_folder.h>
-#include <plot/gnuplot.h>
+#include <io/folders.h>
 
 #include <algorithm>
 #include <iostream>
@@ -46,10 +46,6 @@ runSbcCommand(int argc, const char* const* argv)
     std::cout << sbcHelp();
     return 0;
   }
-  if (!options.plot_folder.empty()) {
-    plot::requireGnuplot("--plots");
-    const io::OutputFolder can_be_written(options.plot_folder);
-  }
   RankStudy study;
   study.samplers = chosenSamplers(options.samplers);
   study.num_runs = options.num_runs;
@@ -62,9 +58,9 @@ runSbcCommand(int argc, const char* const* argv)
   RankFile results(options.result_file);
   runRankStudy(study, results);
   const bool are_uniform = printRankTable(study, results, std::cout);
-  if (!options.plot_folder.empty())
-    plotRanks(study, results, options.plot_folder);
-  return are_uniform ? 0 : 1;
+  const int report_code =
+      options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
+  return are_uniform ? report_code : 1;
 }
 
 } // namespace bayesian_icp::evaluate

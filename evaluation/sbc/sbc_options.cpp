@@ -26,9 +26,9 @@ description()
      "between; exact: the first two; without it, all")
     ("runs", intOption(500), "runs of each sampler")
     ("seed", intOption(1), "seed of the first of them")
-    ("output", textOption("evaluation/sbc.csv"),
+    ("output", textOption("results/sbc.csv"),
      "results, a row a run; runs that are there are not made again")
-    ("plots", textOption(""), "folder of plots (SVG and PNG, made by gnuplot); without it, none")
+    ("report", "also make a report, with figures, of all results in that folder")
     ("threads", intOption(0), "runs at a time; 0: as many as there are cores")
     ("help", "show this text");
   // clang-format on
@@ -54,7 +54,7 @@ parseSbcOptions(int argc, const char* const* argv)
   options.num_runs = integerWithin(given, "runs", 1, 1000000);
   options.first_seed = seedOf(given, "seed");
   options.result_file = given["output"].as<std::string>();
-  options.plot_folder = given["plots"].as<std::string>();
+  options.has_report = given.count("report") > 0;
   options.num_threads = numThreadsOf(given);
   if (options.result_file.empty())
     throw io::UsageError("--output needs the name of a file");
@@ -75,7 +75,7 @@ sbcHelp()
          "CSV file. A table goes to the standard output, progress to the standard\n"
          "error. Results of another build have to be deleted by hand.\n"
          "Exit codes: 0 good, 1 ranks are not uniform or draws are no good, 2 usage,\n"
-         "3 cannot read or write a file.\n\n"
+         "3 cannot read or write a file, or make the report.\n\n"
       << description();
   return help.str();
 }

@@ -18,7 +18,7 @@ struct SbcOptions {
   std::uint64_t first_seed = 1;
   std::string result_file;
   /** Empty: no plots. */
-  std::string plot_folder;
+  bool has_report = false;
   int num_threads = 1;
 };
 
