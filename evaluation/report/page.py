@@ -23,6 +23,7 @@ matplotlib.rcParams.update(
 # Told apart by colour-blind readers as well (Okabe and Ito).
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#999933", "#882255")  # fmt: skip
 MARKERS = "osD^v<>Px"
+KEY_WIDTH = 2.4  # inch
 
 STYLE = """:root { color-scheme: light dark }
 body { font: 1rem/1.5 system-ui, sans-serif; max-width: 68rem; margin: 0 auto; padding: 1rem }
@@ -175,14 +176,23 @@ def panels(num_rows, num_columns, width, height, **options):
     )  # fmt: skip
 
 
+def add_key(figure, axes):
+    """The key of some axes, to the right of all panels."""
+    width, height = figure.get_size_inches()
+    share = width / (width + KEY_WIDTH)
+    figure.set_size_inches(width + KEY_WIDTH, height)
+    figure.get_layout_engine().set(rect=(0, 0, share, 1))
+    figure.legend(*axes.get_legend_handles_labels(), loc="center left", bbox_to_anchor=(share, 0.5))
+
+
 def save(output, name, caption, figure, key_of=None):
-    """Saves a figure; its key, which is that of the axes key_of, goes to its right."""
+    """Saves a figure, with the key of the axes key_of."""
     if key_of is not None:
-        handles, labels = key_of.get_legend_handles_labels()
-        figure.legend(handles, labels, loc="center left", bbox_to_anchor=(1.0, 0.5))
+        add_key(figure, key_of)
     for kind, options in {"svg": {"metadata": {"Date": None}}, "png": {"dpi": 100}}.items():
         data = io.BytesIO()
-        figure.savefig(data, format=kind, bbox_inches="tight", **options)
+        figure.savefig(data, format=kind, **options)
         output.files[f"{name}.{kind}"] = data.getvalue()
+        figure.set_layout_engine("none")  # it is laid out, and that takes long
     pyplot.close(figure)
     return Figure(name, caption)
