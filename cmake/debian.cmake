@@ -58,8 +58,9 @@ if(BAYESIAN_ICP_BUILD_APPS)
     tools pcl-bayesian-icp-tools science
     "This package has the programs, with manual pages and completion for bash.")
   set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS "${library_dependency}")
-  # They draw their charts by it.
-  set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot")
+  # They draw their charts by these, pcl_bayesian_icp_evaluate by Python.
+  set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS
+      "gnuplot-nox | gnuplot, python3-matplotlib, python3-pandas")
 endif()
 
 # What Debian wants otherwise than it is installed elsewhere.

@@ -19,7 +19,8 @@ set(program_descriptions
     "pcl_bayesian_icp_evaluate samples|divergence as a function of the number of draws"
     "pcl_bayesian_icp_evaluate burn-in|divergence as a function of the length of burn-in"
     "pcl_bayesian_icp_evaluate runtime|seconds per 1000 draws"
-    "pcl_bayesian_icp_evaluate accuracy|errors of posterior means, SGD-ICP and ICP")
+    "pcl_bayesian_icp_evaluate accuracy|errors of posterior means, SGD-ICP and ICP"
+    "pcl_bayesian_icp_evaluate report|make a report of a study's CSV files")
 
 find_program(DOXYGEN doxygen)
 if(DOXYGEN AND IS_TOP_LEVEL)

@@ -29,10 +29,13 @@ install(
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   COMPONENT development)
 
-# Tools are the programs of apps/ that carry the project's name.
+# Tools are the programs of apps/ and evaluation/ that carry the project's name.
 set(installed_programs)
 if(BAYESIAN_ICP_BUILD_APPS)
   get_directory_property(app_targets DIRECTORY ${PROJECT_SOURCE_DIR}/apps BUILDSYSTEM_TARGETS)
+  if(BAYESIAN_ICP_BUILD_EVALUATION)
+    list(APPEND app_targets pcl_bayesian_icp_evaluate)
+  endif()
   foreach(app IN LISTS app_targets)
     get_target_property(type ${app} TYPE)
     if(type STREQUAL "EXECUTABLE" AND app MATCHES "^pcl_bayesian_icp")

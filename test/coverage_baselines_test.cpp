@@ -1,4 +1,7 @@
 // The baselines of the coverage study, on scans of a wavy surface.
+#include "coverage/coverage_baselines.h"
+#include "methods/baseline_problem.h"
+#include "methods/pcl_baselines.h"
 #include "test_support.h"
 
 #include <bayesian_icp/calibration/twist.h>
@@ -7,10 +10,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-
-#include <baseline_problem.h>
-#include <coverage_baselines.h>
-#include <pcl_baselines.h>
 
 #include <map>
 

@@ -2,7 +2,7 @@
  * \brief The cases of the coverage study: do they have the truth that they state, from
  * the prior that they state? Statistical bounds are two-sided at 1e-6, seeds fixed.
  */
-#include "coverage_cases.h"
+#include "coverage/coverage_cases.h"
 
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/prior.h>

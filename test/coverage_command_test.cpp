@@ -22,21 +22,19 @@ protected:
 
 } // namespace
 
-TEST_F(CoverageCommand, RunsOnceAndDrawsThePlots)
+TEST_F(CoverageCommand, RunsOnceAndMakesTheReport)
 {
-  const std::string arguments = "--quick --methods prior --output results/a.csv";
+  const std::string arguments = "--quick --methods prior --output \"re'sults/a.csv\"";
   const CommandResult first = run(arguments);
   EXPECT_EQ(first.exit_code, 0) << first.output;
   EXPECT_NE(first.output.find("6 of 6 cases"), std::string::npos) << first.output;
-  const std::string rows = contentOf(folder_ / "results/a.csv");
-  if (runShell("gnuplot --version").exit_code != 0)
-    GTEST_SKIP() << "no gnuplot";
-  const CommandResult second = run(arguments + " --plots \"plo'ts\"");
+  const std::string rows = contentOf(folder_ / "re'sults/a.csv");
+  const CommandResult second = run(arguments + " --report");
   EXPECT_EQ(second.exit_code, 0) << second.output;
   EXPECT_EQ(second.output.find(" cases"), std::string::npos) << second.output;
-  EXPECT_EQ(contentOf(folder_ / "results/a.csv"), rows);
-  for (const char* name : {"coverage", "pit", "anees"}) {
-    const fs::path plot = folder_ / "plo'ts" / name;
+  EXPECT_EQ(contentOf(folder_ / "re'sults/a.csv"), rows);
+  for (const char* name : {"a_regions", "a_pit", "a_anees"}) {
+    const fs::path plot = folder_ / "re'sults" / name;
     EXPECT_EQ(contentOf(plot.string() + ".png").substr(1, 3), "PNG");
     EXPECT_NE(contentOf(plot.string() + ".svg").find("</svg>"), std::string::npos);
   }
@@ -82,11 +80,14 @@ TEST_F(CoverageCommand, BadFilesExitWithThree)
   }
 }
 
-TEST_F(CoverageCommand, SaysThatGnuplotIsMissing)
+TEST_F(CoverageCommand, PrintsItsTableWithoutPython)
 {
-  const CommandResult result =
-      run("--quick --methods prior --plots plots", "PATH=/nowhere");
+  const CommandResult result = run("--quick --methods prior --output a.csv --report",
+                                   "PCL_BAYESIAN_ICP_PYTHON=/nowhere");
   EXPECT_EQ(result.exit_code, 3) << result.output;
-  EXPECT_NE(result.output.find("gnuplot"), std::string::npos) << result.output;
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_NE(result.output.find("\nall\n  prior "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("then run: pcl_bayesian_icp_evaluate report .\n"),
+            std::string::npos)
+      << result.output;
+  EXPECT_TRUE(fs::exists(folder_ / "a.csv"));
 }

@@ -1,7 +1,7 @@
 // Real pairs as cases of the coverage study.
 #include "command_helpers.h"
-#include "coverage_methods.h"
-#include "coverage_real.h"
+#include "coverage/coverage_methods.h"
+#include "coverage/coverage_real.h"
 
 #include <bayesian_icp/random.h>
 

@@ -1,7 +1,7 @@
 // Scores of the coverage study: posteriors that are right by construction score as the
 // closed forms say.
-#include "coverage_score.h"
-#include "coverage_summary.h"
+#include "coverage/coverage_score.h"
+#include "coverage/coverage_summary.h"
 #include "coverage_test_support.h"
 
 #include <gtest/gtest.h>

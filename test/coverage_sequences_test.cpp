@@ -1,6 +1,6 @@
 // Recordings as cases of the coverage study.
 #include "command_helpers.h"
-#include "coverage_sequences.h"
+#include "coverage/coverage_sequences.h"
 #include "csv_rows.h"
 #include "paper_pairs.h"
 #include "simulate_helpers.h"

@@ -1,6 +1,6 @@
 // The coverage study: rows that come back, runs that are not made again.
-#include "coverage_study.h"
-#include "coverage_table.h"
+#include "coverage/coverage_study.h"
+#include "coverage/coverage_table.h"
 #include "coverage_test_support.h"
 
 #include <bayesian_icp/pipeline.h>

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "coverage_case.h"
+#include "coverage/coverage_case.h"
 
 #include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/random.h>

@@ -1,7 +1,7 @@
 // The gold standard of the evaluation app: Metropolis runs on densities whose moments
 // are known.
 #include "evaluate_test_support.h"
-#include "gold_standard.h"
+#include "samplers/gold_standard.h"
 
 #include <bayesian_icp/diagnostics.h>
 

@@ -2,9 +2,9 @@
 // bad draws, files that come back as they went.
 #include "draw_statistics.h"
 #include "evaluate_test_support.h"
-#include "gold_file.h"
-#include "result_table.h"
-#include "score.h"
+#include "samplers/gold_file.h"
+#include "samplers/result_table.h"
+#include "samplers/score.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Runs of Monte Carlo ICP on disk: the same bits, made once, never of other inputs.
 #include "command_helpers.h"
-#include "monte_carlo_runs.h"
+#include "paper/monte_carlo_runs.h"
 #include "test_support.h"
 
 #include <io/errors.h>

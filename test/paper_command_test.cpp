@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <string>
 
 namespace fs = std::filesystem;
@@ -27,19 +28,11 @@ withoutSeconds(Rows rows)
 
 class PaperCommand : public FolderTest {
 protected:
-  void
-  SetUp() override
-  {
-    FolderTest::SetUp();
-    if (runShell("gnuplot --version").exit_code != 0)
-      GTEST_SKIP() << "no gnuplot";
-  }
-
   CommandResult
-  run(const std::string& arguments) const
+  run(const std::string& arguments, const std::string& environment = "") const
   {
-    return runShell("cd '" + folder_.string() + "' && '" BAYESIAN_ICP_EVALUATE "' " +
-                    arguments);
+    return runShell("cd '" + folder_.string() + "' && " + environment +
+                    " '" BAYESIAN_ICP_EVALUATE "' " + arguments);
   }
 
   fs::path
@@ -53,7 +46,7 @@ protected:
 };
 
 constexpr char small[] =
-    " --data . --output out --quick --repeats 2 --baseline-runs 10";
+    " --data . --output out --quick --repeats 2 --baseline-runs 10 --no-report";
 
 } // namespace
 
@@ -68,7 +61,8 @@ TEST_F(PaperCommand, BrokenPairsAreSkippedAndTheExitCodeSaysSo)
   for (const char* piece : {"pair broken is skipped: ./broken/T_target_source.txt",
                             "pair missing is skipped: ./missing/source.pcd",
                             "2 pairs were skipped",
-                            "## Distribution (Table I)"})
+                            "medians of the runs of",
+                            "\n  good, online-icp "})
     EXPECT_NE(result.output.find(piece), std::string::npos) << result.output;
   const Rows rows = rowsOf(folder_ / "out/distribution.csv");
   ASSERT_GT(rows.size(), 2u);
@@ -111,6 +105,69 @@ TEST_F(PaperCommand, ThreadsMakeNoDifference)
   EXPECT_EQ(contentOf(runsOfIcp()), icp_rows);
   EXPECT_TRUE(withoutSeconds(rowsOf(folder_ / "out/distribution.csv")) ==
               withoutSeconds(rows));
+}
+
+TEST_F(PaperCommand, WritesWhatTheReportNeeds)
+{
+  writeScanPair(folder_, "good");
+  const CommandResult result = run(std::string("distribution --pairs good") + small);
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.md"));
+  const Rows baseline = rowsOf(folder_ / "out/baseline.csv");
+  ASSERT_EQ(baseline.size(), 2u);
+  EXPECT_EQ(baseline[1][0], "good");
+  EXPECT_EQ(baseline[1][2], "300"); // points of the target
+  EXPECT_EQ(baseline[1][3], "10");
+  std::map<std::string, int> draws, points;
+  for (const auto& row : rowsOf(folder_ / "out/draws_good.csv"))
+    ++draws[row.front()];
+  for (const auto& row : rowsOf(folder_ / "out/points_good.csv"))
+    ++points[row.front()];
+  EXPECT_EQ(draws["baseline"], 10);
+  EXPECT_EQ(draws["exact"], 2000);
+  for (const char* cloud : {"target", "before", "bayesian-icp", "calibrated", "truth"})
+    EXPECT_GT(points[cloud], 100) << cloud;
+  const std::string key = rowsOf(folder_ / "out/distribution.csv")[1][0];
+  const std::string record = contentOf(folder_ / "out/study.json");
+  for (const std::string& piece :
+       {"\"key\": \"" + key + "\"",
+        std::string("\"seeds\": 2"),
+        std::string("evaluate distribution --data . --pairs good --baseline-runs 10")})
+    EXPECT_NE(record.find(piece), std::string::npos) << record;
+}
+
+TEST_F(PaperCommand, SaysWhatTheReportNeedsAndMakesItLater)
+{
+  writeScanPair(folder_, "good");
+  const std::string command = "runtime --pairs good --data . --output out --quick";
+  const std::string without = "PCL_BAYESIAN_ICP_PYTHON=/nowhere";
+  const CommandResult result = run(command, without);
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_EQ(
+      count("The CSV files are complete. The report needs python3-pandas and "
+            "python3-matplotlib; then run: pcl_bayesian_icp_evaluate report out\n",
+            result.output),
+      1)
+      << result.output;
+  EXPECT_NE(result.output.find("seconds per 1000 draws"), std::string::npos);
+  EXPECT_EQ(run("report out", without).exit_code, 3);
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.md"));
+  const CommandResult later = run("report out");
+  EXPECT_EQ(later.exit_code, 0) << later.output;
+  EXPECT_EQ(later.output, "out/report.html\n");
+  EXPECT_EQ(count("## Run time\n", contentOf(folder_ / "out/report.md")), 1);
+}
+
+TEST_F(PaperCommand, ReportNamesWhatIsWrong)
+{
+  for (const char* arguments : {"report", "report a b", "report --quick"})
+    EXPECT_EQ(run(arguments).exit_code, 2) << arguments;
+  EXPECT_EQ(run("report --help").exit_code, 0);
+  EXPECT_EQ(run("report nowhere").exit_code, 3);
+  const CommandResult result = run("report .");
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_NE(result.output.find("no rows of a study"), std::string::npos)
+      << result.output;
 }
 
 TEST_F(PaperCommand, BadOptionsExitWithTwoAndLeaveNothing)

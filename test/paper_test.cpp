@@ -1,12 +1,10 @@
 // The parts of the paper's experiments: pairs, Table I, divergences, curves, reports.
 #include "command_helpers.h"
-#include "distribution_study.h"
-#include "draw_curves.h"
 #include "evaluate_test_support.h"
-#include "kernel_density.h"
+#include "paper/distribution_study.h"
+#include "paper/draw_curves.h"
+#include "paper/median_table.h"
 #include "paper_pairs.h"
-#include "paper_table.h"
-#include "report_document.h"
 
 #include <gtest/gtest.h>
 
@@ -164,46 +162,6 @@ TEST(ThinSource, IsTheSamePartEachTime)
   EXPECT_EQ(b.source.cols(), 20);
 }
 
-TEST(PaperTable, HasThePapersNumbers)
-{
-  // Read off the paper's Table I.
-  const auto yaw = paperCell("mug_hidden_handle", 5);
-  ASSERT_TRUE(yaw);
-  EXPECT_EQ(yaw->bayesian.mean, 5.467);
-  EXPECT_EQ(yaw->bayesian.sd, 4.926);
-  EXPECT_EQ(yaw->online.mean, 370.697);
-  EXPECT_EQ(paperCell("table_top", 3)->bayesian.mean, 5.947);
-  EXPECT_EQ(paperCell("table", 1)->online.mean, 0.062);
-  EXPECT_EQ(paperCell("mug", 0)->bayesian.sd, 0.049);
-  EXPECT_FALSE(paperCell("corridor", 0));
-}
-
-TEST(PaperTable, SpreadsLeaveInfinitiesOutAndSaySo)
-{
-  const Spread spread = spreadOf({1.0, 3.0, infinity});
-  EXPECT_EQ(spread.mean, 2.0);
-  EXPECT_DOUBLE_EQ(spread.sd, std::sqrt(2.0));
-  EXPECT_EQ(textOf(spread), "2.000 ± 1.414 (2 of 3 finite)");
-  EXPECT_EQ(textOf(spreadOf({infinity})), "infinite");
-  EXPECT_EQ(textOf(spreadOf({})), "-");
-  EXPECT_EQ(spreadOf({5.0}).sd, 0.0);
-}
-
-TEST(PaperTable, OrdersAreDecidedBeyondTheDeviations)
-{
-  const auto spread = [](double mean, double sd) { return Spread{mean, sd, 10, 10}; };
-  EXPECT_EQ(orderOf(spread(1.0, 0.3), spread(1.6, 0.4)), Order::BayesianLower);
-  EXPECT_EQ(orderOf(spread(1.6, 0.4), spread(1.0, 0.3)), Order::OnlineLower);
-  EXPECT_EQ(orderOf(spread(1.0, 0.3), spread(1.5, 0.4)), Order::Undecided);
-  const Spread diverged = spreadOf({infinity, infinity});
-  EXPECT_EQ(orderOf(diverged, spread(100.0, 0.0)), Order::OnlineLower);
-  EXPECT_EQ(orderOf(spread(100.0, 0.0), diverged), Order::BayesianLower);
-  EXPECT_EQ(orderOf(diverged, diverged), Order::Undecided);
-  EXPECT_STREQ(agreement(Order::BayesianLower, Order::BayesianLower), "yes");
-  EXPECT_STREQ(agreement(Order::BayesianLower, Order::OnlineLower), "no");
-  EXPECT_STREQ(agreement(Order::Undecided, Order::OnlineLower), "undecided");
-}
-
 TEST(DistributionRun, DivergenceIsTheClosedFormFromBaselineToMethod)
 {
   const PaperBaseline baseline = baselineWith(drawsWith(0.1, 0.2, 400, 1));
@@ -313,92 +271,18 @@ TEST(DrawCurves, DivergencesAreClosedForms)
   EXPECT_EQ(curveDivergences(PoseMatrix::Zero(5, 6), baseline)[6], infinity);
 }
 
-TEST(KernelDensity, OfGaussianQuantilesIsAWiderGaussian)
+TEST(MedianTable, LeavesOutWhatIsUnknownAndKeepsTheOrder)
 {
-  // Quantiles of N(1, 0.5^2), by bisection of its distribution function.
-  constexpr Eigen::Index size = 2000;
-  Eigen::VectorXd values(size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    double least = -5.0, most = 5.0;
-    for (int step = 0; step < 60; ++step) {
-      const double middle = 0.5 * (least + most);
-      const double share = 0.5 * std::erfc(-middle / std::sqrt(2.0));
-      (share * size < static_cast<double>(i) + 0.5 ? least : most) = middle;
-    }
-    values[i] = 1.0 + 0.5 * least;
-  }
-  const DensityCurve curve = densityOf(values);
-  EXPECT_EQ(curve.heights.maxCoeff(), 1.0);
-  // A Gaussian kernel adds its variance. The values are at most 0.04 standard
-  // deviations apart where the density is drawn, a fifth of the kernel's width: a sum
-  // over them is the integral but for less than 1e-3.
-  const double width = 0.9 * 0.5 * std::pow(static_cast<double>(size), -0.2);
-  const double variance = 0.25 + width * width;
-  for (Eigen::Index i = 0; i < curve.places.size(); ++i) {
-    const double x = curve.places[i] - 1.0;
-    EXPECT_NEAR(curve.heights[i], std::exp(-0.5 * x * x / variance), 1e-3) << x;
-  }
-  EXPECT_NEAR(curve.places[0], values[10] - 3.0 * width, 0.05);
-}
-
-TEST(KernelDensity, OfEqualValuesIsAPeak)
-{
-  const DensityCurve point = densityOf(Eigen::VectorXd::Constant(20, 3.0));
-  EXPECT_EQ(point.heights.maxCoeff(), 1.0);
-  EXPECT_EQ(point.places[0], 3.0);
-}
-
-namespace {
-
-ReportDocument
-exampleReport()
-{
-  ReportDocument document;
-  document.title = "A < B";
-  document.sections.push_back({"One & two",
-                               {ReportText{"p < q"},
-                                ReportCode{"run --it"},
-                                ReportTable{"T", {"name", "a|b"}, {{"x", "1"}}},
-                                ReportFigure{"one", "first"},
-                                ReportFigure{"two", "second"}}});
-  return document;
-}
-
-class Report : public FolderTest {};
-
-} // namespace
-
-TEST_F(Report, MarkdownHasTablesAndFigures)
-{
+  MedianTable table("errors", {"[mm]", "[mrad]"});
+  table.add("b", {3.0, infinity});
+  table.add("a", {0.25, std::nan("")});
+  table.add("b", {1.0, 2.0});
+  table.add("b", {12345.678, 4.0});
   std::ostringstream text;
-  writeMarkdown(exampleReport(), text);
+  table.print(text);
   EXPECT_EQ(text.str(),
-            "# A < B\n\n## One & two\n\np < q\n\n```\nrun --it\n```\n\nT\n\n"
-            "| name | a\\|b |\n|---|--:|\n| x | 1 |\n\n"
-            "![first](one.svg)\n\n![second](two.svg)\n");
-}
-
-TEST_F(Report, HtmlNeedsNoOtherFile)
-{
-  for (const char* name : {"one", "two"})
-    std::ofstream(folder_ / (std::string(name) + ".svg"))
-        << "<?xml version='1.0'?>\n<svg viewBox=\"0 0 9 9\"><defs><circle id='gpDot'/>"
-           "<g id='gpPt0'><use xlink:href='#gpDot'/></g></defs>"
-           "<use xlink:href='#gpPt0'/></svg>\n";
-  std::ostringstream html;
-  writeHtml(exampleReport(), folder_.string(), html);
-  const std::string text = html.str();
-  for (const char* piece : {"<title>A &lt; B</title>",
-                            "<h2>One &amp; two</h2>",
-                            "<p>p &lt; q</p>",
-                            "run --it</",
-                            ">a|b</th>",
-                            ">1</td>",
-                            "<circle id='figure-1-gpDot'/>",
-                            "<use xlink:href='#figure-1-gpPt0'/>",
-                            "<circle id='figure-2-gpDot'/>"})
-    EXPECT_NE(text.find(piece), std::string::npos) << piece;
-  EXPECT_EQ(text.find("<?xml"), std::string::npos);
-  std::ofstream(folder_ / "two.svg") << "<svg>";
-  EXPECT_THROW(writeHtml(exampleReport(), folder_.string(), html), io::FileError);
+            "errors\n"
+            "  medians of the runs of                    runs       [mm]     [mrad]\n"
+            "  b                                            3          3          4\n"
+            "  a                                            1       0.25          -\n");
 }

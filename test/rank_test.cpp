@@ -3,8 +3,8 @@
  * to be uniform, the chi-square statistic of a coordinate is above its bound with a
  * probability of 0.1 %.
  */
-#include "rank_models.h"
-#include "rank_samplers.h"
+#include "sbc/rank_models.h"
+#include "sbc/rank_samplers.h"
 
 #include <bayesian_icp/calibration/product_coordinates.h>
 #include <bayesian_icp/summary.h>

@@ -1,11 +1,10 @@
 /** \file
- * \brief Pictures drawn by gnuplot: as files, and as SVG in memory.
+ * \brief Pictures drawn by gnuplot, as SVG in memory.
  */
 #pragma once
 
 #include "io/errors.h"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -34,28 +33,6 @@ quotedForGnuplot(const std::string& text);
  * \param[in] lines numbers with spaces between, ends of lines included */
 std::string
 dataBlock(const std::string& name, const std::string& lines);
-
-/** \brief A line that begins several panels in one picture, their common key to the
- * right of them: all titles are those of the first panel that has any. Ends with "unset
- * multiplot". */
-std::string
-panelsWithKey(std::size_t num_rows, std::size_t num_columns);
-
-/** \brief Lines that draw one picture twice, as SVG and as PNG.
- * \param[in] size "width, height" in pixels
- * \param[in] plot the commands that draw it */
-std::string
-pictures(const std::string& size, const std::string& plot);
-
-/** \brief Have a script drawn and its pictures put into a folder, all of them or none.
- * \param[in] script has pictures() once for each of \p names
- * \param[in] names of the files, without .svg and .png
- * \param[in] folder is made if it is missing
- * \throws io::FileError if gnuplot does not draw them, or they cannot be written */
-void
-savePictures(const std::string& script,
-             const std::vector<std::string>& names,
-             const std::string& folder);
 
 /** \brief One picture to be drawn as SVG. */
 struct Drawing {

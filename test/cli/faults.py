@@ -146,8 +146,8 @@ class FaultTest(ToolTest):
                 {"coverage.csv"},
             ),
             "sbc": (
-                [EVALUATE, "sbc", *TWO_RUNS, *study, output / "sbc.csv", "--plots", output],
-                {"ranks.png", "ranks.svg", "sbc.csv"},
+                [EVALUATE, "sbc", *TWO_RUNS, *study, output / "sbc.csv", "--report"],
+                {"report.html", "report.md", "sbc.csv", "sbc_ranks.png", "sbc_ranks.svg"},
             ),
             **(viewer if self.has_display() else {}),
         }

@@ -49,7 +49,7 @@ class OutOfMemory(FaultTest):
         pair = self.big_pair(20000)
         bigger = [self.folder / "bigger.pcd"] * 2
         bigger[0].write_bytes(cloud_files.pcd_bytes(cloud_files.box_surface(20000, 3) * 15))
-        # OpenGL and gnuplot have words and signals of their own.
+        # OpenGL and Python have words and signals of their own.
         tools = [tool for tool in self.invocations(self.folder) if tool not in ("viewer", "sbc")]
         for tool in tools:
             its_pair = bigger if tool.startswith("transform") else pair

@@ -2,12 +2,13 @@
 # PCL, FLANN, Boost and Eigen have in headers.
 find_package(nlohmann_json 3 REQUIRED)
 set(apps ${PROJECT_SOURCE_DIR}/apps)
+set(evaluation ${PROJECT_SOURCE_DIR}/evaluation)
 
 # What reads files, without the programs around it.
 add_library(
   fuzz_readers STATIC
   ${apps}/batch/manifest.cpp
-  ${apps}/evaluate/scan_manifest.cpp
+  ${evaluation}/scan_manifest.cpp
   ${apps}/io/cloud_file.cpp
   ${apps}/io/folders.cpp
   ${apps}/io/input_file.cpp
@@ -25,7 +26,7 @@ add_library(
   ${apps}/register/settings_json.cpp
   fuzz_input.cpp)
 bayesian_icp_configure(fuzz_readers)
-target_include_directories(fuzz_readers PUBLIC ${apps} ${apps}/evaluate)
+target_include_directories(fuzz_readers PUBLIC ${apps} ${evaluation})
 target_compile_definitions(fuzz_readers PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
 target_link_libraries(fuzz_readers PUBLIC bayesian_icp_core nlohmann_json::nlohmann_json
                                           pcl_io)
@@ -57,18 +58,15 @@ target_sources(
   fuzz_result_file
   PRIVATE ${apps}/batch/batch_file.cpp
           ${apps}/batch/batch_line.cpp
-          ${apps}/evaluate/coverage/coverage_file.cpp
-          ${apps}/evaluate/option_values.cpp
-          ${apps}/evaluate/paper/distribution_file.cpp
-          ${apps}/evaluate/row_file.cpp
-          ${apps}/evaluate/samplers/gold_file.cpp
-          ${apps}/evaluate/samplers/result_file.cpp
-          ${apps}/evaluate/sbc/rank_study.cpp
+          ${evaluation}/coverage/coverage_file.cpp
+          ${evaluation}/option_values.cpp
+          ${evaluation}/paper/distribution_file.cpp
+          ${evaluation}/row_file.cpp
+          ${evaluation}/samplers/gold_file.cpp
+          ${evaluation}/samplers/result_file.cpp
+          ${evaluation}/sbc/rank_study.cpp
           ${apps}/register/data_json.cpp
           ${apps}/register/posterior_json.cpp)
-foreach(folder coverage paper samplers sbc)
-  target_include_directories(fuzz_result_file PRIVATE ${apps}/evaluate/${folder})
-endforeach()
 target_compile_definitions(fuzz_result_file
                            PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
 target_link_libraries(fuzz_result_file PRIVATE Boost::program_options)

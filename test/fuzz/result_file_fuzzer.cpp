@@ -2,13 +2,13 @@
  * \brief Fuzzes files that a batch or an evaluation goes on with: lines of JSON, rows
  * of CSV files, gold standards.
  */
-#include "accuracy_file.h"
 #include "batch/batch_file.h"
-#include "coverage_file.h"
-#include "distribution_file.h"
+#include "coverage/coverage_file.h"
 #include "fuzz_input.h"
-#include "gold_file.h"
-#include "rank_study.h"
+#include "paper/accuracy_file.h"
+#include "paper/distribution_file.h"
+#include "samplers/gold_file.h"
+#include "sbc/rank_study.h"
 
 #include <sstream>
 #include <stdexcept>

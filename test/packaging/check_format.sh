@@ -2,7 +2,7 @@
 # Arguments: the tree, clang-format.
 set -euo pipefail
 cd "$1"
-mapfile -t files < <(find include src apps test benchmark \
+mapfile -t files < <(find include src apps evaluation test benchmark \
   -name "*.h" -o -name "*.hpp" -o -name "*.cpp")
 echo "${#files[@]} files; to repair: clang-format-14 -i FILE..."
 "$2" --dry-run -Werror --style=file "${files[@]}"

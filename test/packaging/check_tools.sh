@@ -15,3 +15,10 @@ for tool in "${tools[@]}"; do
     exit 1
   fi
 done
+# The report is made by files that were installed with the tool; of an empty folder they
+# say so.
+folder=$(mktemp -d)
+trap 'rm -r "$folder"' EXIT
+said=$("$prefix/bin/pcl_bayesian_icp_evaluate" report "$folder" 2>&1) || true
+echo "$said"
+grep -F "has no rows of a study" <<<"$said" >/dev/null

@@ -1,0 +1,132 @@
+#include "coverage/coverage_baselines.h"
+
+#include "methods/baseline_problem.h"
+#include "methods/pcl_baselines.h"
+#include "methods/point_to_point_sandwich.h"
+#include "methods/published_covariances.h"
+
+#include <bayesian_icp/calibration/surface_model.h>
+
+namespace bayesian_icp::evaluate {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+namespace {
+
+using Baseline =
+    std::function<MethodResult(const CoverageCase&, const BaselineProblem&)>;
+
+MethodResult
+naive(const BaselineProblem& problem)
+{
+  double variance = 0.0;
+  const IcpFit fit = fitNaively(problem, variance);
+  const GaussNewton sums = gaussNewton(fit.matches, problem.centreAt(fit.pose));
+  return problem.combineWithPrior(fit.pose,
+                                  {sums.hessian / variance, sums.gradient / variance});
+}
+
+MethodResult
+closedForm(const BaselineProblem& problem)
+{
+  const PlaneFit planes = fitPlanes(problem);
+  const auto derivatives =
+      closedFormDerivatives(planes.fit.matches, problem.centreAt(planes.fit.pose));
+  return problem.combineWithPrior(planes.fit.pose,
+                                  closedFormInformation(derivatives, planes.sigma));
+}
+
+MethodResult
+sandwich(const BaselineProblem& problem)
+{
+  double variance = 0.0;
+  const IcpFit fit = fitNaively(problem, variance);
+  const double noise =
+      SurfaceModel(problem.target(), SurfaceModelOptions(), 1).medianSigma();
+  return problem.combineWithPrior(fit.pose,
+                                  pointToPointSandwich(problem, fit, variance, noise));
+}
+
+/** The registration of a case by PCL. */
+PclProblem
+pclProblem(const CoverageCase& coverage_case, const BaselineProblem& problem)
+{
+  return {coverage_case.source,
+          coverage_case.target,
+          problem.sourceColumns(),
+          problem.priorMean()};
+}
+
+MethodResult
+gicpWithHessian(const CoverageCase& coverage_case, const BaselineProblem& problem)
+{
+  const GicpFit gicp = fitPclGicp(pclProblem(coverage_case, problem));
+  MethodResult result;
+  if (gicp.moved.cols() == 0) {
+    result.notes = "too few points";
+    return result;
+  }
+  GaussianInformation information;
+  information.information = generalizedIcpHessian(
+      gicp.moved, gicp.covariances, problem.centreAt(gicp.fit.pose));
+  result = problem.combineWithPrior(gicp.fit.pose, information);
+  result.num_queries = -1;
+  if (!gicp.fit.has_converged)
+    result.notes = "not converged";
+  return result;
+}
+
+/** A registration that says nothing about its error. */
+Baseline
+poseOnly(PclFit (*fit)(const PclProblem&))
+{
+  return [fit](const CoverageCase& coverage_case, const BaselineProblem& problem) {
+    const PclFit found = fit(pclProblem(coverage_case, problem));
+    MethodResult result;
+    result.is_valid = result.is_pose_only = true;
+    result.mean = found.pose;
+    result.num_queries = -1;
+    result.notes = found.has_converged ? "pose only" : "pose only;not converged";
+    return result;
+  };
+}
+
+/** \p baseline for clouds that are not empty. */
+CoverageMethod
+method(const std::string& name, const Baseline& baseline)
+{
+  return {name, [baseline](const CoverageCase& coverage_case) {
+            if (coverage_case.source.cols() == 0 || coverage_case.target.cols() == 0) {
+              MethodResult refused;
+              refused.notes = "empty cloud";
+              return refused;
+            }
+            return baseline(coverage_case, BaselineProblem(coverage_case));
+          }};
+}
+
+/** A baseline that needs only the problem. */
+Baseline
+ofProblem(MethodResult (*run)(const BaselineProblem&))
+{
+  return [run](const CoverageCase&, const BaselineProblem& problem) {
+    return run(problem);
+  };
+}
+
+} // namespace
+
+std::vector<CoverageMethod>
+baselineMethods()
+{
+  return {method("naive", ofProblem(naive)),
+          method("closed-form", ofProblem(closedForm)),
+          method("point-to-point-sandwich", ofProblem(sandwich)),
+          method("gicp-hessian", gicpWithHessian),
+          method("gicp", poseOnly(fitPclGicpAsIs)),
+          method("icp", poseOnly(fitPclIcp))};
+}
+
+} // namespace bayesian_icp::evaluate

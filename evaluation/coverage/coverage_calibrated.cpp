@@ -1,0 +1,119 @@
+#include "coverage/coverage_calibrated.h"
+
+#include "coverage/coverage_methods.h"
+#include "formatted_text.h"
+
+#include <bayesian_icp/calibration/calibrated_report.h>
+
+#include <algorithm>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+std::string
+numberNote(const char* name, double value)
+{
+  return format(";%s=%.3g", name, value);
+}
+
+long
+numPriorOnly(const DataReport& report)
+{
+  return std::count_if(
+      report.directions.begin(), report.directions.end(), [](const auto& direction) {
+        return direction.observability == Observability::PriorOnly;
+      });
+}
+
+/** The raised flags, how many directions the data say nothing about, and the
+ * numbers that the flags are made of. */
+std::string
+notesOf(const DataReport& report)
+{
+  std::string notes;
+  const auto flag = [&notes](bool is_raised, const char* name) {
+    if (is_raised)
+      notes += std::string("flag:") + name + ';';
+  };
+  flag(report.flags.wrong_basin, "wrong_basin");
+  flag(report.flags.low_support, "low_support");
+  flag(report.flags.few_patches, "few_patches");
+  flag(report.flags.misfit, "misfit");
+  flag(report.flags.no_information, "no_information");
+  flag(report.flags.prior_conflict, "prior_conflict");
+  return notes + "prior_only=" + std::to_string(numPriorOnly(report)) +
+         numberNote("basin_distance", report.basin_distance) +
+         numberNote("active", report.active_fraction) +
+         numberNote("other_cost_ratio", report.other_cost_ratio) +
+         numberNote("patches", report.effective_patches) +
+         numberNote("residual_scale", report.residual_scale) +
+         numberNote("correlation", report.correlation_factor) +
+         numberNote("prior_probability", report.prior_probability);
+}
+
+MethodResult
+resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
+{
+  MethodResult result;
+  result.is_valid = true;
+  result.mean = movedBy(estimate.mean, estimate.centre, estimate.mode);
+  result.covariance = estimate.covariance;
+  result.centre = estimate.centre;
+  result.shape = {estimate.degrees_of_freedom,
+                  static_cast<int>((estimate.keep.array() > 0.0).count())};
+  result.notes =
+      notesOf(dataReportOf(estimate,
+                           static_cast<std::size_t>(scorer.sourcePoints().cols()),
+                           scorer.model()));
+  result.num_queries = estimate.num_queries;
+  return result;
+}
+
+/** A case, ready to be estimated. */
+struct Registration {
+  explicit Registration(const CoverageCase& problem)
+  : model(problem.target, SurfaceModelOptions(), 1)
+  , scorer(
+        evenSource(problem.source, CalibratedOptions().max_source_points, problem.seed),
+        model)
+  , prior(priorOf(problem))
+  {}
+
+  SurfaceModel model;
+  SurfaceScorer scorer;
+  Prior prior;
+};
+
+} // namespace
+
+CalibratedEstimate
+calibratedEstimateOf(const CoverageCase& problem)
+{
+  const Registration registration(problem);
+  return estimateCalibrated(registration.scorer, registration.prior);
+}
+
+MethodResult
+runCalibrated(const CoverageCase& problem)
+{
+  const Registration registration(problem);
+  return resultOf(estimateCalibrated(registration.scorer, registration.prior),
+                  registration.scorer);
+}
+
+MethodResult
+runCalibratedDraws(const CoverageCase& problem)
+{
+  const PosteriorEstimate estimate = presetEstimate(problem, Preset::Calibrated);
+  MethodResult result = resultOf(problem, estimate);
+  const DataReport& report = estimate.summary.data;
+  if (report.is_available) {
+    result.shape = {report.degrees_of_freedom,
+                    static_cast<int>(6 - numPriorOnly(report))};
+    result.notes += (result.notes.empty() ? "" : ";") + notesOf(report);
+  }
+  return result;
+}
+
+} // namespace bayesian_icp::evaluate

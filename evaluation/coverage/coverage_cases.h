@@ -1,0 +1,62 @@
+/** \file
+ * \brief The cases of the coverage study: every scene under every condition, as often
+ * as there are seeds.
+ */
+#pragma once
+
+#include "coverage/coverage_case.h"
+#include "coverage/coverage_setups.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief What happens to the two scans of a case. Rays are jittered in all of them, so
+ * no two scans have the same sampling grid.
+ *
+ * - same: both from one view, with the sensor's noise.
+ * - moved: the source from secondView().
+ * - half: the source with half the rows and half the columns.
+ * - noise3: three times the noise.
+ * - correlated: 70 % of the noise's variance is shared by neighbouring rays, and
+ *   readings are quantised, as a Kinect's (camera) or to 10 mm (LiDAR).
+ * - outliers: 5 % of the source's readings are off, by 0.1 m (standard deviation).
+ * - lost20, lost50: the source from a view moved a quarter as far as in `moved`; then
+ *   the target loses all points on one side of a plane, chosen at random but parallel
+ *   to the line of sight (camera) or upright (LiDAR), that has 20 or 50 % of the
+ *   source's points on that side. */
+const std::vector<std::string>&
+coverageConditions();
+
+/** \brief Conditions of the same scenes that a study has only if it is told to.
+ *
+ * - far: `moved` with a true pose 1 m and 0.8 rad off (standard deviations of each
+ * axis) and a prior that says so: most starts end in another basin.
+ * - points_quarter, points_x4, points_x16, points_x64: `same` with that many times the
+ *   points in both clouds. */
+const std::vector<std::string>&
+furtherConditions();
+
+/** \brief What lidarScenes() are seen with: carLidar(), whose rings have other offsets
+ * in every case, from both of drivenViews(). No ray is jittered.
+ *
+ * - lidar16, lidar32, lidar64: the number of rings; the sensor stands still in each
+ * scan.
+ * - lidar64_sweep: the scans are turns that follow each other at once while the sensor
+ *   moves at constant velocity. The truth is between the middles of both turns. */
+const std::vector<std::string>&
+lidarConditions();
+
+/** \brief Simulate a case: a scene of lidarScenes() under one of lidarConditions(), or
+ * another one under one of coverageConditions() or furtherConditions(); all of it
+ * depends on the three arguments only. The target frame is the scene's world frame. The
+ * true pose is drawn from the prior (angles from a Gaussian), and the source is not
+ * thinned. \throws std::invalid_argument if there is no such scene or condition */
+CoverageCase
+makeCoverageCase(const std::string& scene,
+                 const std::string& condition,
+                 std::uint64_t seed);
+
+} // namespace bayesian_icp::evaluate

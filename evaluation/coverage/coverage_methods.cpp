@@ -1,0 +1,122 @@
+#include "coverage/coverage_methods.h"
+
+#include "coverage/coverage_baselines.h"
+#include "coverage/coverage_calibrated.h"
+
+#include <bayesian_icp/calibration/twist.h>
+
+#include <Eigen/LU>
+
+#include <chrono>
+#include <new>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+Eigen::Vector3d
+centroidOf(const CoverageCase& problem)
+{
+  return problem.source.rowwise().mean();
+}
+
+/** The prior itself: the control. */
+MethodResult
+runPrior(const CoverageCase& problem)
+{
+  MethodResult result;
+  result.mean = isometryOf(problem.prior_mean);
+  result.centre = result.mean * centroidOf(problem);
+  result.covariance =
+      twistPrior(priorOf(problem), result.mean, result.centre).precision.inverse();
+  result.num_queries = 0;
+  result.is_valid = true;
+  return result;
+}
+
+/** Algorithm 1 of the paper with its options, and the case's prior. */
+MethodResult
+runPaperPreset(const CoverageCase& problem)
+{
+  MethodResult result = resultOf(problem, presetEstimate(problem, Preset::Paper));
+  const Options options;
+  const ChainOptions& chains = options.chains;
+  result.num_queries =
+      (static_cast<long>(chains.num_chains) * chains.num_burn_in +
+       static_cast<long>(chains.num_draws) * chains.thinning) *
+      std::min<long>(options.mini_batch.batch_size, problem.source.cols());
+  return result;
+}
+
+} // namespace
+
+const std::vector<CoverageMethod>&
+coverageMethods()
+{
+  static const std::vector<CoverageMethod> methods = [] {
+    std::vector<CoverageMethod> all = {{"prior", runPrior}, {"paper", runPaperPreset}};
+    for (CoverageMethod& baseline : baselineMethods())
+      all.push_back(std::move(baseline));
+    all.push_back({"calibrated", runCalibrated});
+    all.push_back({"calibrated-draws", runCalibratedDraws});
+    return all;
+  }();
+  return methods;
+}
+
+MethodResult
+timedResult(const CoverageMethod& method, const CoverageCase& problem)
+{
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  MethodResult result;
+  try {
+    result = method.run(problem);
+  }
+  catch (const std::bad_alloc&) {
+    throw; // no fault of the method
+  }
+  catch (const std::exception& error) {
+    result.notes = std::string("exception: ") + error.what();
+  }
+  result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  return result;
+}
+
+PosteriorEstimate
+presetEstimate(const CoverageCase& problem, Preset preset)
+{
+  Options options;
+  options.preset = preset;
+  options.prior.mean = problem.prior_mean;
+  options.prior.variance = problem.prior_sd.cwiseAbs2();
+  options.prior.frame = PriorFrame::SourceCentroid;
+  options.chains.seed = problem.seed;
+  options.chains.num_threads = 1;
+  return estimatePosterior(problem.source, problem.target, problem.prior_mean, options);
+}
+
+MethodResult
+resultOf(const CoverageCase& problem, const PosteriorEstimate& estimate)
+{
+  const Summary& summary = estimate.summary;
+  MethodResult result;
+  if (summary.status != Status::Ok)
+    result.notes = std::string("flag:") + toString(summary.status);
+  result.is_valid = estimate.samples.rows() > 0;
+  if (!result.is_valid)
+    return result;
+  result.mean = isometryOf(summary.mean);
+  result.centre = result.mean * centroidOf(problem);
+  result.draws = estimate.samples;
+  result.num_queries = -1;
+  return result;
+}
+
+Prior
+priorOf(const CoverageCase& problem)
+{
+  return {problem.prior_mean, problem.prior_sd.cwiseAbs2(), centroidOf(problem)};
+}
+
+} // namespace bayesian_icp::evaluate

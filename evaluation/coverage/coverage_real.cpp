@@ -1,0 +1,93 @@
+#include "coverage/coverage_real.h"
+
+#include "scene.h"
+
+#include <bayesian_icp/calibration/twist.h>
+
+#include <io/errors.h>
+#include <io/text_hash.h>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr Eigen::Index max_source_points = 2000;
+
+} // namespace
+
+RealPairs::RealPairs(const std::string& folder)
+: folder_(folder + "/")
+, entries_(readManifest(folder))
+{
+  for (const ManifestEntry& entry : entries_)
+    if (!entry.prior_sd)
+      throw io::FileError(folder_ + manifest_name,
+                          "has no suggested_prior_sigma of " + io::quoted(entry.name));
+}
+
+std::vector<std::string>
+RealPairs::names() const
+{
+  std::vector<std::string> names;
+  for (const ManifestEntry& entry : entries_)
+    names.push_back(entry.name);
+  return names;
+}
+
+const ManifestEntry&
+RealPairs::entryOf(const std::string& name) const
+{
+  for (const ManifestEntry& entry : entries_)
+    if (entry.name == name)
+      return entry;
+  throw io::FileError(folder_, "has no pair " + io::quoted(name));
+}
+
+std::shared_ptr<const RealPairs::Clouds>
+RealPairs::cloudsOf(const ManifestEntry& entry) const
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  auto& clouds = clouds_[entry.name];
+  if (!clouds) {
+    Clouds read;
+    const Eigen::Isometry3d T_target_source =
+        readTransform(folder_ + entry.ground_truth);
+    read.source_in_target =
+        T_target_source * finitePoints(folder_ + entry.source).cast<double>();
+    read.target = finitePoints(folder_ + entry.target).cast<double>();
+    clouds = std::make_shared<const Clouds>(std::move(read));
+  }
+  return clouds;
+}
+
+CoverageCase
+RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
+{
+  const ManifestEntry& entry = entryOf(name);
+  const auto clouds = cloudsOf(entry);
+  // Cases of one seed share no random numbers.
+  Random random(seed, io::hashOf(name));
+  CoverageCase made;
+  made.scene = name;
+  made.condition = "real";
+  made.seed = seed;
+  made.target = clouds->target;
+  made.prior_sd << Eigen::Vector3d::Constant(entry.prior_sd->translation),
+      Eigen::Vector3d::Constant(entry.prior_sd->rotation);
+  made.truth_sd_translation = entry.truth_sd.translation;
+  made.truth_sd_rotation = entry.truth_sd.rotation;
+  const Eigen::Matrix3Xd& all = clouds->source_in_target;
+  const auto part = randomChoice(all.cols(), max_source_points, random);
+  made.source = all(Eigen::all, part);
+  // The prior is about no motion: the truth turns the source about its centroid, and
+  // shifts the centroid by the first three numbers.
+  const Vector6d deviation = made.prior_sd.cwiseProduct(random.normal6());
+  const Eigen::Vector3d moved_centroid = made.source.rowwise().mean();
+  const Eigen::Vector3d centroid = moved_centroid - deviation.head<3>();
+  made.truth.linear() = rotationOf(deviation);
+  made.truth.translation() = moved_centroid - made.truth.linear() * centroid;
+  made.source = made.truth.inverse() * made.source;
+  return made;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,81 @@
+/** \file
+ * \brief Pairs of scans of recordings as cases of the coverage study.
+ */
+#pragma once
+
+#include "coverage/coverage_case.h"
+#include "scan_sequences.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Which pairs, and from which guesses. */
+struct SequenceOptions {
+  /** The source is so many scans after the target. */
+  std::size_t step = 1;
+  /** At most so many pairs of a recording, evenly spread; 0: all. */
+  std::size_t max_pairs = 0;
+  /** Of the guess about the sensor, of each axis. */
+  AxisDeviation guess_sd = {0.1, 0.03};
+  /** Of the guesses, and of the motions by which the sources are turned. */
+  std::uint64_t seed = 1;
+  /** File of pairs with guesses and truths, as readPairPoses() takes it, in place of
+   * random ones; empty: none. */
+  std::string rows_file;
+};
+
+/** \brief The pairs of the recordings in a folder. */
+class SequencePairs {
+public:
+  /** \brief Read all but the scans.
+   * \throws io::FileError */
+  SequencePairs(const std::string& folder, const SequenceOptions& options);
+
+  /** \brief Names of the recordings. */
+  std::vector<std::string>
+  names() const;
+
+  /** \brief A recording's quality and what tells these guesses from others. */
+  std::string
+  condition(const std::string& name) const;
+
+  /** \brief Numbers of the targets' scans. */
+  std::vector<std::uint64_t>
+  pairs(const std::string& name) const;
+
+  /** \brief A pair with the default prior about the guess.
+   *
+   * The source is turned by 0.5 rad and shifted by 0.5 m first, both in random
+   * directions, so that no answer is right for being the identity; with a file of rows,
+   * by what the truth there asks for. The case's seed is the program's default. May be
+   * called by several threads.
+   * \throws io::FileError if a scan cannot be read */
+  CoverageCase
+  makeCase(const std::string& name, std::uint64_t pair) const;
+
+private:
+  const ScanSequence&
+  sequenceOf(const std::string& name) const;
+
+  /** Number of pairs of scans. */
+  std::size_t
+  numPairs(const ScanSequence& sequence) const;
+
+  void
+  readRows();
+
+  PairPoses
+  posesOf(const ScanSequence& sequence, std::uint64_t pair) const;
+
+  SequenceOptions options_;
+  std::vector<ScanSequence> sequences_;
+  /** The pairs of each recording and their poses in the file of rows. */
+  std::map<std::string, std::map<std::uint64_t, PairPoses>> rows_;
+  /** Part of condition(). */
+  std::string guesses_;
+};
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,148 @@
+#include "coverage/coverage_summary.h"
+
+#include "draw_statistics.h"
+
+#include <boost/math/distributions/normal.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+using Scores = std::vector<CoverageScore>;
+
+template <typename Condition>
+Scores
+select(const Scores& scores, const Condition& condition)
+{
+  Scores selected;
+  std::copy_if(scores.begin(), scores.end(), std::back_inserter(selected), condition);
+  return selected;
+}
+
+/** The numbers of the scores that have one. */
+template <typename Number>
+std::vector<double>
+collect(const Scores& scores, const Number& number)
+{
+  std::vector<double> values;
+  for (const CoverageScore& score : scores)
+    if (const auto value = static_cast<double>(number(score)); !std::isnan(value))
+      values.push_back(value);
+  return values;
+}
+
+template <typename Number>
+double
+meanOf(const Scores& scores, const Number& number)
+{
+  const std::vector<double> values = collect(scores, number);
+  return std::accumulate(values.begin(), values.end(), 0.0) /
+         static_cast<double>(values.size());
+}
+
+template <typename Number>
+double
+medianOf(const Scores& scores, const Number& number)
+{
+  const std::vector<double> values = collect(scores, number);
+  return values.empty() ? nan : median(values);
+}
+
+Share
+shareOfFlagged(const Scores& scores)
+{
+  const auto num_flagged =
+      std::count_if(scores.begin(), scores.end(), [](const CoverageScore& score) {
+        return score.isFlagged();
+      });
+  return shareOf(static_cast<std::size_t>(num_flagged), scores.size());
+}
+
+/** Share of the scores with the truth within the region of probability \p level. */
+Share
+shareWithin(const Scores& scores, double level)
+{
+  const auto regions = collect(scores, [](const auto& s) { return s.region; });
+  const auto num_within =
+      std::count_if(regions.begin(), regions.end(), [level](double region) {
+        return region <= level;
+      });
+  return shareOf(static_cast<std::size_t>(num_within), regions.size());
+}
+
+void
+countDoubts(const Scores& scores, CoverageSummary& summary)
+{
+  for (const CoverageScore& score : scores) {
+    if (score.hasPose() && !score.is_valid)
+      continue;
+    const bool is_doubted = score.isFlagged() || !score.is_valid;
+    const bool is_good = !score.isLost() && score.nees < max_good_nees;
+    const bool is_bad = score.isLost() || score.nees > min_bad_nees;
+    summary.num_good += is_good ? 1 : 0;
+    summary.num_alarms += is_good && is_doubted ? 1 : 0;
+    summary.num_bad += is_bad ? 1 : 0;
+    summary.num_misses += is_bad && !is_doubted ? 1 : 0;
+  }
+}
+
+} // namespace
+
+Share
+shareOf(std::size_t num_hits, std::size_t num_trials)
+{
+  if (num_trials == 0)
+    return {nan, nan, nan};
+  static const double z = boost::math::quantile(boost::math::normal(), 0.975);
+  const auto n = static_cast<double>(num_trials);
+  const double share = static_cast<double>(num_hits) / n;
+  const double centre = (share + z * z / (2.0 * n)) / (1.0 + z * z / n);
+  const double half_width =
+      z / (1.0 + z * z / n) *
+      std::sqrt(share * (1.0 - share) / n + z * z / (4.0 * n * n));
+  return {
+      share, std::max(0.0, centre - half_width), std::min(1.0, centre + half_width)};
+}
+
+CoverageSummary
+summaryOf(const std::vector<CoverageRun>& runs)
+{
+  Scores scores;
+  for (const CoverageRun& run : runs)
+    scores.push_back(run.score);
+  const Scores found = select(scores, [](const auto& s) { return !s.isLost(); });
+  const Scores posed = select(scores, [](const auto& s) { return s.hasPose(); });
+  const Scores outside = select(posed, [](const auto& s) { return s.region > 0.95; });
+  CoverageSummary summary;
+  summary.num_runs = runs.size();
+  summary.num_valid = select(scores, [](const auto& s) { return s.is_valid; }).size();
+  summary.has_limit = std::any_of(
+      scores.begin(), scores.end(), [](const auto& s) { return s.hasLimit(); });
+  summary.num_lost = scores.size() - found.size();
+  countDoubts(scores, summary);
+  summary.anees = meanOf(found, [](const auto& s) { return s.nees / 6.0; });
+  for (std::size_t i = 0; i < coverage_levels.size(); ++i)
+    summary.coverage[i] = shareWithin(scores, coverage_levels[i]);
+  summary.mean_log_score = meanOf(scores, [](const auto& s) { return s.log_score; });
+  summary.mean_energy_score =
+      meanOf(scores, [](const auto& s) { return s.energy_score; });
+  summary.translation_error =
+      medianOf(scores, [](const auto& s) { return s.translation_error; });
+  summary.rotation_error =
+      medianOf(scores, [](const auto& s) { return s.rotation_error; });
+  summary.flagged = shareOfFlagged(posed);
+  summary.flagged_outside = shareOfFlagged(outside);
+  summary.median_seconds = medianOf(posed, [](const auto& s) { return s.seconds; });
+  summary.median_queries = medianOf(posed, [](const auto& s) { return s.num_queries; });
+  return summary;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,114 @@
+/** \file
+ * \brief pcl_bayesian_icp_evaluate: studies of the samplers and the posteriors, one
+ * sub-command each.
+ */
+#include "coverage/coverage_command.h"
+#include "paper/paper_command.h"
+#include "report_program.h"
+#include "samplers/samplers_command.h"
+#include "sbc/sbc_command.h"
+
+#include <boost/program_options/errors.hpp>
+
+#include <io/program.h>
+
+#include <functional>
+#include <iomanip>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace io = bayesian_icp::io;
+
+namespace {
+
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, BadUsage = 2 };
+
+struct SubCommand {
+  std::string name;
+  std::string summary;
+  /** \return 0, or 1 if a result is not to be relied on */
+  std::function<int(int argc, const char* const* argv)> run;
+};
+
+std::vector<SubCommand>
+subCommands()
+{
+  namespace evaluate = bayesian_icp::evaluate;
+  std::vector<SubCommand> commands = {
+      {"samplers",
+       "distance of every sampler's draws to a gold standard, and their rate",
+       evaluate::runSamplersCommand},
+      {"coverage",
+       "posteriors of every method against the true pose, on simulated and real scans",
+       evaluate::runCoverageCommand},
+      {"sbc",
+       "simulation-based calibration: ranks of true poses among draws of the samplers",
+       evaluate::runSbcCommand},
+      {"paper",
+       "the paper's whole evaluation: all experiments below, and a report",
+       evaluate::runPaperCommand},
+  };
+  for (const evaluate::NamedExperiment& experiment : evaluate::paperExperiments())
+    commands.push_back({experiment.name,
+                        experiment.summary,
+                        [&experiment](int argc, const char* const* argv) {
+                          return evaluate::runExperiments(
+                              {experiment.details, experiment.run}, argc, argv);
+                        }});
+  commands.push_back({"report",
+                      "report.md, report.html and figures of the CSV files in a folder",
+                      evaluate::runReportCommand});
+  return commands;
+}
+
+void
+printHelp(std::ostream& stream)
+{
+  stream << "Usage: pcl_bayesian_icp_evaluate COMMAND [options]\n\nCommands:\n";
+  for (const SubCommand& command : subCommands())
+    stream << "  " << std::left << std::setw(14) << command.name << command.summary
+           << '\n';
+  stream
+      << "\nCOMMAND --help tells its options. Exit codes: 0 good, 1 a result is not\n"
+         "to be relied on, 2 usage, 3 cannot read or write a file.\n";
+}
+
+int
+run(const SubCommand& command, int argc, const char* const* argv)
+{
+  try {
+    return command.run(argc, argv);
+  }
+  catch (const boost::program_options::error& error) {
+    throw io::UsageError(error.what());
+  }
+}
+
+int
+runTool(int argc, const char* const* argv)
+{
+  const std::string name = argc > 1 ? argv[1] : "";
+  if (name == "--help") {
+    printHelp(std::cout);
+    return Good;
+  }
+  for (const SubCommand& command : subCommands())
+    if (command.name == name)
+      return run(command, argc - 1, argv + 1);
+  printHelp(std::cerr);
+  return BadUsage;
+}
+
+} // namespace
+
+int
+main(int argc, char** argv)
+{
+  return io::runProgram("pcl_bayesian_icp_evaluate", [&] {
+    const int exit_code = runTool(argc, argv);
+    io::print(""); // what was printed must have arrived
+    return exit_code;
+  });
+}

@@ -1,0 +1,118 @@
+/** \file
+ * \brief A case of the coverage study as the baselines see it: nearest neighbours,
+ * ICP with a prior, and how their information is combined with the prior's.
+ */
+#pragma once
+
+#include "coverage/coverage_case.h"
+
+#include <bayesian_icp/baselines/closed_form_covariance.h>
+#include <bayesian_icp/kd_tree.h>
+#include <bayesian_icp/prior.h>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief At most so many source points are registered, unless said otherwise. */
+constexpr Eigen::Index max_source_points = 2000;
+
+class BaselineProblem {
+public:
+  /** \param[in] coverage_case must outlive this object; not empty */
+  explicit BaselineProblem(const CoverageCase& coverage_case,
+                           Eigen::Index max_points = max_source_points);
+
+  /** \brief Nearest target point of each source point, without normals. Not
+   * thread-safe: it counts. */
+  MatchedPoints
+  match(const Eigen::Isometry3d& T_target_source) const;
+
+  /** \brief Centre of the twists at a pose: the moved centroid of all source points.
+   */
+  Eigen::Vector3d
+  centreAt(const Eigen::Isometry3d& T_target_source) const
+  {
+    return T_target_source * prior_.referencePoint();
+  }
+
+  /** \brief The posterior whose likelihood has this information about a pose, and
+   * whose energy has this gradient there: one Newton step. */
+  MethodResult
+  combineWithPrior(const Eigen::Isometry3d& T_target_source,
+                   const GaussianInformation& likelihood) const;
+
+  /** \brief The points that are registered: a random choice, all if they are few. */
+  const Eigen::Matrix3Xd&
+  source() const
+  {
+    return source_;
+  }
+
+  /** \brief Their columns in the case's source. */
+  const std::vector<Eigen::Index>&
+  sourceColumns() const
+  {
+    return source_columns_;
+  }
+
+  const Eigen::Matrix3Xd&
+  target() const
+  {
+    return case_.target;
+  }
+
+  const Prior&
+  prior() const
+  {
+    return prior_;
+  }
+
+  Eigen::Isometry3d
+  priorMean() const;
+
+  /** \brief Nearest-neighbour queries until now. */
+  long
+  numQueries() const
+  {
+    return num_queries_;
+  }
+
+private:
+  const CoverageCase& case_;
+  std::vector<Eigen::Index> source_columns_;
+  Eigen::Matrix3Xd source_;
+  Prior prior_;
+  /** The tree is in single precision: its points are relative to this one. */
+  Eigen::Vector3d origin_;
+  KdTree tree_;
+  mutable std::vector<std::uint32_t> hints_;
+  mutable long num_queries_ = 0;
+};
+
+/** \brief Where ICP with the prior ended. */
+struct IcpFit {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  /** There, and with normals if it used any. */
+  MatchedPoints matches;
+};
+
+/** \brief What ICP minimises besides the prior's energy. */
+struct IcpCost {
+  /** Factor on half the sum of squared residuals [1/m^2]. */
+  double weight = 0.0;
+  /** Of the target, 3 x n: point to plane; empty: point to point. */
+  Eigen::Matrix3Xd normals;
+  int max_steps = 40;
+};
+
+/** \brief Gauss-Newton with correspondences made anew before each step. */
+IcpFit
+fitIcp(const BaselineProblem& problem,
+       const IcpCost& cost,
+       const Eigen::Isometry3d& start);
+
+/** \brief Point-to-point ICP with the prior, weighted by its own residuals.
+ * \param[out] variance naive variance of a residual's coordinate [m^2] */
+IcpFit
+fitNaively(const BaselineProblem& problem, double& variance);
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,49 @@
+/** \file
+ * \brief Covariances of a registration as they are published, without a prior's
+ * information.
+ */
+#pragma once
+
+#include "methods/baseline_problem.h"
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Where point-to-plane ICP ended, and the noise of a point's coordinate [m]. */
+struct PlaneFit {
+  IcpFit fit;
+  double sigma = 0.0;
+};
+
+/** \brief Point-to-plane ICP with the prior, from where point-to-point ICP ends; the
+ * noise is estimated from the residuals. */
+PlaneFit
+fitPlanes(const BaselineProblem& problem);
+
+/** \brief A Gaussian of left twists (v, w) about \p centre, target frame [m, rad]. */
+struct TwistGaussian {
+  Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
+  /** Not finite or not positive definite where the method has none. */
+  Matrix6d covariance = Matrix6d::Zero();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+};
+
+/** \brief Censi's covariance of point-to-point ICP, about its result.
+ * \param[in] sigma noise of a point's coordinate [m]; NaN: from the residuals */
+TwistGaussian
+pointClosedForm(const CoverageCase& coverage_case, double sigma);
+
+/** \brief The same of point-to-plane ICP: Prakhya's form. */
+TwistGaussian
+planeClosedForm(const CoverageCase& coverage_case, double sigma);
+
+/** \brief Variance of the residuals times the inverse of point-to-point ICP's Hessian.
+ */
+TwistGaussian
+pointHessian(const CoverageCase& coverage_case);
+
+/** \brief Inverse of the Hessian of PCL's GICP, about its result; from at most 2000
+ * source points, chosen at random. */
+TwistGaussian
+gicpHessian(const CoverageCase& coverage_case);
+
+} // namespace bayesian_icp::evaluate

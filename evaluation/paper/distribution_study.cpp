@@ -1,0 +1,149 @@
+#include "paper/distribution_study.h"
+
+#include "coverage/coverage_score.h"
+#include "draw_statistics.h"
+
+#include <bayesian_icp/calibration/twist.h>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/** Results of the baseline that the energy score is a mean over. */
+constexpr Eigen::Index max_outcomes = 400;
+
+Vector6d
+priorSd()
+{
+  return PriorOptions().variance.cwiseSqrt();
+}
+
+/** Rows evenly spread. */
+PoseMatrix
+spreadRows(const PoseMatrix& all, Eigen::Index count)
+{
+  const Eigen::Index size = std::min(all.rows(), count);
+  PoseMatrix rows(size, 6);
+  for (Eigen::Index i = 0; i < size; ++i)
+    rows.row(i) = all.row(i * all.rows() / size);
+  return rows;
+}
+
+void
+addBaselineScores(const PoseMatrix& draws,
+                  const PaperBaseline& baseline,
+                  DistributionRun& run)
+{
+  const Moments moments = momentsOf(draws);
+  run.mean = moments.mean;
+  run.standard_deviation = moments.covariance.diagonal().cwiseSqrt();
+  if (baseline.main_ends.rows() > 1) {
+    const Moments main = momentsOf(unwrapAbout(baseline.mean, baseline.main_ends));
+    // So few points have a singular covariance.
+    run.main_kl = baseline.main_ends.rows() > 6 ? gaussianKl(main, moments) : unknown;
+    for (int k = 0; k < 6; ++k)
+      run.main_coordinate_kl[k] = gaussianKl(main, moments, k);
+  }
+  const Vector6d scale = priorSd().cwiseInverse();
+  const PoseMatrix outcomes =
+      unwrapAbout(baseline.mean, spreadRows(baseline.ends, max_outcomes));
+  run.energy_score =
+      energyScore(draws * scale.asDiagonal(), outcomes * scale.asDiagonal());
+}
+
+void
+addTruthScores(const ScanPair& pair,
+               const PoseMatrix& draws,
+               std::uint64_t seed,
+               DistributionRun& run)
+{
+  CoverageCase problem;
+  problem.seed = seed;
+  problem.source = pair.source;
+  problem.truth = pair.truth;
+  problem.prior_sd = priorSd();
+  problem.truth_sd_translation = pair.truth_sd.translation;
+  problem.truth_sd_rotation = pair.truth_sd.rotation;
+  MethodResult result;
+  result.is_valid = true;
+  result.mean = isometryOf(meanPose(draws));
+  result.centre = result.mean * Eigen::Vector3d(pair.source.rowwise().mean());
+  result.draws = draws;
+  const CoverageScore score = coverageScoreOf(problem, result);
+  run.nees = score.nees;
+  run.truth_energy_score = score.energy_score;
+  run.translation_error = score.translation_error;
+  run.rotation_error = score.rotation_error;
+}
+
+/** A run without draws. */
+void
+setUnknown(DistributionRun& run)
+{
+  run.main_kl = infinity;
+  run.main_coordinate_kl.setConstant(infinity);
+  for (double* number : {&run.energy_score,
+                         &run.truth_energy_score,
+                         &run.nees,
+                         &run.translation_error,
+                         &run.rotation_error})
+    *number = unknown;
+  run.mean.setConstant(unknown);
+  run.standard_deviation.setConstant(unknown);
+}
+
+} // namespace
+
+DistributionRun
+distributionRunOf(const DistributionRun::Name& name,
+                  const ScanPair& pair,
+                  const PaperRun& run,
+                  const PaperBaseline& baseline)
+{
+  DistributionRun scored;
+  scored.name = name;
+  scored.score = scoreOf(run.sampled, baseline.ends);
+  scored.score.status = run.status;
+  setUnknown(scored);
+  const PoseMatrix draws = pooledDraws(run.sampled.chains.chains);
+  if (draws.rows() < min_scored_draws)
+    return scored;
+  addBaselineScores(unwrapAbout(baseline.mean, draws), baseline, scored);
+  addTruthScores(pair, draws, name.seed, scored);
+  return scored;
+}
+
+PairDistribution
+studyDistribution(const PaperStudy& study,
+                  const PaperProblem& problem,
+                  DistributionFile& file)
+{
+  const ScanPair& pair = problem.pair;
+  PairDistribution made{&pair, keptBaseline(study, problem), {}};
+  const std::string key = baselineKey(study.options, problem);
+  for (const PaperMethod& method : paperMethods()) {
+    int num_made = 0;
+    for (int i = 0; i < study.options.num_repeats; ++i) {
+      const DistributionRun::Name name{
+          key, pair.name, method.name, study.options.seed + std::uint64_t(i)};
+      if (file.find(name) == nullptr) {
+        DrawPlan plan;
+        plan.seed = name.seed;
+        plan.num_threads = study.options.num_threads;
+        file.add(
+            distributionRunOf(name, pair, method.run(problem, plan), made.baseline));
+        ++num_made;
+      }
+      made.runs.push_back(*file.find(name));
+    }
+    if (num_made > 0)
+      study.report(pair.name + ": " + method.name + ", " + std::to_string(num_made) +
+                   " runs");
+  }
+  return made;
+}
+
+} // namespace bayesian_icp::evaluate

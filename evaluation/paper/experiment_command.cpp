@@ -1,0 +1,58 @@
+#include "option_values.h"
+#include "paper/paper_experiment.h"
+#include "report_program.h"
+
+#include <io/cloud_file.h>
+#include <io/folders.h>
+
+#include <iostream>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr int incomplete_exit_code = 3;
+
+void
+printHelp(const std::string& name, const std::string& summary)
+{
+  std::cout
+      << "Usage: pcl_bayesian_icp_evaluate " << name << " [options]\n\n"
+      << summary
+      << "\n\nResults are in the output folder: a CSV file with a row a run, "
+         "and what pictures\nshow. report.md, report.html and the pictures are "
+         "made of these by Python with\npandas and matplotlib; medians are printed "
+         "without it. An interrupted run goes\non where it stopped. A pair that is "
+         "missing or broken is named and left out.\nResults of another build of the "
+         "methods have to be deleted by hand.\n"
+         "Exit codes: 0 good, 2 usage, 3 cannot read or write a file, left a pair "
+         "out, or\nmade no report.\n\n"
+      << paperOptionsDescription();
+}
+
+} // namespace
+
+int
+runExperiments(const ExperimentCommand& command, int argc, const char* const* argv)
+{
+  PaperStudy study;
+  study.command = argv[0];
+  study.options =
+      paperOptionsOf(readCommandLine(argc, argv, paperOptionsDescription()));
+  if (study.options.show_help) {
+    printHelp(argv[0], command.summary);
+    return 0;
+  }
+  io::silencePcl();
+  study.pairs = readPairs(study.options, std::cerr, study.num_skipped);
+  study.report = [](const std::string& line) { std::cerr << line << std::endl; };
+  io::makeFolder(study.options.output_folder);
+  command.run(study);
+  if (study.num_skipped > 0)
+    std::cerr << study.num_skipped << " pairs were skipped" << std::endl;
+  const int report_code =
+      study.options.has_report ? makeReport(study.options.output_folder) : 0;
+  return study.num_skipped > 0 ? incomplete_exit_code : report_code;
+}
+
+} // namespace bayesian_icp::evaluate

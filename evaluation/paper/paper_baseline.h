@@ -1,0 +1,49 @@
+/** \file
+ * \brief The paper's baseline distribution: results of Monte Carlo ICP.
+ */
+#pragma once
+
+#include "paper/paper_experiment.h"
+#include "paper/paper_methods.h"
+
+#include <bayesian_icp/baselines/monte_carlo_icp.h>
+
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Where standard ICP ends from random starts about a pair's initial guess. */
+struct PaperBaseline {
+  /** Poses of all runs, canonical, one a row [m, rad]. */
+  PoseMatrix ends;
+  /** Those in the main basin: whose mean squared distance is at most twice the least.
+   * The others are in far local minima. */
+  PoseMatrix main_ends;
+  /** Mean of each coordinate of all, circular of angles, which are unwrapped about it.
+   */
+  Vector6d mean = Vector6d::Zero();
+
+  double
+  mainShare() const
+  {
+    return static_cast<double>(main_ends.rows()) / static_cast<double>(ends.rows());
+  }
+};
+
+/** \brief What the runs say. Runs that had too few pairs are left out.
+ * \throws io::FileError if fewer than two are left */
+PaperBaseline
+baselineOf(const std::string& pair_name, const std::vector<MonteCarloIcpRun>& runs);
+
+/** \brief The pair's baseline: runs that are in the output folder, and for the others
+ * they are made.
+ * \throws io::FileError */
+PaperBaseline
+keptBaseline(const PaperStudy& study, const PaperProblem& problem);
+
+/** \brief A hash of all that the pair's baseline depends on, as 16 hexadecimal digits.
+ */
+std::string
+baselineKey(const PaperOptions& options, const PaperProblem& problem);
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,146 @@
+#include "paper/paper_methods.h"
+
+#include "cpu_time.h"
+#include "draw_statistics.h"
+
+#include <bayesian_icp/calibration/twist.h>
+#include <bayesian_icp/pipeline.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+/** Random numbers of draws from Gaussians. */
+constexpr std::uint64_t gaussian_stream = 0x67617573;
+
+/** Noise of Online-ICP: that of the paper's likelihood [m], or found by itself. */
+constexpr double paper_sigma = 1.0;
+constexpr double estimated = std::numeric_limits<double>::quiet_NaN();
+
+using OptionChange = std::function<void(Options&)>;
+
+/** The project's front door, with the paper's prior and likelihood, its defaults. */
+PaperRun
+runPreset(const PaperProblem& problem, const DrawPlan& plan, const OptionChange& change)
+{
+  Options options;
+  options.chains.num_draws = plan.num_draws;
+  options.chains.seed = plan.seed;
+  options.chains.num_threads = plan.num_threads;
+  options.chains.initial_spread.setConstant(plan.initial_spread);
+  change(options);
+  const double begin = cpuSeconds();
+  PosteriorEstimate estimate =
+      estimatePosterior(problem.pair.source, problem.tree, Vector6d::Zero(), options);
+  PaperRun run;
+  run.sampled.seconds = cpuSeconds() - begin;
+  run.sampled.chains.chains = std::move(estimate.chains);
+  run.sampled.message = estimate.summary.message;
+  run.status = toString(estimate.summary.status);
+  return run;
+}
+
+PaperMethod
+preset(const std::string& name, const OptionChange& change)
+{
+  return {name, [change](const PaperProblem& problem, const DrawPlan& plan) {
+            return runPreset(problem, plan, change);
+          }};
+}
+
+/** The pair as the baselines want it: with a prior so wide that it only holds what the
+ * points do not. */
+CoverageCase
+caseOf(const ScanPair& pair)
+{
+  CoverageCase made;
+  made.scene = pair.name;
+  made.seed = 1;
+  made.source = pair.source;
+  made.target = pair.target;
+  made.prior_sd = PriorOptions().variance.cwiseSqrt();
+  return made;
+}
+
+PoseMatrix
+drawsOf(const TwistGaussian& gaussian, const DrawPlan& plan)
+{
+  const auto factor = factorOf(gaussian.covariance);
+  if (!factor)
+    return PoseMatrix(0, 6);
+  Random random(plan.seed, gaussian_stream);
+  PoseMatrix draws(plan.num_draws, 6);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    draws.row(i) =
+        poseOf(movedBy(*factor * random.normal6(), gaussian.centre, gaussian.mean)
+                   .matrix())
+            .transpose();
+  return draws;
+}
+
+PaperMethod
+gaussian(const std::string& name,
+         const std::function<TwistGaussian(const CoverageCase&)>& fit)
+{
+  return {name, [name, fit](const PaperProblem& problem, const DrawPlan& plan) {
+            const double begin = cpuSeconds();
+            const auto known = problem.gaussians.find(name);
+            const TwistGaussian& fitted =
+                known != problem.gaussians.end()
+                    ? known->second
+                    : problem.gaussians.emplace(name, fit(caseOf(problem.pair)))
+                          .first->second;
+            PaperRun run;
+            Chain chain;
+            chain.draws = drawsOf(fitted, plan);
+            run.sampled.seconds = cpuSeconds() - begin;
+            run.status = chain.draws.rows() > 0 ? "gaussian" : "no_covariance";
+            run.sampled.chains.chains.push_back(std::move(chain));
+            return run;
+          }};
+}
+
+} // namespace
+
+const std::vector<PaperMethod>&
+paperMethods()
+{
+  static const std::vector<PaperMethod> methods = {
+      preset("bayesian-icp", [](Options& options) { options.preset = Preset::Paper; }),
+      preset("bayesian-icp-1e-5",
+             [](Options& options) {
+               options.preset = Preset::Paper;
+               options.sgld.step_size = 1e-5;
+             }),
+      preset("exact", [](Options& options) { options.preset = Preset::Exact; }),
+      preset("calibrated",
+             [](Options& options) { options.preset = Preset::Calibrated; }),
+      gaussian("online-icp",
+               [](const CoverageCase& c) { return planeClosedForm(c, paper_sigma); }),
+      gaussian("online-icp-point",
+               [](const CoverageCase& c) { return pointClosedForm(c, paper_sigma); }),
+      gaussian("online-icp-noise",
+               [](const CoverageCase& c) { return planeClosedForm(c, estimated); }),
+      gaussian("hessian", pointHessian),
+      gaussian("gicp", gicpHessian)};
+  return methods;
+}
+
+const PaperMethod&
+paperMethod(const std::string& name)
+{
+  const auto& methods = paperMethods();
+  const auto found = std::find_if(methods.begin(),
+                                  methods.end(),
+                                  [&name](const auto& m) { return m.name == name; });
+  if (found == methods.end())
+    throw std::invalid_argument("no method " + name);
+  return *found;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,58 @@
+/** \file
+ * \brief Options that all of the paper's experiments share.
+ */
+#pragma once
+
+#include "scan_pairs.h"
+
+#include <boost/program_options/options_description.hpp>
+#include <boost/program_options/variables_map.hpp>
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Defaults are those of the standard report. */
+struct PaperOptions {
+  bool show_help = false;
+  /** Where the pairs are (see scan_pairs.h), and names as given; none: all there are.
+   */
+  std::string data_folder;
+  std::vector<std::string> pairs;
+  /** Everything goes here, and what is there is not made again. */
+  std::string output_folder;
+  std::uint64_t seed = 1;
+  int num_threads = 1;
+  /** Source points that are used, chosen at random; 0: all. */
+  int num_points = 0;
+  /** Runs of Monte Carlo ICP a pair, and half the range of their starts [m, rad]. */
+  int num_baseline_runs = 1000;
+  double start_translation = 1.0;
+  double start_rotation = 1.0;
+  /** Runs of each method (seeds) behind a mean and its standard deviation. */
+  int num_repeats = 10;
+  /** Fewer of everything, to see that it works. */
+  bool is_quick = false;
+  /** Or CSV files and medians only. */
+  bool has_report = true;
+};
+
+/** \brief Their description. An experiment with options of its own adds these to it. */
+boost::program_options::options_description
+paperOptionsDescription();
+
+/** \throws io::UsageError with a message for the user */
+PaperOptions
+paperOptionsOf(const boost::program_options::variables_map& given);
+
+/** \brief The pairs asked for. A missing or broken one is named, with the reason, on
+ * \p log and left out.
+ * \param[out] num_skipped how many those were
+ * \throws io::FileError if no pair is left, or the manifest is broken */
+std::vector<ScanPair>
+readPairs(const PaperOptions& options, std::ostream& log, int& num_skipped);
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,145 @@
+#include "paper/picture_data.h"
+
+#include "csv_fields.h"
+#include "draw_statistics.h"
+
+#include <bayesian_icp/calibration/twist.h>
+#include <bayesian_icp/summary.h>
+
+#include <io/coordinates.h>
+#include <io/output_folder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+/** More would make large pictures. */
+constexpr Eigen::Index num_drawn_points = 500;
+
+constexpr std::size_t num_cloud_methods = 2;
+
+/** What can be told apart in a picture. */
+constexpr int num_digits = 7;
+
+/** ",x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad", each with a prefix. */
+std::string
+coordinateColumns(const std::string& prefix)
+{
+  std::string columns;
+  for (std::size_t k = 0; k < 6; ++k)
+    columns += ',' + prefix + app::coordinateKey(k);
+  return columns;
+}
+
+/** A row each of \p rows, after a name. */
+template <typename Rows>
+void
+writeRows(const std::string& name, const Rows& rows, std::ostream& stream)
+{
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    CsvRow row;
+    row.add(name);
+    for (Eigen::Index k = 0; k < rows.cols(); ++k)
+      row.add(io::textOf(rows(i, k), num_digits));
+    stream << row.text() << '\n';
+  }
+}
+
+/** Points evenly spread over the cloud, one a row. */
+Eigen::MatrixX3d
+someOf(const Eigen::Matrix3Xd& cloud)
+{
+  Eigen::MatrixX3d points(std::min(cloud.cols(), num_drawn_points), 3);
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    points.row(i) = cloud.col(i * cloud.cols() / points.rows()).transpose();
+  return points;
+}
+
+void
+writeDraws(const PaperBaseline& baseline,
+           const NamedDraws& methods,
+           std::ostream& stream)
+{
+  stream << "method" << coordinateColumns("") << '\n';
+  writeRows("baseline", unwrapAbout(baseline.mean, baseline.ends), stream);
+  for (const auto& [name, draws] : methods)
+    writeRows(name, unwrapAbout(baseline.mean, draws), stream);
+}
+
+void
+writePoints(const ScanPair& pair, const NamedDraws& methods, std::ostream& stream)
+{
+  stream << "cloud,x_m,y_m,z_m\n";
+  writeRows("target", someOf(pair.target), stream);
+  writeRows("before", someOf(pair.source), stream);
+  for (std::size_t i = 0; i < std::min(methods.size(), num_cloud_methods); ++i)
+    writeRows(methods[i].first,
+              someOf(isometryOf(meanPose(methods[i].second)) * pair.source),
+              stream);
+  writeRows("truth", someOf(pair.truth * pair.source), stream);
+}
+
+std::string
+baselineRow(const PairDistribution& distribution)
+{
+  const PaperBaseline& baseline = distribution.baseline;
+  const Moments moments = momentsOf(unwrapAbout(baseline.mean, baseline.ends));
+  CsvRow row;
+  row.add(distribution.pair->name).add(distribution.pair->source.cols());
+  row.add(distribution.pair->target.cols()).add(baseline.ends.rows());
+  row.add(baseline.mainShare());
+  for (int k = 0; k < 6; ++k)
+    row.add(std::sqrt(moments.covariance(k, k)));
+  return row.text();
+}
+
+} // namespace
+
+NamedDraws
+shownDraws(const PaperProblem& problem, const PaperOptions& options)
+{
+  DrawPlan plan;
+  plan.seed = options.seed;
+  plan.num_threads = options.num_threads;
+  NamedDraws shown;
+  for (const char* name : {"bayesian-icp", "calibrated", "exact", "online-icp"}) {
+    const PoseMatrix draws =
+        pooledDraws(paperMethod(name).run(problem, plan).sampled.chains.chains);
+    if (draws.rows() >= min_scored_draws)
+      shown.emplace_back(name, draws);
+  }
+  return shown;
+}
+
+void
+writeBaselines(const std::string& folder, const std::vector<PairDistribution>& pairs)
+{
+  io::OutputFolder files(folder);
+  files.add("baseline.csv", [&pairs](std::ostream& stream) {
+    stream << "pair,source_points,target_points,runs,main_basin_share"
+           << coordinateColumns("sd_") << '\n';
+    for (const PairDistribution& pair : pairs)
+      stream << baselineRow(pair) << '\n';
+  });
+  files.commit();
+}
+
+void
+writePictureData(const std::string& folder,
+                 const ScanPair& pair,
+                 const PaperBaseline& baseline,
+                 const NamedDraws& methods)
+{
+  io::OutputFolder files(folder);
+  files.add("draws_" + pair.name + ".csv",
+            [&](std::ostream& stream) { writeDraws(baseline, methods, stream); });
+  files.add("points_" + pair.name + ".csv",
+            [&](std::ostream& stream) { writePoints(pair, methods, stream); });
+  files.commit();
+}
+
+} // namespace bayesian_icp::evaluate

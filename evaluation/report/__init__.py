@@ -1,0 +1,1 @@
+"""Reports of the studies: report.md, report.html and figures, made from their CSV files."""

@@ -1,0 +1,91 @@
+"""CSV files as tables, and numbers as words."""
+
+import numpy as np
+import pandas as pd
+
+COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
+UNITS = ("m", "m", "m", "rad", "rad", "rad")
+# Columns that are text, whatever they look like.
+WORDS = ("key", "gold_key", "pair", "method", "variant", "scene", "condition", "sampler", "notes")
+
+
+def read(path):
+    try:
+        # A pair may be called NA.
+        unknown = {"keep_default_na": False, "na_values": ["nan", "-nan", ""]}
+        table = pd.read_csv(path, dtype=dict.fromkeys(WORDS, str), **unknown)
+    except ValueError as error:
+        raise ValueError(f"{path.name}: {error}") from error
+    if "notes" in table:
+        table["notes"] = table.notes.fillna("")
+    return table
+
+
+def read_folder(folder):
+    """The CSV files of a folder by their names, without .csv."""
+    return {path.stem: read(path) for path in sorted(folder.glob("*.csv"))}
+
+
+def names_of(column):
+    """In the order of their first appearance."""
+    return list(dict.fromkeys(column))
+
+
+def spread_of(values):
+    """Mean and standard deviation of the finite ones, how many those are, and of how many."""
+    values = np.asarray(values, float)
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return (np.nan, 0.0, 0, values.size)
+    sd = finite.std(ddof=1) if finite.size > 1 else 0.0
+    return (finite.mean(), sd, finite.size, values.size)
+
+
+def short(value):
+    """Three decimals, or three digits of a large number."""
+    if np.isnan(value):
+        return "-"
+    return f"{value:.3f}" if abs(value) < 1000 else f"{value:.3g}"
+
+
+def spread_text(spread):
+    """As "0.387 ± 0.199"; says how many values were finite if not all."""
+    mean, sd, num_finite, num_values = spread
+    if num_finite == 0:
+        return "infinite" if num_values else "-"
+    text = f"{short(mean)} ± {short(sd)}"
+    return text if num_finite == num_values else f"{text} ({num_finite} of {num_values} finite)"
+
+
+def spread_cells(rows, columns):
+    return [spread_text(spread_of(rows[column])) for column in columns]
+
+
+def median(values):
+    values = np.asarray(values, float)
+    values = values[~np.isnan(values)]
+    return np.median(values) if values.size else np.nan
+
+
+def share_of(is_hit):
+    """A share and its 95 % interval by Wilson; NaN of nothing."""
+    n = len(is_hit)
+    if n == 0:
+        return (np.nan,) * 3
+    z = 1.959963984540054  # 97.5 % quantile of the standard normal distribution
+    share = np.mean(is_hit)
+    centre = (share + z**2 / (2 * n)) / (1 + z**2 / n)
+    half = z / (1 + z**2 / n) * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
+    return (share, max(0.0, centre - half), min(1.0, centre + half))
+
+
+def share_text(share):
+    return "-" if np.isnan(share[0]) else "{:.2f} [{:.2f}, {:.2f}]".format(*share)
+
+
+def number(value, decimals):
+    """So many decimals, fewer of a number so large that nobody reads them."""
+    if np.isnan(value):
+        return "-"
+    limit = 1e4 if decimals else 1e7
+    return f"{value:.{decimals}f}" if abs(value) < limit else f"{value:.1e}"

@@ -1,0 +1,48 @@
+"""Samplers against a gold standard: distance of their draws, and their rate."""
+
+import numpy as np
+
+from report import frames, page
+
+COLUMNS = ("gold_key", "scene", "sigma", "effective_points", "sampler", "ks_x")
+GOOD_KS = 0.06  # a marginal of a smaller Kolmogorov-Smirnov distance counts as right
+
+HEADER = ["sampler", "runs", "6-D KL, median", "worst", "1-D KL, median", "W1, median"]
+HEADER += ["KS < .06 [%]", "R-hat, worst", "bulk ESS, smallest", "tail ESS, smallest"]
+HEADER += ["ESS / s, median", "CPU time, median [s]", "mixed runs"]
+
+
+def columns(prefix):
+    return [f"{prefix}_{coordinate}" for coordinate in frames.COORDINATES]
+
+
+def row_of(sampler, runs):
+    return [
+        sampler,
+        str(len(runs)),
+        f"{runs.kl.median():.4f}",
+        f"{runs.kl.max():.4f}",
+        f"{np.median(runs[columns('kl')]):.4f}",
+        f"{runs[columns('w1')].max(axis=1).median():.3f}",
+        f"{100 * (runs[columns('ks')] < GOOD_KS).to_numpy().mean():.0f}",
+        f"{runs.rhat.max():.3f}",
+        f"{runs.bulk_ess.min():.0f}",
+        f"{runs.tail_ess.min():.0f}",
+        f"{(runs.bulk_ess / runs.seconds).median():.1f}",
+        f"{runs.seconds.median():.3f}",
+        str((runs.status == "ok").sum()),
+    ]
+
+
+def table_of(cell, runs):
+    """Step sizes that were only tried with the first seed are left out."""
+    sizes = runs.groupby("sampler").size()
+    most = sizes.groupby(sizes.index.str.split(" ").str[0]).max()
+    chosen = [name for name in sizes.index if sizes[name] == most[name.split(" ")[0]]]
+    title = f"{cell[0]}, sigma {cell[1]:g} m, N = {cell[2]:g}"
+    return page.Table(title, HEADER, [row_of(n, runs[runs.sampler == n]) for n in chosen])
+
+
+def section_of(_output, name, table):
+    cells = table.groupby(["scene", "sigma", "effective_points"])
+    return page.Section(f"Samplers ({name}.csv)", [table_of(*item) for item in cells])

@@ -1,0 +1,76 @@
+#include "samplers/score.h"
+
+#include "draw_statistics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+/** Draws of the gold standard that distribution functions are made of. */
+constexpr Eigen::Index num_compared_draws = 20000;
+
+void
+addDiagnostics(const Summary& summary, Score& score)
+{
+  score.bulk_ess = score.tail_ess = std::numeric_limits<double>::infinity();
+  for (const CoordinateSummary& coordinate : summary.coordinates) {
+    // Undefined is as bad as it gets.
+    const bool is_defined =
+        !std::isnan(coordinate.rhat + coordinate.bulk_ess + coordinate.tail_ess);
+    score.rhat = std::max(score.rhat,
+                          is_defined ? coordinate.rhat
+                                     : std::numeric_limits<double>::infinity());
+    score.bulk_ess = std::min(score.bulk_ess, is_defined ? coordinate.bulk_ess : 0.0);
+    score.tail_ess = std::min(score.tail_ess, is_defined ? coordinate.tail_ess : 0.0);
+  }
+}
+
+Eigen::VectorXd
+spreadColumn(const PoseMatrix& draws, int k)
+{
+  const Eigen::Index size = std::min(draws.rows(), num_compared_draws);
+  Eigen::VectorXd values(size);
+  for (Eigen::Index i = 0; i < size; ++i)
+    values[i] = draws(i * draws.rows() / size, k);
+  return values;
+}
+
+} // namespace
+
+Score
+scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
+{
+  const Summary summary = summarize(run.chains);
+  Score score;
+  score.status = toString(summary.status);
+  score.seconds = run.seconds;
+  addDiagnostics(summary, score);
+  const PoseMatrix pooled_draws = pooledDraws(run.chains.chains);
+  score.num_draws = static_cast<double>(pooled_draws.rows());
+  if (pooled_draws.rows() < min_scored_draws) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    score.kl = infinity;
+    score.coordinate_kl.setConstant(infinity);
+    score.wasserstein.setConstant(infinity);
+    score.kolmogorov_smirnov.setOnes();
+    return score;
+  }
+  const Vector6d centre = coordinateMeans(gold_draws);
+  const PoseMatrix reference = unwrapAbout(centre, gold_draws);
+  const PoseMatrix draws = unwrapAbout(centre, pooled_draws);
+  const Moments p = momentsOf(reference), q = momentsOf(draws);
+  score.kl = gaussianKl(p, q);
+  for (int k = 0; k < 6; ++k) {
+    const Eigen::VectorXd a = spreadColumn(reference, k), b = draws.col(k);
+    score.coordinate_kl[k] = gaussianKl(p, q, k);
+    score.wasserstein[k] = wasserstein1(a, b) / std::sqrt(p.covariance(k, k));
+    score.kolmogorov_smirnov[k] = kolmogorovSmirnov(a, b);
+  }
+  return score;
+}
+
+} // namespace bayesian_icp::evaluate

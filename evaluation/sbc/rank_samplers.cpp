@@ -1,0 +1,84 @@
+#include "sbc/rank_samplers.h"
+
+#include "coverage/coverage_calibrated.h"
+#include "coverage/coverage_cases.h"
+#include "coverage/coverage_methods.h"
+#include "sbc/rank_models.h"
+
+#include <bayesian_icp/pipeline.h>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+/** Of the models' random numbers; draws use other streams of the same seed. */
+constexpr std::uint64_t model_stream = 0x736263;
+
+std::optional<Ranks>
+runExactPreset(std::uint64_t seed, MetropolisUse metropolis)
+{
+  Random random(seed, model_stream);
+  const FarPointsModel model(random);
+  Options options;
+  options.preset = Preset::Exact;
+  options.likelihood.effective_points = static_cast<double>(model.source.cols());
+  options.likelihood.measurement_sigma = model.noise;
+  options.prior.mean = model.prior.mean();
+  options.prior.variance = model.prior.variance();
+  options.exact.metropolis = metropolis;
+  options.chains.seed = seed;
+  options.chains.num_threads = 1;
+  const PosteriorEstimate estimate = estimatePosterior(
+      model.source, KdTree(model.target.cast<float>(), 1), model.prior.mean(), options);
+  if (!hasUsableMean(estimate.summary.status))
+    return std::nullopt;
+  return ranksOf(model.truth, estimate.samples, model.prior);
+}
+
+std::optional<Ranks>
+runLinearScores(std::uint64_t seed)
+{
+  Random random(seed, model_stream);
+  const LinearScoreModel model(seed % 2 == 1, random);
+  ChainOptions options;
+  options.seed = seed;
+  options.num_threads = 1;
+  const ChainSet chains =
+      sampleCalibrated(model.score(), model.prior(), {{model.estimate()}}, options);
+  const PosteriorEstimate estimate = {
+      summarize(chains), {}, pooledDraws(chains.chains)};
+  if (!hasUsableMean(estimate.summary.status))
+    return std::nullopt;
+  return ranksOf(model.truth(), estimate.samples, model.prior());
+}
+
+std::optional<Ranks>
+runScans(std::uint64_t seed)
+{
+  const auto& scenes = tunedScenes();
+  const CoverageCase problem =
+      makeCoverageCase(scenes[seed % scenes.size()], "same", seed);
+  const MethodResult result = runCalibratedDraws(problem);
+  if (!result.is_valid)
+    return std::nullopt;
+  return ranksOf(poseOf(problem.truth.matrix()), result.draws, priorOf(problem));
+}
+
+} // namespace
+
+const std::vector<RankSampler>&
+rankSamplers()
+{
+  static const std::vector<RankSampler> samplers = {
+      {"exact-langevin",
+       true,
+       [](std::uint64_t seed) { return runExactPreset(seed, MetropolisUse::Never); }},
+      {"exact-metropolis",
+       true,
+       [](std::uint64_t seed) { return runExactPreset(seed, MetropolisUse::Always); }},
+      {"calibrated", true, runLinearScores},
+      {"calibrated-scans", false, runScans}};
+  return samplers;
+}
+
+} // namespace bayesian_icp::evaluate
