@@ -57,7 +57,7 @@ public:
   /** \brief Rough Hessian of the likelihood, positive semidefinite: where the warm-up
    * starts from. */
   virtual Matrix6d
-  roughCurvature(const Vector6d& x, Random& random) = 0;
+  roughCurvature(const Vector6d& x) = 0;
 
   /** \brief Hessian of the prior, positive semidefinite. */
   virtual Matrix6d
@@ -87,10 +87,9 @@ public:
   /** \brief Temperature from which the warm-up cools down: one at which a Gaussian is
    * wide enough to look over the roughness of the likelihood.
    * \param[in] x near a mode
-   * \param[in] covariance of the Gaussian at temperature 1
-   * \param[in] random generator of the chain */
+   * \param[in] covariance of the Gaussian at temperature 1 */
   virtual double
-  initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random) = 0;
+  initialTemperature(const Vector6d& x, const Matrix6d& covariance) = 0;
 };
 
 } // namespace bayesian_icp
