@@ -95,7 +95,7 @@ ChainPoseEnergy::termCovariance(const Vector6d& phi, Random& random)
 }
 
 Matrix6d
-ChainPoseEnergy::roughCurvature(const Vector6d& phi, Random& /* random */)
+ChainPoseEnergy::roughCurvature(const Vector6d& phi)
 {
   const auto batch = terms(phi, settings_.fixed_batch, BatchTerms::Curvature);
   return pose_energy_.weight() *
@@ -171,9 +171,7 @@ ChainPoseEnergy::burnIn(const Vector6d& start, Random& random)
 }
 
 double
-ChainPoseEnergy::initialTemperature(const Vector6d& phi,
-                                    const Matrix6d& covariance,
-                                    Random& /* random */)
+ChainPoseEnergy::initialTemperature(const Vector6d& phi, const Matrix6d& covariance)
 {
   const double rms_distance = std::sqrt(
       terms(phi, settings_.fixed_batch, BatchTerms::Nothing).squared_distance);

@@ -38,7 +38,7 @@ public:
   termCovariance(const Vector6d& phi, Random& random) override;
 
   Matrix6d
-  roughCurvature(const Vector6d& phi, Random& random) override;
+  roughCurvature(const Vector6d& phi) override;
 
   Matrix6d
   priorPrecision() const override;
@@ -59,9 +59,7 @@ public:
   burnIn(const Vector6d& start, Random& random) override;
 
   double
-  initialTemperature(const Vector6d& phi,
-                     const Matrix6d& covariance,
-                     Random& random) override;
+  initialTemperature(const Vector6d& phi, const Matrix6d& covariance) override;
 
   bool
   hasDiverged(const Vector6d& phi) const override;

@@ -216,10 +216,10 @@ fitTempered(StochasticEnergy& energy,
             const std::function<bool()>& keep_going)
 {
   const Matrix6d prior = energy.priorPrecision();
-  const Matrix6d curvature = energy.roughCurvature(start, random);
+  const Matrix6d curvature = energy.roughCurvature(start);
   const Gaussian untempered(start, atLeastHalfThePrior(curvature + prior, prior));
   GaussianFit fit;
-  fit.temperature = energy.initialTemperature(start, untempered.covariance(), random);
+  fit.temperature = energy.initialTemperature(start, untempered.covariance());
   fit.gaussian =
       Gaussian(start, atLeastHalfThePrior(curvature / fit.temperature + prior, prior));
 

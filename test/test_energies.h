@@ -51,7 +51,7 @@ public:
   }
 
   Matrix6d
-  roughCurvature(const Vector6d& /* x */, Random& /* random */) override
+  roughCurvature(const Vector6d& /* x */) override
   {
     return curvature;
   }
@@ -100,9 +100,7 @@ public:
   }
 
   double
-  initialTemperature(const Vector6d& /* x */,
-                     const Matrix6d& /* covariance */,
-                     Random& /* random */) override
+  initialTemperature(const Vector6d& /* x */, const Matrix6d& /* covariance */) override
   {
     return 1.0;
   }

@@ -58,7 +58,7 @@ public:
   /** \brief Rough Hessian of the likelihood, positive semidefinite. The warm-up starts
    * from it. */
   virtual Matrix6d
-  roughCurvature(const Vector6d& x, Random& random) = 0;
+  roughCurvature(const Vector6d& x) = 0;
 
   /** \brief Hessian of the prior, positive semidefinite. */
   virtual Matrix6d
@@ -88,10 +88,9 @@ public:
   /** \brief Temperature at which the warm-up starts: a Gaussian at that temperature is
    * wide enough to smooth the roughness of the likelihood.
    * \param[in] x near a mode
-   * \param[in] covariance of the Gaussian at temperature 1
-   * \param[in] random generator of the chain */
+   * \param[in] covariance of the Gaussian at temperature 1 */
   virtual double
-  initialTemperature(const Vector6d& x, const Matrix6d& covariance, Random& random) = 0;
+  initialTemperature(const Vector6d& x, const Matrix6d& covariance) = 0;
 };
 
 } // namespace bayesian_icp
