@@ -1,7 +1,6 @@
 #include "sbc/rank_study.h"
 
-#include <atomic>
-#include <exception>
+#include <bayesian_icp/first_exception.h>
 
 namespace bayesian_icp::evaluate {
 
@@ -34,37 +33,23 @@ runRankStudy(const RankStudy& study, RankFile& results)
 {
   const std::vector<Task> tasks = missingRuns(study, results);
   std::size_t num_done = 0;
-  std::exception_ptr error;
-  std::atomic<bool> has_failed = false;
   // No exception may leave a parallel region or a critical section.
-  const auto guarded = [&](const auto& function) {
-    try {
-      function();
-    }
-    catch (...) {
-      if (!has_failed.exchange(true))
-        error = std::current_exception();
-    }
-  };
+  FirstException failure;
 #pragma omp parallel for schedule(dynamic) num_threads(study.num_threads)
-  for (std::size_t i = 0; i < tasks.size(); ++i) {
-    const Task& task = tasks[i];
-    std::optional<Ranks> ranks;
-    if (!has_failed)
-      guarded([&] { ranks = task.sampler->run(task.seed); });
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    failure.guard([&] {
+      const Task& task = tasks[i];
+      const std::optional<Ranks> ranks = task.sampler->run(task.seed);
 #pragma omp critical(rank_results)
-    guarded([&] {
-      if (has_failed)
-        return;
-      results.add({{task.sampler->name, task.seed},
-                   ranks.has_value(),
-                   ranks.value_or(Ranks::Zero())});
-      if (study.report)
-        study.report(++num_done, tasks.size());
+      failure.guard([&] {
+        results.add({{task.sampler->name, task.seed},
+                     ranks.has_value(),
+                     ranks.value_or(Ranks::Zero())});
+        if (study.report)
+          study.report(++num_done, tasks.size());
+      });
     });
-  }
-  if (error)
-    std::rethrow_exception(error);
+  failure.rethrow();
 }
 
 std::vector<Ranks>
