@@ -145,11 +145,11 @@ TEST(AccuracyFile, RowsComeBackAsTheyWent)
   run.translation_error = std::nextafter(0.1, 1.0);
   run.rotation_error = std::nan("");
   run.status = "no, good";
-  const AccuracyRun back = AccuracyRun::ofRow(run.row());
-  EXPECT_FALSE(back.name < run.name || run.name < back.name);
+  const AccuracyRun back = runOf<AccuracyRun>(rowOf(run));
+  EXPECT_EQ(rowOf(back.name), rowOf(run.name));
   EXPECT_EQ(back.translation_error, run.translation_error);
   EXPECT_TRUE(std::isnan(back.rotation_error));
   EXPECT_EQ(back.status, "no  good");
-  EXPECT_ANY_THROW(AccuracyRun::ofRow(run.row() + ",1"));
-  EXPECT_ANY_THROW(AccuracyRun::ofRow("a,b,c,1"));
+  EXPECT_ANY_THROW(runOf<AccuracyRun>(rowOf(run) + ",1"));
+  EXPECT_ANY_THROW(runOf<AccuracyRun>("a,b,c,1"));
 }

@@ -208,8 +208,8 @@ TEST(DistributionRun, WithoutDrawsIsInfinitelyFar)
   EXPECT_EQ(run.score.coordinate_kl[0], infinity);
   EXPECT_EQ(run.main_kl, infinity);
   EXPECT_TRUE(std::isnan(run.nees));
-  const DistributionRun back = DistributionRun::ofRow(run.row());
-  EXPECT_EQ(back.row(), run.row());
+  const DistributionRun back = runOf<DistributionRun>(rowOf(run));
+  EXPECT_EQ(rowOf(back), rowOf(run));
 }
 
 TEST(PaperBaseline, TellsTheMainBasinFromFarMinima)

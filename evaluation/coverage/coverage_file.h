@@ -6,6 +6,7 @@
 #include "coverage/coverage_score.h"
 #include "run_file.h"
 
+#include <array>
 #include <string>
 
 namespace bayesian_icp::evaluate {
@@ -17,23 +18,53 @@ struct CoverageRunName {
   std::uint64_t seed = 0;
   std::string method;
 
-  bool
-  operator<(const CoverageRunName& other) const;
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("scene", self.scene);
+    column("condition", self.condition);
+    column("seed", self.seed);
+    column("method", self.method);
+  }
 };
 
 struct CoverageRun {
   CoverageRunName name;
   CoverageScore score;
 
-  static std::string
-  header();
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    CoverageRunName::columns(self.name, column);
+    auto& score = self.score;
+    column("valid", score.is_valid);
+    column("nees", score.nees);
+    column("region", score.region);
+    column("log_score", score.log_score);
+    column("energy_score", score.energy_score);
+    twistColumns("pit_", score.pit, column);
+    twistColumns("z_", score.z, column);
+    twistColumns("relative_sd_", score.relative_sd, column);
+    column("translation_error_m", score.translation_error);
+    column("rotation_error_rad", score.rotation_error);
+    column("displacement_m", score.displacement);
+    column("lost_displacement_m", score.lost_displacement);
+    column("seconds", score.seconds);
+    column("queries", score.num_queries);
+    column("notes", score.notes);
+  }
 
-  std::string
-  row() const;
-
-  /** \throws std::exception if the line is not a row */
-  static CoverageRun
-  ofRow(const std::string& line);
+private:
+  template <typename Vector, typename Column>
+  static void
+  twistColumns(const std::string& prefix, Vector& values, const Column& column)
+  {
+    constexpr std::array<const char*, 6> axes = {"vx", "vy", "vz", "wx", "wy", "wz"};
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      column(prefix + axes[k], values[Eigen::Index(k)]);
+  }
 };
 
 /** \brief The CSV file. Not for several threads at once. */

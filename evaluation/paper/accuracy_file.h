@@ -3,12 +3,10 @@
  */
 #pragma once
 
-#include "csv_fields.h"
 #include "run_file.h"
 
 #include <cstdint>
 #include <string>
-#include <tuple>
 
 namespace bayesian_icp::evaluate {
 
@@ -20,11 +18,15 @@ struct AccuracyRun {
     std::uint64_t seed = 0;
     int index = 0;
 
-    bool
-    operator<(const Name& other) const
+    template <typename Self, typename Column>
+    static void
+    columns(Self& self, const Column& column)
     {
-      return std::tie(key, pair, method, seed, index) <
-             std::tie(other.key, other.pair, other.method, other.seed, other.index);
+      column("key", self.key);
+      column("pair", self.pair);
+      column("method", self.method);
+      column("seed", self.seed);
+      column("start", self.index);
     }
   };
 
@@ -35,36 +37,14 @@ struct AccuracyRun {
   double rotation_error = 0.0;
   std::string status;
 
-  static std::string
-  header()
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
   {
-    return "key,pair,method,seed,start,translation_error_m,rotation_error_rad,status";
-  }
-
-  std::string
-  row() const
-  {
-    CsvRow row;
-    row.add(name.key).add(name.pair).add(name.method).add(name.seed).add(name.index);
-    row.add(translation_error).add(rotation_error).add(status);
-    return row.text();
-  }
-
-  static AccuracyRun
-  ofRow(const std::string& line)
-  {
-    CsvFields fields(line);
-    AccuracyRun run;
-    run.name.key = fields.text();
-    run.name.pair = fields.text();
-    run.name.method = fields.text();
-    fields.read(run.name.seed);
-    fields.read(run.name.index);
-    fields.read(run.translation_error);
-    fields.read(run.rotation_error);
-    run.status = fields.text();
-    fields.end();
-    return run;
+    Name::columns(self.name, column);
+    column("translation_error_m", self.translation_error);
+    column("rotation_error_rad", self.rotation_error);
+    column("status", self.status);
   }
 };
 

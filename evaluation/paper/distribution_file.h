@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <string>
-#include <tuple>
 
 namespace bayesian_icp::evaluate {
 
@@ -22,11 +21,14 @@ struct DistributionRun {
     std::string method;
     std::uint64_t seed = 0;
 
-    bool
-    operator<(const Name& other) const
+    template <typename Self, typename Column>
+    static void
+    columns(Self& self, const Column& column)
     {
-      return std::tie(key, pair, method, seed) <
-             std::tie(other.key, other.pair, other.method, other.seed);
+      column("key", self.key);
+      column("pair", self.pair);
+      column("method", self.method);
+      column("seed", self.seed);
     }
   };
 
@@ -51,15 +53,25 @@ struct DistributionRun {
   Vector6d mean = Vector6d::Zero();
   Vector6d standard_deviation = Vector6d::Zero();
 
-  static std::string
-  header();
-
-  std::string
-  row() const;
-
-  /** \throws std::exception if the line is not a row */
-  static DistributionRun
-  ofRow(const std::string& line);
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    Name::columns(self.name, column);
+    column("status", self.score.status);
+    Score::columns(self.score, column);
+    column("main_kl", self.main_kl);
+    coordinateColumns("main_kl_", self.main_coordinate_kl, column);
+    column("energy_score", self.energy_score);
+    column("truth_energy_score", self.truth_energy_score);
+    column("nees", self.nees);
+    column("translation_error_m", self.translation_error);
+    column("rotation_error_rad", self.rotation_error);
+    for (std::size_t k = 0; k < 6; ++k)
+      column("mean_" + app::coordinateKey(k), self.mean[Eigen::Index(k)]);
+    for (std::size_t k = 0; k < 6; ++k)
+      column("sd_" + app::coordinateKey(k), self.standard_deviation[Eigen::Index(k)]);
+  }
 };
 
 using DistributionFile = RunFile<DistributionRun>;

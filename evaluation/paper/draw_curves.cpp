@@ -1,6 +1,5 @@
 #include "paper/draw_curves.h"
 
-#include "csv_fields.h"
 #include "draw_statistics.h"
 #include "samplers/score.h"
 
@@ -114,38 +113,6 @@ curveDivergences(const PoseMatrix& draws, const PaperBaseline& baseline)
     divergences[k] = gaussianKl(p, q, k);
   divergences[6] = gaussianKl(p, q);
   return divergences;
-}
-
-std::string
-CurvePoint::header()
-{
-  return "key,pair,variant,seed,value,kl_x,kl_y,kl_z,kl_roll,kl_pitch,kl_yaw,kl";
-}
-
-std::string
-CurvePoint::row() const
-{
-  CsvRow row;
-  row.add(name.key).add(name.pair).add(name.variant).add(name.seed).add(name.value);
-  for (const double number : divergences)
-    row.add(number);
-  return row.text();
-}
-
-CurvePoint
-CurvePoint::ofRow(const std::string& line)
-{
-  CsvFields fields(line);
-  CurvePoint point;
-  point.name.key = fields.text();
-  point.name.pair = fields.text();
-  point.name.variant = fields.text();
-  fields.read(point.name.seed);
-  fields.read(point.name.value);
-  for (double& number : point.divergences)
-    fields.read(number);
-  fields.end();
-  return point;
 }
 
 PairCurves

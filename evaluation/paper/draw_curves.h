@@ -8,7 +8,6 @@
 #include "run_file.h"
 
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -60,26 +59,29 @@ struct CurvePoint {
     std::uint64_t seed = 0;
     int value = 0;
 
-    bool
-    operator<(const Name& other) const
+    template <typename Self, typename Column>
+    static void
+    columns(Self& self, const Column& column)
     {
-      return std::tie(key, pair, variant, seed, value) <
-             std::tie(other.key, other.pair, other.variant, other.seed, other.value);
+      column("key", self.key);
+      column("pair", self.pair);
+      column("variant", self.variant);
+      column("seed", self.seed);
+      column("value", self.value);
     }
   };
 
   Name name;
   CurveDivergences divergences = CurveDivergences::Zero();
 
-  static std::string
-  header();
-
-  std::string
-  row() const;
-
-  /** \throws std::exception if the line is not a row */
-  static CurvePoint
-  ofRow(const std::string& line);
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    Name::columns(self.name, column);
+    coordinateColumns("kl_", self.divergences, column);
+    column("kl", self.divergences[6]);
+  }
 };
 
 using CurveFile = RunFile<CurvePoint>;

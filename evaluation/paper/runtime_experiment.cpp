@@ -1,4 +1,3 @@
-#include "csv_fields.h"
 #include "input_hash.h"
 #include "paper/median_table.h"
 #include "paper/paper_methods.h"
@@ -9,7 +8,6 @@
 
 #include <chrono>
 #include <iostream>
-#include <tuple>
 
 namespace bayesian_icp::evaluate {
 
@@ -26,12 +24,15 @@ struct RuntimeRun {
     int num_threads = 0;
     std::uint64_t seed = 0;
 
-    bool
-    operator<(const Name& other) const
+    template <typename Self, typename Column>
+    static void
+    columns(Self& self, const Column& column)
     {
-      return std::tie(key, pair, method, num_threads, seed) <
-             std::tie(
-                 other.key, other.pair, other.method, other.num_threads, other.seed);
+      column("key", self.key);
+      column("pair", self.pair);
+      column("method", self.method);
+      column("threads", self.num_threads);
+      column("seed", self.seed);
     }
   };
 
@@ -41,37 +42,14 @@ struct RuntimeRun {
   double cpu_seconds = 0.0;
   std::string status;
 
-  static std::string
-  header()
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
   {
-    return "key,pair,method,threads,seed,wall_s_per_1000_draws,"
-           "cpu_s_per_1000_draws,status";
-  }
-
-  std::string
-  row() const
-  {
-    CsvRow row;
-    row.add(name.key).add(name.pair).add(name.method).add(name.num_threads);
-    row.add(name.seed).add(wall_seconds).add(cpu_seconds).add(status);
-    return row.text();
-  }
-
-  static RuntimeRun
-  ofRow(const std::string& line)
-  {
-    CsvFields fields(line);
-    RuntimeRun run;
-    run.name.key = fields.text();
-    run.name.pair = fields.text();
-    run.name.method = fields.text();
-    fields.read(run.name.num_threads);
-    fields.read(run.name.seed);
-    fields.read(run.wall_seconds);
-    fields.read(run.cpu_seconds);
-    run.status = fields.text();
-    fields.end();
-    return run;
+    Name::columns(self.name, column);
+    column("wall_s_per_1000_draws", self.wall_seconds);
+    column("cpu_s_per_1000_draws", self.cpu_seconds);
+    column("status", self.status);
   }
 };
 

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "row_file.h"
+#include "run_file.h"
 #include "samplers/sampler_runs.h"
 
 #include <bayesian_icp/summary.h>
@@ -25,6 +25,16 @@ struct RunName {
   std::uint64_t seed = 0;
   /** Hash of inputs and options of the gold standard. */
   std::string gold_key;
+
+  /** \brief Of those that tell runs apart: the gold standard's hash has the others. */
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("gold_key", self.gold_key);
+    column("sampler", self.sampler);
+    column("seed", self.seed);
+  }
 };
 
 /** \brief Distance of the draws to the gold standard, and their diagnostics. */
@@ -51,33 +61,44 @@ struct Score {
   {
     return bulk_ess / seconds;
   }
+
+  /** \brief All but the status. */
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("kl", self.kl);
+    coordinateColumns("kl_", self.coordinate_kl, column);
+    coordinateColumns("w1_", self.wasserstein, column);
+    coordinateColumns("ks_", self.kolmogorov_smirnov, column);
+    column("rhat", self.rhat);
+    column("bulk_ess", self.bulk_ess);
+    column("tail_ess", self.tail_ess);
+    column("seconds", self.seconds);
+    column("draws", self.num_draws);
+  }
 };
 
-/** \brief Names of the numbers of a score in a CSV file, and a visit to each in that
- * order. */
-constexpr char score_columns[] =
-    "kl,kl_x,kl_y,kl_z,kl_roll,kl_pitch,kl_yaw,w1_x,w1_y,w1_z,w1_roll,w1_pitch,w1_yaw,"
-    "ks_x,ks_y,ks_z,ks_roll,ks_pitch,ks_yaw,rhat,bulk_ess,tail_ess,seconds,draws";
-
-template <typename ScoreType, typename Visit>
-void
-forEachNumber(ScoreType& score, const Visit& visit)
-{
-  visit(score.kl);
-  for (auto* vector :
-       {&score.coordinate_kl, &score.wasserstein, &score.kolmogorov_smirnov})
-    for (int k = 0; k < 6; ++k)
-      visit((*vector)[k]);
-  visit(score.rhat);
-  visit(score.bulk_ess);
-  visit(score.tail_ess);
-  visit(score.seconds);
-  visit(score.num_draws);
-}
-
+/** \brief A run of a sampler. */
 struct ScoredRun {
   RunName name;
   Score score;
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("gold_key", self.name.gold_key);
+    column("scene", self.name.scene);
+    column("sigma", self.name.sigma);
+    column("effective_points", self.name.effective_points);
+    column("sampler", self.name.sampler);
+    column("seed", self.name.seed);
+    column("status", self.score.status);
+    Score::columns(self.score, column);
+    auto ess_per_second = self.score.essPerSecond();
+    column("min_ess_per_second", ess_per_second);
+  }
 };
 
 /** \brief With fewer draws there are no distances. */
@@ -87,32 +108,6 @@ constexpr Eigen::Index min_scored_draws = 10;
 Score
 scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws);
 
-/** \brief The CSV file of a study. */
-class ResultFile {
-public:
-  /** \brief Read what is there; a last line that was cut off is dropped.
-   * \throws io::FileError if the file exists and is not of this format, or cannot be
-   *         written */
-  explicit ResultFile(const std::string& name);
-
-  /** \brief The run of this name, or null. */
-  const ScoredRun*
-  find(const RunName& name) const;
-
-  /** \brief Write a row, at once.
-   * \throws io::FileError */
-  void
-  add(const ScoredRun& run);
-
-  const std::vector<ScoredRun>&
-  runs() const
-  {
-    return runs_;
-  }
-
-private:
-  std::vector<ScoredRun> runs_;
-  RowFile file_;
-};
+using ResultFile = RunFile<ScoredRun>;
 
 } // namespace bayesian_icp::evaluate

@@ -4,42 +4,49 @@
  */
 #pragma once
 
-#include "row_file.h"
+#include "run_file.h"
 #include "sbc/rank_samplers.h"
 
-#include <map>
-#include <optional>
+#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief The CSV file: a row a run, in the order in which they ended. Not for several
- * threads at once. */
-class RankFile {
-public:
-  /** \brief Read what is there; see RowFile. */
-  explicit RankFile(const std::string& name);
+/** \brief One run of one sampler. */
+struct RankRun {
+  struct Name {
+    std::string sampler;
+    std::uint64_t seed = 0;
 
-  bool
-  has(const std::string& sampler, std::uint64_t seed) const;
+    template <typename Self, typename Column>
+    static void
+    columns(Self& self, const Column& column)
+    {
+      column("sampler", self.sampler);
+      column("seed", self.seed);
+    }
+  };
 
-  /** \brief Write a row, at once; no ranks: the draws were no good.
-   * \throws io::FileError */
-  void
-  add(const std::string& sampler,
-      std::uint64_t seed,
-      const std::optional<Ranks>& ranks);
+  Name name;
+  /** Whether the draws were good; without it there are no ranks. */
+  bool is_valid = false;
+  Ranks ranks = Ranks::Zero();
 
-  /** \brief Ranks of a run; nothing if it is not there or its draws were no good. */
-  std::optional<Ranks>
-  find(const std::string& sampler, std::uint64_t seed) const;
-
-private:
-  std::map<std::pair<std::string, std::uint64_t>, std::optional<Ranks>> runs_;
-  RowFile file_;
+  /** \throws std::runtime_error of what is no rank */
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    Name::columns(self.name, column);
+    column("valid", self.is_valid);
+    coordinateColumns("rank_", self.ranks, column);
+    if (self.ranks.minCoeff() < 0 || self.ranks.maxCoeff() > num_ranked_draws)
+      throw std::runtime_error("not a rank");
+  }
 };
+
+using RankFile = RunFile<RankRun>;
 
 /** \brief What is run. */
 struct RankStudy {

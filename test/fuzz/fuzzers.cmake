@@ -58,13 +58,8 @@ target_sources(
   fuzz_result_file
   PRIVATE ${apps}/batch/batch_file.cpp
           ${apps}/batch/batch_line.cpp
-          ${evaluation}/coverage/coverage_file.cpp
-          ${evaluation}/option_values.cpp
-          ${evaluation}/paper/distribution_file.cpp
           ${evaluation}/row_file.cpp
           ${evaluation}/samplers/gold_file.cpp
-          ${evaluation}/samplers/result_file.cpp
-          ${evaluation}/sbc/rank_study.cpp
           ${apps}/register/data_json.cpp
           ${apps}/register/posterior_json.cpp)
 target_compile_definitions(fuzz_result_file
