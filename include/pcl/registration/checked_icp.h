@@ -7,6 +7,7 @@
 #include <pcl/registration/icp.h>
 #include <pcl/registration/impl/aligned_icp.hpp>
 #include <pcl/registration/impl/bayesian_icp_search.hpp>
+#include <pcl/registration/impl/seeded_kd_tree.hpp>
 
 #include <limits>
 #include <memory>
@@ -31,6 +32,8 @@ public:
   using Base::convergence_criteria_; // public in PCL's class, too
   using Base::getClassName;
   using Base::getFitnessScore;
+
+  CheckedIterativeClosestPoint() { tree_ = own_tree_; }
 
   /** \brief Set the cloud to register to. Points further out than 1e18 m, on which
    * PCL's search tree aborts, are left out: the target is then a copy in which they are
@@ -73,7 +76,7 @@ protected:
 
   /** Registers the usable points, and moves the whole source to where they went. */
   void
-  computeTransformation(PointCloudSource& output, const Matrix4& guess) final;
+  computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
   /** Forget the last registration. */
   virtual void
@@ -106,6 +109,10 @@ protected:
   asEstimationAllows(const PointCloudSource& source,
                      const Matrix4& from,
                      const Matrix4& to);
+
+  /** The search tree of the target, unless the user installs another one. */
+  const shared_ptr<SeededKdTree<PointTarget>> own_tree_ =
+      pcl::make_shared<SeededKdTree<PointTarget>>();
 
 private:
   bool

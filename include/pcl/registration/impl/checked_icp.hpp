@@ -33,14 +33,14 @@ private:
   T original_;
 };
 
-/** Whether a search tree is PCL's own, with PCL's own idea of a point. */
+/** Whether a search tree answers as PCL's own, with PCL's own idea of a point. */
 template <typename PointT>
 bool
 isDefaultTree(const search::KdTree<PointT>& tree)
 {
-  const auto& representation = *tree.getPointRepresentation();
-  return (typeid(tree) == typeid(search::KdTree<PointT>) &&
-          typeid(representation) == typeid(DefaultPointRepresentation<PointT>));
+  return ((typeid(tree) == typeid(search::KdTree<PointT>) ||
+           typeid(tree) == typeid(SeededKdTree<PointT>)) &&
+          isDefault(*tree.getPointRepresentation()));
 }
 
 /** Whether a transformation is a rotation and a translation, to the accuracy of float.
