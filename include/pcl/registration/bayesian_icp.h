@@ -6,7 +6,7 @@
 
 #include <bayesian_icp/pipeline.h>
 
-#include <pcl/registration/checked_icp.h>
+#include <pcl/registration/impl/checked_icp.hpp>
 
 namespace pcl {
 
