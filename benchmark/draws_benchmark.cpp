@@ -32,11 +32,12 @@ flannQueries(benchmark::State& state,
           (*source)[random.index(source->size())], 1, index, squared_distance);
 }
 
-/** The chains alone: correspondences by PCL's search tree, as the class does. */
+/** The chains alone: correspondences by the class's search tree, as it has them. */
 void
 draws(benchmark::State& state, const Cloud::Ptr& source, const Cloud::Ptr& target)
 {
-  pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>);
+  const auto tree =
+      pcl::make_shared<pcl::bayesian_icp_detail::SeededKdTree<pcl::PointXYZ>>();
   tree->setInputCloud(target);
   const pcl::bayesian_icp_detail::KdTreeSearch<pcl::PointXYZ, pcl::PointXYZ> search(
       tree, target, std::sqrt(std::numeric_limits<double>::max()), nullptr);

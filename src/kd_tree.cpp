@@ -1,6 +1,5 @@
 #include "kd_tree_build.h"
 #include "kd_tree_kernels.h"
-#include "num_threads.h"
 
 #include <bayesian_icp/kd_tree.h>
 
@@ -13,11 +12,6 @@ namespace bayesian_icp {
 namespace {
 
 using kd_tree::Search;
-
-/** Worth some 2 ms with hints. For less, waking a thread may cost more than it saves,
- * by far if other programs keep the cores busy. */
-constexpr std::ptrdiff_t min_queries_to_share = 32768;
-constexpr int share_size = 512;
 
 Search
 searchOf(InstructionSet instruction_set)
@@ -108,31 +102,6 @@ KdTree::nearest(const Eigen::Vector3f& query,
   if (best.index == kd_tree::no_point)
     return {none, std::numeric_limits<float>::infinity(), false};
   return {best.index, best.squared_distance, best.is_tied};
-}
-
-void
-KdTree::nearestOfAll(const Eigen::Matrix3Xf& queries,
-                     float max_squared_distance,
-                     std::vector<Neighbor>& neighbors,
-                     int num_threads) const
-{
-  const auto num_queries = static_cast<std::ptrdiff_t>(queries.cols());
-  neighbors.resize(static_cast<std::size_t>(num_queries),
-                   {none, std::numeric_limits<float>::infinity(), false});
-  const std::ptrdiff_t num_shares =
-      num_queries < min_queries_to_share ? 1 : num_queries / share_size;
-#pragma omp parallel num_threads(numThreadsFor(num_threads, num_shares))
-  {
-    std::uint32_t last = none;
-#pragma omp for schedule(dynamic, share_size)
-    for (std::ptrdiff_t i = 0; i < num_queries; ++i) {
-      Neighbor& neighbor = neighbors[static_cast<std::size_t>(i)];
-      const std::uint32_t hint = neighbor.index == none ? last : neighbor.index;
-      neighbor = nearest(queries.col(i), max_squared_distance, hint);
-      if (neighbor.index != none)
-        last = neighbor.index;
-    }
-  }
 }
 
 std::size_t

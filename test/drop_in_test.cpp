@@ -416,13 +416,11 @@ TEST(DropInTies, OccurOnTheLattice)
 {
   const Scans<PointXYZ> scans;
   const auto numTied = [](const Cloud& source, const Cloud& target) {
-    std::vector<bayesian_icp::KdTree::Neighbor> found;
-    bayesian_icp::KdTree(bayesian_icp_detail::pointMatrix<float>(target))
-        .nearestOfAll(bayesian_icp_detail::pointMatrix<float>(source),
-                      std::numeric_limits<float>::max(),
-                      found);
-    return (std::count_if(
-        found.begin(), found.end(), [](const auto& n) { return n.is_tied; }));
+    const bayesian_icp::KdTree tree(bayesian_icp_detail::pointMatrix<float>(target));
+    return (std::count_if(source.begin(), source.end(), [&](const auto& point) {
+      return (tree.nearest(point.getVector3fMap(), std::numeric_limits<float>::max())
+                  .is_tied);
+    }));
   };
   EXPECT_GT(numTied(*onLattice(*scans.source), *onLattice(*scans.target)), 100);
   EXPECT_EQ(numTied(*scans.source, *scans.target), 0);

@@ -129,29 +129,6 @@ TEST(KdTree, SeveralThreadsMaySearchAtOnce)
     ASSERT_TRUE(isSame(found[i], expected[i]));
 }
 
-TEST(KdTree, AnswersManyAsItAnswersEachForAnyNumberOfThreadsAndAnyHints)
-{
-  Random random(11, 0);
-  const KdTree tree(clouds().front().make(random, 3000));
-  constexpr float gate = 1e-3f; // some have a neighbour, some have none
-  for (const Eigen::Index size : {0, 1, 100, 40000}) { // for one thread, and for more
-    const Eigen::Matrix3Xf start = clouds().front().make(random, size);
-    for (const int num_threads : {0, 1, 2, 5}) {
-      std::vector<KdTree::Neighbor> found;
-      for (const float motion : {0.f, 0.01f, 1.f}) {
-        Eigen::Matrix3Xf queries = start.array() + motion;
-        if (size > 17)
-          queries(1, 17) = std::numeric_limits<float>::quiet_NaN();
-        tree.nearestOfAll(queries, gate, found, num_threads);
-        ASSERT_EQ(found.size(), static_cast<std::size_t>(size));
-        for (Eigen::Index i = 0; i < size; ++i)
-          ASSERT_TRUE(isSame(found[static_cast<std::size_t>(i)],
-                             tree.nearest(queries.col(i), gate)));
-      }
-    }
-  }
-}
-
 TEST(KdTree, AnswersAfterAMove)
 {
   Random random(9, 0);

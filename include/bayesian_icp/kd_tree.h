@@ -78,18 +78,6 @@ public:
           float max_squared_distance,
           std::uint32_t hint = none) const;
 
-  /** \brief nearest() of many points, in parallel.
-   * \param[in] queries as above, one a column
-   * \param[in] max_squared_distance as above
-   * \param[in,out] neighbors one a column; what is in it, such as the answers to the
-   *            same points before they moved, serves as hints
-   * \param[in] num_threads at most, 0: as OpenMP would; few queries are for one */
-  void
-  nearestOfAll(const Eigen::Matrix3Xf& queries,
-               float max_squared_distance,
-               std::vector<Neighbor>& neighbors,
-               int num_threads = 0) const;
-
   /** \brief The points given to the constructor, [m]. */
   const Eigen::Matrix3Xf&
   points() const

@@ -20,7 +20,7 @@ for compiler in "$@"; do
     compile "$compiler" "$header"
   done
 done
-for header in pcl/registration/{bayesian_icp,checked_icp,stochastic_gradient_icp}.h; do
+for header in pcl/registration/{bayesian_icp,stochastic_gradient_icp}.h; do
   echo "$1 $header"
   compile "$1" "$header"
 done

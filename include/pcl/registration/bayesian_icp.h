@@ -6,8 +6,7 @@
 
 #include <bayesian_icp/pipeline.h>
 
-#include <pcl/registration/checked_icp.h>
-#include <pcl/registration/impl/bayesian_icp_estimation.hpp>
+#include <pcl/registration/impl/checked_icp.hpp>
 
 namespace pcl {
 
@@ -15,15 +14,15 @@ namespace pcl {
  *
  * align() first runs pcl::IterativeClosestPoint: final transformation, output,
  * convergence and correspondences are its own to the last bit, though a tree of this
- * library finds the pairs where PCL's defaults would. Then it samples the posterior of
- * the source-to-target pose from the same guess, by preconditioned SGLD over
- * mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty with
- * Bayesian ICP, ICRA 2020). By default, Preset::Calibrated, it finds the scale from the
- * clouds, and getSummary().data says how well they hold the pose in each direction. It
- * measures distances to the surface of the target points that the object searches (all,
- * those of the indices set on its estimation, or those of a ready tree); rejectors,
- * reciprocity, an own estimation and the maximum correspondence distance are for ICP
- * alone then, as each source point is judged in units of the noise.
+ * library finds the pairs, unless the user installs a search tree. Then it samples the
+ * posterior of the source-to-target pose from the same guess, by preconditioned SGLD
+ * over mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty
+ * with Bayesian ICP, ICRA 2020). By default, Preset::Calibrated, it finds the scale
+ * from the clouds, and getSummary().data says how well they hold the pose in each
+ * direction. It measures distances to the surface of the target points that the object
+ * searches (all, those of the indices set on its estimation, or those of a ready tree);
+ * rejectors, reciprocity, an own estimation and the maximum correspondence distance are
+ * for ICP alone then, as each source point is judged in units of the noise.
  *
  * With setPreset(Preset::Exact) draws are right for the stated measurement sigma,
  * effective points, gate and prior; setPreset(Preset::Paper) is the paper's Algorithm
@@ -130,6 +129,7 @@ public:
   setOptions(const bayesian_icp::Options& options)
   {
     options_ = options;
+    this->own_tree_->seeded->num_threads = options.chains.num_threads;
   }
 
   const bayesian_icp::Options&
@@ -243,6 +243,7 @@ public:
   setNumberOfThreads(unsigned int nr_threads = 0)
   {
     options_.chains.num_threads = static_cast<int>(nr_threads);
+    this->own_tree_->seeded->num_threads = options_.chains.num_threads;
   }
 
   /** \brief Told of every step of the chains; returns false to cancel them. */
@@ -296,18 +297,8 @@ protected:
   keepFailure(bool is_guess_finite, const char* reason) override;
 
 private:
-  using SeededEstimation =
-      bayesian_icp_detail::SeededEstimation<PointSource, PointTarget, Scalar>;
-
-  /** \brief PCL's ICP; its pairs are found by a tree of this library where that gives
-   * the same ones. */
   void
   runIcp(PointCloudSource& output, const Matrix4& guess);
-
-  /** \brief Whether PCL's ICP would ask its default tree for nearest neighbours in the
-   * whole target. */
-  bool
-  mayUseOwnTree();
 
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
@@ -331,13 +322,16 @@ private:
   bool
   isTreeOfWholeTarget() const;
 
+  /** \brief This library's tree over the whole target. */
+  std::shared_ptr<const bayesian_icp::KdTree>
+  targetTree() const;
+
   bool
   moveToMean(const PointCloudSource& source);
 
   bayesian_icp::Options options_;
   bayesian_icp::ProgressCallback progress_callback_;
   bayesian_icp::PosteriorEstimate estimate_;
-  bayesian_icp_detail::TargetTree<PointTarget> target_tree_;
   bool use_mean_as_final_transformation_ = false;
 };
 

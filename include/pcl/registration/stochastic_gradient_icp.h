@@ -5,7 +5,7 @@
 
 #include <bayesian_icp/baselines/stochastic_gradient_icp.h>
 
-#include <pcl/registration/checked_icp.h>
+#include <pcl/registration/impl/checked_icp.hpp>
 
 namespace pcl {
 

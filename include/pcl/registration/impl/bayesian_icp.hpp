@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 namespace pcl {
@@ -43,6 +44,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
     BayesianIterativeClosestPoint()
 {
   reg_name_ = "BayesianIterativeClosestPoint";
+  setOptions(options_);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -86,36 +88,13 @@ void
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
     PointCloudSource& output, const Matrix4& guess)
 {
-  if (!mayUseOwnTree()) {
-    target_tree_.skip(*target_);
-    Icp::computeTransformation(output, guess);
-    return;
-  }
-  const int num_threads = options_.chains.num_threads;
-  // PCL's estimation would bring the tree up to date.
-  if (target_tree_.update(*target_, num_threads) || tree_->getInputCloud() != target_ ||
-      tree_->getIndices())
-    tree_->setInputCloud(target_);
-  const auto estimation = correspondence_estimation_;
-  const auto seeded =
-      pcl::make_shared<SeededEstimation>(target_tree_.get(), tree_, num_threads);
-  const bayesian_icp_detail::Substitution<decltype(correspondence_estimation_)>
-      substitution(correspondence_estimation_, seeded);
+  // Others may search in a ready tree meanwhile.
+  const bool may_remember = tree_ == this->own_tree_ && !force_no_recompute_;
+  if (may_remember)
+    this->own_tree_->seeded->beginAtLastAnswers(this->input_->size());
   Icp::computeTransformation(output, guess);
-  estimation->setInputSource(seeded->getInputSource()); // the user may ask it, too
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-bool
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::mayUseOwnTree()
-{
-  if (!this->hasDefaultEstimation() || use_reciprocal_correspondence_ ||
-      !isTreeOfWholeTarget())
-    return (false);
-  // As ICP does. An estimation that was given a point representation now passes it on
-  // to the tree.
-  correspondence_estimation_->setInputTarget(target_);
-  return (this->hasDefaultEstimation());
+  if (may_remember)
+    this->own_tree_->seeded->beginAtLastAnswers(0);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -180,9 +159,8 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
   }
   if (options.preset == bayesian_icp::Preset::Exact && hasPlainCorrespondences() &&
       isTreeOfWholeTarget()) {
-    target_tree_.update(*target_, options.chains.num_threads);
     return (bayesian_icp::estimatePosterior(
-        points, *target_tree_.get(), start, options, progress_callback_));
+        points, *targetTree(), start, options, progress_callback_));
   }
   return (bayesian_icp::estimatePosterior(points,
                                           *this->makeCorrespondenceSearch(source),
@@ -242,6 +220,16 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::isTreeOfWholeTa
     const
 {
   return (!force_no_recompute_ && !correspondence_estimation_->getIndicesTarget());
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+std::shared_ptr<const bayesian_icp::KdTree>
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::targetTree() const
+{
+  if (tree_ == this->own_tree_ && this->own_tree_->seeded->get())
+    return (this->own_tree_->seeded->get());
+  return (std::make_shared<const bayesian_icp::KdTree>(
+      bayesian_icp_detail::pointMatrix<float>(*target_), options_.chains.num_threads));
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

@@ -1,13 +1,24 @@
+/** \file
+ * \brief What the registration classes of this library share: points and guesses that
+ * PCL's ICP would abort on are dealt with, and its search is there to be asked.
+ */
 #pragma once
 
 #include <pcl/common/io.h>
 #include <pcl/common/point_tests.h>
-#include <pcl/registration/checked_icp.h>
-#include <pcl/registration/impl/bayesian_icp_selection.hpp>
+#include <pcl/registration/icp.h>
+#include <pcl/registration/impl/bayesian_icp_search.hpp>
+#include <pcl/registration/impl/seeded_kd_tree.hpp>
 #include <pcl/registration/transformation_estimation_svd.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <cstddef>
 #include <limits>
+#include <memory>
+#include <new>
+#include <numeric>
 #include <typeinfo>
 #include <utility>
 #include <vector>
@@ -33,14 +44,14 @@ private:
   T original_;
 };
 
-/** Whether a search tree is PCL's own, with PCL's own idea of a point. */
+/** Whether a search tree answers as PCL's own, with PCL's own idea of a point. */
 template <typename PointT>
 bool
 isDefaultTree(const search::KdTree<PointT>& tree)
 {
-  const auto& representation = *tree.getPointRepresentation();
-  return (typeid(tree) == typeid(search::KdTree<PointT>) &&
-          typeid(representation) == typeid(DefaultPointRepresentation<PointT>));
+  return ((typeid(tree) == typeid(search::KdTree<PointT>) ||
+           typeid(tree) == typeid(SeededKdTree<PointT>)) &&
+          isDefault(*tree.getPointRepresentation()));
 }
 
 /** Whether a transformation is a rotation and a translation, to the accuracy of float.
@@ -53,6 +64,250 @@ isRigid(const Eigen::Matrix4d& transformation)
   return ((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < tolerance &&
           R.determinant() > 0.0);
 }
+
+/** Whether \p indices is 0, 1, ..., num_points - 1. */
+inline bool
+isWholeCloud(const Indices& indices, std::size_t num_points)
+{
+  if (indices.size() != num_points)
+    return (false);
+  for (std::size_t i = 0; i < num_points; ++i)
+    if (indices[i] != static_cast<index_t>(i))
+      return (false);
+  return (true);
+}
+
+/** Those of \p indices whose point can be searched for where it is and where \p guess
+ * moves it. */
+template <typename PointT>
+Indices
+usablePoints(const PointCloud<PointT>& cloud,
+             const Indices& indices,
+             const Eigen::Matrix4f& guess)
+{
+  const Eigen::Matrix3f R = guess.topLeftCorner<3, 3>();
+  const Eigen::Vector3f translation = guess.topRightCorner<3, 1>();
+  Indices usable;
+  usable.reserve(indices.size());
+  for (const auto index : indices) {
+    const Eigen::Vector3f position = cloud[index].getVector3fMap();
+    const Eigen::Vector3f moved = R * position + translation;
+    if (canBeQueried(position) && canBeQueried(moved))
+      usable.push_back(index);
+  }
+  return (usable);
+}
+
+/** The source points selected by the indices of a registration and by those of its
+ * correspondence estimation. The latter are taken off the estimation for the lifetime
+ * of this object: they count points of the whole source, but the estimation is given
+ * subsets and mini-batches of it. */
+template <typename PointSource, typename PointTarget, typename Scalar>
+class SourceSelection {
+public:
+  using Estimation =
+      registration::CorrespondenceEstimationBase<PointSource, PointTarget, Scalar>;
+
+  /** \param[in] indices those of the registration; an empty list means the whole cloud,
+   *            as it does to pcl::IterativeClosestPoint */
+  SourceSelection(Estimation& estimation,
+                  const PointCloud<PointSource>& source,
+                  const Indices& indices)
+  : estimation_(estimation)
+  , indices_(indices)
+  {
+    if (indices_.empty()) {
+      indices_.resize(source.size());
+      std::iota(indices_.begin(), indices_.end(), 0);
+    }
+    // An estimation without indices has made a list of all points of its last input.
+    const auto own = estimation.getIndicesSource();
+    const auto last_input = estimation.getInputSource();
+    if (!own || (last_input && isWholeCloud(*own, last_input->size())))
+      return;
+    taken_off_ = own;
+    estimation_.setIndicesSource(IndicesPtr());
+    keepOnlyThose(*own, source.size());
+  }
+  ~SourceSelection()
+  {
+    if (taken_off_)
+      estimation_.setIndicesSource(taken_off_);
+  }
+  SourceSelection(const SourceSelection&) = delete;
+  SourceSelection&
+  operator=(const SourceSelection&) = delete;
+
+  const Indices&
+  indices() const
+  {
+    return (indices_);
+  }
+
+private:
+  void
+  keepOnlyThose(const Indices& own, std::size_t num_points)
+  {
+    std::vector<bool> is_selected(num_points, false);
+    for (const auto index : indices_)
+      is_selected[static_cast<std::size_t>(index)] = true;
+    indices_.clear();
+    for (const auto index : own) {
+      const auto position = static_cast<std::size_t>(index);
+      if (position < num_points && is_selected[position])
+        indices_.push_back(index);
+    }
+  }
+
+  Estimation& estimation_;
+  Indices indices_;
+  IndicesPtr taken_off_;
+};
+
+/** ICP of those points that are finite and selected by indices.
+ *
+ * Its new and delete are Eigen's aligned ones in every standard of C++. Those of PCL's
+ * classes are so in C++14 only: an object that a program in C++14 has made would be
+ * deleted by the library, which is C++17, in another way, or not even be linked. */
+template <typename PointSource, typename PointTarget, typename Scalar>
+class CheckedIterativeClosestPoint
+: public IterativeClosestPoint<PointSource, PointTarget, Scalar> {
+public:
+  using Base = IterativeClosestPoint<PointSource, PointTarget, Scalar>;
+  using Matrix4 = typename Base::Matrix4;
+  using PointCloudSource = typename Base::PointCloudSource;
+  using PointCloudSourcePtr = typename Base::PointCloudSourcePtr;
+  using PointCloudSourceConstPtr = typename Base::PointCloudSourceConstPtr;
+  using PointCloudTarget = typename Base::PointCloudTarget;
+  using PointCloudTargetPtr = typename Base::PointCloudTargetPtr;
+  using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
+
+  using Base::convergence_criteria_; // public in PCL's class, too
+  using Base::getClassName;
+  using Base::getFitnessScore;
+
+  CheckedIterativeClosestPoint() { tree_ = own_tree_; }
+
+  static void*
+  operator new(std::size_t size)
+  {
+    return (Eigen::internal::aligned_malloc(size));
+  }
+
+  static void*
+  operator new[](std::size_t size)
+  {
+    return (Eigen::internal::aligned_malloc(size));
+  }
+
+  static void*
+  operator new(std::size_t /* size */, void* place) noexcept
+  {
+    return (place);
+  }
+
+  static void
+  operator delete(void* object) noexcept
+  {
+    Eigen::internal::aligned_free(object);
+  }
+
+  static void
+  operator delete[](void* objects) noexcept
+  {
+    Eigen::internal::aligned_free(objects);
+  }
+
+  static void
+  operator delete(void* /* object */, void* /* place */) noexcept
+  {}
+
+  /** \brief Set the cloud to register to. Points further out than 1e18 m, on which
+   * PCL's search tree aborts, are left out: the target is then a copy in which they are
+   * NaN.
+   */
+  void
+  setInputTarget(const PointCloudTargetConstPtr& cloud) override;
+
+  /** \brief Mean squared distance [m^2] of the transformed source to the target, as
+   * PCL's, leaving out non-finite points (PCL 1.13 aborts on them, also where it is
+   * called through a pointer to PCL's class).
+   * \param[in] max_range largest squared distance that counts [m^2]
+   * \return the largest double if no point is in range */
+  double
+  getFitnessScore(double max_range = std::numeric_limits<double>::max());
+
+protected:
+  using Base::converged_;
+  using Base::corr_dist_threshold_;
+  using Base::correspondence_estimation_;
+  using Base::correspondence_rejectors_;
+  using Base::correspondences_;
+  using Base::final_transformation_;
+  using Base::force_no_recompute_;
+  using Base::indices_;
+  using Base::input_;
+  using Base::min_number_correspondences_;
+  using Base::nr_iterations_;
+  using Base::source_has_normals_;
+  using Base::target_;
+  using Base::target_has_normals_;
+  using Base::transformation_estimation_;
+  using Base::transformCloud;
+  using Base::tree_;
+  using Base::tree_reciprocal_;
+  using Base::use_reciprocal_correspondence_;
+
+  /** The state of convergence_criteria_ [see pcl::registration]. */
+  using State = registration::DefaultConvergenceCriteria<Scalar>;
+
+  /** Registers the usable points, and moves the whole source to where they went. */
+  void
+  computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
+
+  /** Forget the last registration. */
+  virtual void
+  forgetResult() = 0;
+
+  /** Register \p source, the usable points, which is input_ at the time of the call:
+   * set final_transformation_, converged_, correspondences_ and the like.
+   * \return whether \p output is now the moved source */
+  virtual bool
+  registerUsable(const PointCloudSourceConstPtr& source,
+                 PointCloudSource& output,
+                 const Matrix4& guess) = 0;
+
+  /** Take note of clouds or a guess that cannot be registered; it has been reported. */
+  virtual void
+  keepFailure(bool is_guess_finite, const char* reason) = 0;
+
+  bool
+  hasDefaultEstimation() const;
+
+  /** A search among the pairs that the estimation and the rejectors would find for
+   * points of \p source. */
+  std::unique_ptr<PairSearch<PointTarget>>
+  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source);
+
+  /** The transformation next to \p to that the transformation estimation allows: a
+   * user's own may know some motions only (2-D, translation), so it is asked for the
+   * one that brings \p source from \p from to \p to. */
+  Matrix4
+  asEstimationAllows(const PointCloudSource& source,
+                     const Matrix4& from,
+                     const Matrix4& to);
+
+  /** The search tree of the target, unless the user installs another one. */
+  const shared_ptr<SeededKdTree<PointTarget>> own_tree_ =
+      pcl::make_shared<SeededKdTree<PointTarget>>();
+
+private:
+  bool
+  targetIsUsable() const;
+
+  void
+  failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess);
+};
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void
@@ -241,3 +496,22 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::asEstimationAllo
 
 } // namespace bayesian_icp_detail
 } // namespace pcl
+
+/** Calls X(point type, scalar) for every instantiation that the library holds. */
+#define PCL_BAYESIAN_ICP_FOR_POINT_TYPES(X, Scalar)                                    \
+  X(pcl::PointXYZ, Scalar)                                                             \
+  X(pcl::PointXYZI, Scalar)                                                            \
+  X(pcl::PointXYZRGB, Scalar)                                                          \
+  X(pcl::PointXYZRGBA, Scalar)                                                         \
+  X(pcl::PointNormal, Scalar)                                                          \
+  X(pcl::PointXYZRGBNormal, Scalar)                                                    \
+  X(pcl::PointXYZINormal, Scalar)
+
+#if !defined(PCL_NO_PRECOMPILE) && !defined(PCL_REGISTRATION_CHECKED_ICP_CPP_)
+#define PCL_BAYESIAN_ICP_DECLARE(PointT, Scalar)                                       \
+  extern template class pcl::bayesian_icp_detail::                                     \
+      CheckedIterativeClosestPoint<PointT, PointT, Scalar>;
+PCL_BAYESIAN_ICP_FOR_POINT_TYPES(PCL_BAYESIAN_ICP_DECLARE, float)
+PCL_BAYESIAN_ICP_FOR_POINT_TYPES(PCL_BAYESIAN_ICP_DECLARE, double)
+#undef PCL_BAYESIAN_ICP_DECLARE
+#endif
