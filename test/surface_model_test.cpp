@@ -517,6 +517,31 @@ TEST(SurfaceModel, ExactCurvedSurfacesAreQuadrics)
   EXPECT_GT(shareOf(PatchKind::Quadric, can), 0.9);
 }
 
+TEST(SurfaceModel, ThinningADenseSurfaceKeepsItsNoiseAndItsPlace)
+{
+  // 20 points on a square as wide as the noise: cubes that hold one point each of those
+  // that are kept are smaller than the noise, and half of them hold its tails only.
+  constexpr Index num_points = 40000;
+  constexpr double noise = 0.001, width = 0.045;
+  Random random(83, 0);
+  Matrix3Xd points(3, num_points);
+  for (Index i = 0; i < num_points; ++i)
+    points.col(i) << width * random.uniform(), width * random.uniform(),
+        noise * random.normal();
+  SurfaceModelOptions options;
+  options.max_patches = 500;
+  const SurfaceModel model(points, options);
+  // Four points a patch are kept. Five standard errors, of a standard deviation and of
+  // a mean.
+  const double num_kept = 4.0 * options.max_patches;
+  EXPECT_NEAR(model.medianSigma(), noise, 5.0 * noise / std::sqrt(2.0 * num_kept));
+  double height = 0.0;
+  for (const SurfacePatch& patch : model.patches())
+    height += projectionOf(model, patch).point.z();
+  EXPECT_NEAR(
+      height / double(model.patches().size()), 0.0, 5.0 * noise / std::sqrt(num_kept));
+}
+
 TEST(SurfaceModel, PatchesCoverATargetEvenlyHoweverDenseItIs)
 {
   // Four fifths of the points are on the first fifth of a square.

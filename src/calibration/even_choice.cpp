@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+#include <unordered_map>
 
 namespace bayesian_icp {
 
@@ -85,13 +87,136 @@ firstOfEachCube(const Eigen::Matrix3Xf& points,
   }
 }
 
+/** "Around" a point is in its cube and the 26 about that. A cube's side is the radius
+ * in which an even sheet of the wanted number of points has some 30: in units of its
+ * root mean square distance from its centroid, and of the square root of that number.
+ */
+constexpr double cube_of_sheet = 8.0;
+constexpr int num_bisections = 60;
+
+/** Cubes that hold points, in the order of their first points. */
+class OccupiedCubes {
+public:
+  OccupiedCubes(const Eigen::Matrix3Xf& points, float cube)
+  {
+    const Eigen::Array3f low = points.rowwise().minCoeff();
+    cube_of_.reserve(static_cast<std::size_t>(points.cols()));
+    for (const auto& point : points.colwise()) {
+      const Eigen::Array3f place = (point.array() - low) / cube;
+      // Beyond the last cube there is a margin for neighbours.
+      const auto number =
+          numberOf(place.min(float(num_places - 3)).cast<std::int64_t>() + 1);
+      const auto [found, is_new] = indices_.emplace(number, counts_.size());
+      if (is_new) {
+        numbers_.push_back(number);
+        counts_.push_back(0);
+      }
+      ++counts_[found->second];
+      cube_of_.push_back(static_cast<std::uint32_t>(found->second));
+    }
+  }
+
+  /** Points in a cube and the 26 about it, for every cube. */
+  std::vector<double>
+  crowds() const
+  {
+    std::vector<double> crowds;
+    for (const std::uint64_t number : numbers_) {
+      double crowd = 0.0;
+      for (const std::int64_t x : {-1, 0, 1})
+        for (const std::int64_t y : {-1, 0, 1})
+          for (const std::int64_t z : {-1, 0, 1}) {
+            const auto found = indices_.find(number + numberOf({x, y, z}));
+            if (found != indices_.end())
+              crowd += static_cast<double>(counts_[found->second]);
+          }
+      crowds.push_back(crowd);
+    }
+    return crowds;
+  }
+
+  const std::vector<Index>&
+  counts() const
+  {
+    return counts_;
+  }
+
+  std::size_t
+  cubeOf(Index point) const
+  {
+    return cube_of_[static_cast<std::size_t>(point)];
+  }
+
+private:
+  static constexpr std::int64_t num_places = std::int64_t(1) << num_bits;
+
+  /** Differences of places become differences of numbers, modulo 2^64. */
+  static std::uint64_t
+  numberOf(const Eigen::Array<std::int64_t, 3, 1>& place)
+  {
+    return static_cast<std::uint64_t>((place[0] * num_places + place[1]) * num_places +
+                                      place[2]);
+  }
+
+  std::unordered_map<std::uint64_t, std::size_t> indices_;
+  std::vector<std::uint64_t> numbers_;
+  std::vector<Index> counts_;
+  std::vector<std::uint32_t> cube_of_;
+};
+
+/** The c at which the sum of min(1, c / crowd) over all points is \p count. */
+double
+shareOf(const std::vector<Index>& counts,
+        const std::vector<double>& crowds,
+        double count)
+{
+  double low = 0.0, high = *std::max_element(crowds.begin(), crowds.end());
+  for (int i = 0; i < num_bisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < counts.size(); ++k)
+      sum += static_cast<double>(counts[k]) * std::min(1.0, middle / crowds[k]);
+    (sum < count ? low : high) = middle;
+  }
+  return high;
+}
+
+std::vector<Index>
+allOf(const Eigen::Matrix3Xf& points)
+{
+  std::vector<Index> columns(static_cast<std::size_t>(points.cols()));
+  std::iota(columns.begin(), columns.end(), Index(0));
+  return columns;
+}
+
 } // namespace
+
+std::vector<Index>
+evenlyThinned(const Eigen::Matrix3Xf& points, Index count)
+{
+  if (points.cols() <= count)
+    return allOf(points);
+  const Eigen::Matrix3Xd centred =
+      points.cast<double>().colwise() - points.cast<double>().rowwise().mean();
+  const double extent =
+      std::sqrt(centred.squaredNorm() / static_cast<double>(points.cols()));
+  const double cube = cube_of_sheet * extent / std::sqrt(static_cast<double>(count));
+  const OccupiedCubes cubes(
+      points, std::max(static_cast<float>(cube), std::numeric_limits<float>::min()));
+  const std::vector<double> crowds = cubes.crowds();
+  const double share = shareOf(cubes.counts(), crowds, static_cast<double>(count));
+  Random random(1, 4);
+  std::vector<Index> columns;
+  for (Index i = 0; i < points.cols(); ++i)
+    if (random.uniform() * crowds[cubes.cubeOf(i)] < share)
+      columns.push_back(i);
+  return columns;
+}
 
 std::vector<Index>
 evenChoice(const Eigen::Matrix3Xf& points, Index count)
 {
-  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
-  std::iota(order.begin(), order.end(), Index(0));
+  std::vector<Index> order = allOf(points);
   if (points.cols() <= count)
     return order;
   // In a random order, the first point of a cube is a random one of it.

@@ -16,4 +16,16 @@ namespace bayesian_icp {
 std::vector<Eigen::Index>
 evenChoice(const Eigen::Matrix3Xf& points, Eigen::Index count);
 
+/** \brief Columns of about \p count points, ascending: each is taken with a probability
+ * inversely proportional to the number of points around it, but at most 1; all columns
+ * if there are no more than \p count.
+ *
+ * What is dense becomes as sparse as the rest, but neighbours keep their proportions.
+ * One point of each cube does not do that where cubes are smaller than the noise: too
+ * many are then of the noise's tails, and surfaces through them are tilted.
+ * \param[in] points 3 x n, finite
+ * \param[in] count at least 1 */
+std::vector<Eigen::Index>
+evenlyThinned(const Eigen::Matrix3Xf& points, Eigen::Index count);
+
 } // namespace bayesian_icp

@@ -15,12 +15,10 @@ using Eigen::Vector3f;
 
 namespace {
 
-/** A neighbourhood grows to at most this many times num_neighbors to be wider than its
- * noise ... */
-constexpr int max_growth_for_noise = 4;
-/** ... and to this many to be as wide as ... */
-constexpr int max_growth_for_width = 16;
-/** ... this, as aspectOf(). */
+/** A neighbourhood grows to at most this many times num_neighbors, to be wider than its
+ * noise and ... */
+constexpr int max_growth = 16;
+/** ... to be as wide as this, as aspectOf(). */
 constexpr double wanted_aspect = 0.35;
 /** Narrower neighbourhoods are lines. */
 constexpr double min_aspect = 0.2;
@@ -314,9 +312,8 @@ fitPatch(const PointNeighbors& cloud,
     const bool is_thick = patch.radius < options.min_radius_to_noise * frame.thickness;
     const bool is_narrow = aspect < wanted_aspect;
     const int next = 2 * growth;
-    if (!is_too_wide && next * options.num_neighbors <= num_points &&
-        ((is_thick && next <= max_growth_for_noise) ||
-         (is_narrow && next <= max_growth_for_width)))
+    if (!is_too_wide && (is_thick || is_narrow) && next <= max_growth &&
+        next * options.num_neighbors <= num_points)
       continue;
     const auto& squared_distances = workspace.nearest.squared_distances;
     spacing =

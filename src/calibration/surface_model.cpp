@@ -63,8 +63,8 @@ SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
   origin_ = finite.rowwise().mean();
   finite.colwise() -= origin_;
   const Matrix3Xf all = finite.cast<float>();
-  const Matrix3Xf points =
-      all(Eigen::all, evenChoice(all, points_to_patches * Index(options.max_patches)));
+  const Matrix3Xf points = all(
+      Eigen::all, evenlyThinned(all, points_to_patches * Index(options.max_patches)));
   SurfaceBuilder builder(points, options, num_threads);
   builder.fitPatches();
   builder.poolNoise();
