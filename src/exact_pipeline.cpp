@@ -18,11 +18,10 @@ namespace {
 constexpr double max_automatic_spread = 0.5;
 
 Vector6d
-startSpread(const Options& options, const Prior& prior)
+startSpread(const ExactOptions& options, const Prior& prior)
 {
-  if (!options.chains.initial_spread.isZero(0.0))
-    return options.chains.initial_spread;
-  return prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread);
+  return options.initial_spread.valueOr(
+      prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread));
 }
 
 /** Least share of Tukey's kernel that the points together make use of: a tenth of them
@@ -71,24 +70,6 @@ distanceOfBest(const PoseEnergy& energy, const PosteriorEstimate& estimate)
   return std::sqrt(2.0 * least);
 }
 
-PreconditionedOptions
-samplerOptions(const Options& options)
-{
-  const Options defaults;
-  PreconditionedOptions sampler;
-  sampler.metropolis = options.exact.metropolis;
-  const bool is_langevin_set =
-      options.mini_batch.batch_size != defaults.mini_batch.batch_size ||
-      options.sgld.step_size != defaults.sgld.step_size;
-  if (is_langevin_set && sampler.metropolis == MetropolisUse::Automatic)
-    sampler.metropolis = MetropolisUse::Never;
-  if (options.mini_batch.batch_size != defaults.mini_batch.batch_size)
-    sampler.batch_size = static_cast<std::size_t>(options.mini_batch.batch_size);
-  if (options.sgld.step_size != defaults.sgld.step_size)
-    sampler.max_step_size = options.sgld.step_size;
-  return sampler;
-}
-
 } // namespace
 
 Eigen::Matrix3Xd
@@ -111,7 +92,7 @@ sampleExact(const PoseEnergy& energy,
 {
   PoseChainSettings settings;
   settings.start_centre = energy.toPhi(initial_pose);
-  settings.start_spread = startSpread(options, energy.prior());
+  settings.start_spread = startSpread(options.exact, energy.prior());
   settings.fixed_batch = evenlySpread(energy.numPoints(), fixed_batch_size);
   settings.has_diverged = has_diverged;
 
@@ -121,8 +102,7 @@ sampleExact(const PoseEnergy& energy,
   std::vector<std::unique_ptr<StochasticEnergy>> energies;
   for (int i = 0; i < chains.num_chains; ++i)
     energies.push_back(std::make_unique<ChainPoseEnergy>(energy, settings));
-  return runPreconditionedChains(
-      std::move(energies), samplerOptions(options), chains, progress);
+  return runPreconditionedChains(std::move(energies), options.exact, chains, progress);
 }
 
 double

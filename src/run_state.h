@@ -6,7 +6,7 @@
 
 #include "num_threads.h"
 
-#include <bayesian_icp/chains.h>
+#include <bayesian_icp/draws.h>
 #include <bayesian_icp/first_exception.h>
 
 #include <atomic>

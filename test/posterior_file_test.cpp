@@ -2,6 +2,7 @@
 // broken in one place each.
 #include "command_helpers.h"
 
+#include <bayesian_icp/chains.h>
 #include <bayesian_icp/summary.h>
 
 #include <io/errors.h>
