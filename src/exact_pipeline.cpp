@@ -86,23 +86,24 @@ thinned(const Eigen::Matrix3Xd& points, std::size_t max_points)
 ChainSet
 sampleExact(const PoseEnergy& energy,
             const Vector6d& initial_pose,
-            const Options& options,
+            const ExactOptions& options,
+            const ChainOptions& chain_options,
             const std::function<bool(const Vector6d&)>& has_diverged,
             const ProgressCallback& progress)
 {
   PoseChainSettings settings;
   settings.start_centre = energy.toPhi(initial_pose);
-  settings.start_spread = startSpread(options.exact, energy.prior());
+  settings.start_spread = startSpread(options, energy.prior());
   settings.fixed_batch = evenlySpread(energy.numPoints(), fixed_batch_size);
   settings.has_diverged = has_diverged;
 
-  ChainOptions chains = options.chains;
+  ChainOptions chains = chain_options;
   if (!energy.target().isThreadSafe())
     chains.num_threads = 1;
   std::vector<std::unique_ptr<StochasticEnergy>> energies;
   for (int i = 0; i < chains.num_chains; ++i)
     energies.push_back(std::make_unique<ChainPoseEnergy>(energy, settings));
-  return runPreconditionedChains(std::move(energies), options.exact, chains, progress);
+  return runPreconditionedChains(std::move(energies), options, chains, progress);
 }
 
 double

@@ -114,8 +114,8 @@ estimate(const Eigen::Matrix3Xd& source_points,
                             prior,
                             options.exact.scale.weight(),
                             options.exact.residual);
-    PosteriorEstimate result =
-        estimateOf(sampleExact(energy, initial_pose, options, has_diverged, progress));
+    PosteriorEstimate result = estimateOf(sampleExact(
+        energy, initial_pose, options.exact, options.chains, has_diverged, progress));
     addDoubts(doubtsAbout(energy,
                           result,
                           thicknessOf(sampled_points),

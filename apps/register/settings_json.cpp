@@ -116,11 +116,12 @@ public:
   void
   read(Automatic<T>& value) const
   {
-    T given = value.valueOr(T());
-    const bool is_automatic = json_ == "automatic";
-    if (!is_automatic)
-      read(given);
-    value = is_automatic ? Automatic<T>() : Automatic<T>(given);
+    value = automatic;
+    if (json_ == "automatic")
+      return;
+    T given = T();
+    read(given);
+    value = given;
   }
 
   void

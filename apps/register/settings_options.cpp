@@ -88,11 +88,12 @@ template <typename T>
 void
 convert(const std::string& option, const std::string& text, Automatic<T>& value)
 {
-  T given = value.valueOr(T());
-  const bool is_automatic = text == "automatic";
-  if (!is_automatic)
-    convert(option, text, given);
-  value = is_automatic ? Automatic<T>() : Automatic<T>(given);
+  value = automatic;
+  if (text == "automatic")
+    return;
+  T given = T();
+  convert(option, text, given);
+  value = given;
 }
 
 /** Reads the settings that the command line has. */
