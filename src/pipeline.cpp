@@ -1,9 +1,9 @@
-#include "calibrated_pipeline.h"
-#include "exact_pipeline.h"
-#include "pipeline_parts.h"
+#include "calibrated/calibrated_pipeline.h"
+#include "exact/exact_pipeline.h"
+#include "paper/posterior_gradient.h"
+#include "summary/estimates.h"
 
 #include <bayesian_icp/pipeline.h>
-#include <bayesian_icp/posterior.h>
 #include <bayesian_icp/tree_search.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "coverage/coverage_score.h"
 
-#include "draw_statistics.h"
+#include "geometry/twist.h"
+#include "study/draw_statistics.h"
 
-#include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>

@@ -4,9 +4,9 @@
  */
 #pragma once
 
-#include "coverage/coverage_case.h"
+#include "baselines/closed_form_covariance.h"
+#include "study/coverage_case.h"
 
-#include <bayesian_icp/baselines/closed_form_covariance.h>
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/prior.h>
 

@@ -1,8 +1,8 @@
 #include "methods/point_to_point_sandwich.h"
 
-#include <bayesian_icp/calibration/curvature.h>
-#include <bayesian_icp/calibration/score_clusters.h>
-#include <bayesian_icp/calibration/twist.h>
+#include "calibrated/curvature/curvature.h"
+#include "calibrated/score/score_clusters.h"
+#include "geometry/twist.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

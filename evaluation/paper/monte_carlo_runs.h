@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
+#include "baselines/monte_carlo_icp.h"
 
 #include <cstdint>
 #include <functional>

@@ -3,10 +3,9 @@
  */
 #pragma once
 
+#include "baselines/monte_carlo_icp.h"
 #include "paper/paper_experiment.h"
 #include "paper/paper_methods.h"
-
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
 
 #include <vector>
 

@@ -1,6 +1,6 @@
-#include "cpu_time.h"
-#include "draw_statistics.h"
 #include "samplers/gold_run.h"
+#include "study/cpu_time.h"
+#include "study/draw_statistics.h"
 
 #include <bayesian_icp/diagnostics.h>
 

@@ -4,8 +4,8 @@
  */
 #pragma once
 
-#include "run_file.h"
 #include "samplers/sampler_runs.h"
+#include "study/run_file.h"
 
 #include <bayesian_icp/summary.h>
 

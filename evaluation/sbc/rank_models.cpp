@@ -1,6 +1,6 @@
 #include "sbc/rank_models.h"
 
-#include <bayesian_icp/calibration/product_coordinates.h>
+#include "calibrated/draws/product_coordinates.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
+#include <bayesian_icp/stochastic_gradient_icp.h>
 
 #include <pcl/registration/impl/checked_icp.hpp>
 

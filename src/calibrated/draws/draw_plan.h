@@ -1,0 +1,36 @@
+/** \file
+ * \brief How calibrated draws are taken, and what becomes of them: steps and spread.
+ */
+#pragma once
+
+#include "calibrated/draws/weighted_score.h"
+#include "sampler/langevin.h"
+#include "sampler/sampling.h"
+
+namespace bayesian_icp {
+
+/** \brief Plan draws that are nearly independent and stay within the queries allowed.
+ *
+ * Where a batch's score is so noisy that this asks for too many steps, the shape of the
+ * data is followed only in part, and the calibrated Gaussian for the rest.
+ * \param[in,out] score is given its shape gain */
+StepPlan
+planDraws(WeightedScore& score, Random& random);
+
+/** \brief Give b, over all chains and about its own mean, the covariance of the
+ * calibrated Gaussian, by a linear map that changes no direction's spread by more than
+ * a factor of 1.4. What prior and shape of the data do to the mean stays.
+ * \param[in,out] paths one a chain, of positions (a, b) */
+void
+spreadAsEstimated(const ProductCoordinates& coordinates, std::vector<Path>& paths);
+
+/** \brief Make b Student's t about its mean over all chains: the deviation of each draw
+ * times sqrt((nu - 2) / chi^2_nu) of its own, which leaves the covariance as it is.
+ * \param[in] degrees_of_freedom nu; 0 changes nothing */
+void
+scaleAtRandom(const ProductCoordinates& coordinates,
+              int degrees_of_freedom,
+              Random& random,
+              std::vector<Path>& paths);
+
+} // namespace bayesian_icp

@@ -1,0 +1,50 @@
+/** \file
+ * \brief Preset `exact`: from the energy of the pose to chains of draws.
+ */
+#pragma once
+
+#include "exact/pose_energy.h"
+
+#include <bayesian_icp/chains.h>
+#include <bayesian_icp/options.h>
+#include <bayesian_icp/pipeline.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief At most \p max_points of the points, evenly over their order. */
+Eigen::Matrix3Xd
+thinned(const Eigen::Matrix3Xd& points, std::size_t max_points);
+
+/** \brief Sample \p energy.
+ * \param[in] initial_pose the starts are spread about it [m, rad] */
+ChainSet
+sampleExact(const PoseEnergy& energy,
+            const Vector6d& initial_pose,
+            const Options& options,
+            const std::function<bool(const Vector6d&)>& has_diverged,
+            const ProgressCallback& progress);
+
+/** \brief Root mean square distance of points from the plane that fits them best [m].
+ */
+double
+thicknessOf(const Eigen::Matrix3Xd& points);
+
+/** \brief What calls for caution about an estimate: residuals that are much larger than
+ * was stated, since the target is another one, or elsewhere; a source without shape, of
+ * which the nearest points of the target say nothing along it; a kernel of Tukey's that
+ * leaves out nearly all points: on that plateau the prior alone rules, and chains
+ * agree.
+ * \param[in] estimate of \p energy; nothing is said of one without a finite mean
+ * \param[in] thickness thicknessOf() the source [m]
+ * \param[in] measurement_sigma as stated [m] */
+std::vector<std::string>
+doubtsAbout(const PoseEnergy& energy,
+            const PosteriorEstimate& estimate,
+            double thickness,
+            double measurement_sigma);
+
+} // namespace bayesian_icp
