@@ -50,7 +50,7 @@ constexpr double min_relative_information = 0.02;
 constexpr double max_unheld_steps = 1.0;
 
 /** As uncertain as the information is: J comes from 12 to 96 clusters, H from noisy
- * secants. Chosen on simulated scans, docs/calibration.md. */
+ * secants. Chosen on simulated scans, docs/lab/calibration.md. */
 constexpr int information_degrees_of_freedom = 20;
 
 /** Two ends of starts, and which is the mode. */
