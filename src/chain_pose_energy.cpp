@@ -22,7 +22,7 @@ constexpr int num_full_steps = 40;
 constexpr double near_point_share = 0.1;
 constexpr double fit_point_share = 0.02;
 constexpr double max_step_length = 0.5, max_step_angle = 0.3; // [m], [rad]
-/** The tempered Gaussian spans so many root mean square match distances. */
+/** Span of the tempered Gaussian, in root mean square match distances. */
 constexpr double tempered_span = 3.0;
 constexpr double max_temperature = 4096.0;
 

@@ -18,7 +18,7 @@ constexpr double min_translation_share = 0.95;
 constexpr double min_screw_share = 0.05;
 
 /** Residuals above this part of their largest scale that repeat each other over large
- * patches are those of another shape: so many patches are asked for then. */
+ * patches are those of another shape: then more patches are required. */
 constexpr double part_of_misfit = 0.3;
 constexpr double min_patches_with_misfit = 28.0;
 

@@ -30,7 +30,7 @@ groupByMode(const std::vector<GaussianFit>& fits, StochasticEnergy& energy);
 
 /** \brief Set the evidence of the modes to the mean of their chains', and put the best
  * mode first.
- * \param[in] log_evidences one a chain */
+ * \param[in] log_evidences one per chain */
 void
 sortByEvidence(const std::vector<double>& log_evidences, std::vector<ChainMode>& modes);
 

@@ -88,7 +88,7 @@ void
 warmUp(PreconditionedRun& run);
 
 /** \brief Where there are several modes: measure what each of them weighs.
- * \param[in] gaussians one a chain */
+ * \param[in] gaussians one per chain */
 void
 measureEvidence(const std::vector<Gaussian>& gaussians, PreconditionedRun& run);
 

@@ -18,7 +18,7 @@ struct Schedule {
   int thinning = 1;
   int num_draws = 0;
 
-  /** \brief Steps from the start, or from where so many draws are there. */
+  /** \brief Steps from the start, or from where this number of draws is there. */
   long
   numSteps(long num_kept = 0) const
   {
@@ -28,7 +28,7 @@ struct Schedule {
 
 /** \brief What one chain has left behind. */
 struct Path {
-  /** Kept positions in the sampler's space, one a column. */
+  /** Kept positions in the sampler's space, one per column. */
   Eigen::Matrix<double, 6, Eigen::Dynamic> positions{6, 0};
   long num_steps = 0;
   bool has_diverged = false;

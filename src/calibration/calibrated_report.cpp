@@ -106,7 +106,7 @@ directionsOf(const CalibratedEstimate& estimate)
   return directions;
 }
 
-/** Motions that the prior alone holds, one a column. */
+/** Motions that the prior alone holds, one per column. */
 Axes
 freeAxes(const std::vector<DataDirection>& directions)
 {

@@ -21,7 +21,7 @@ planDraws(WeightedScore& score, Random& random);
 /** \brief Give b, over all chains and about its own mean, the covariance of the
  * calibrated Gaussian, by a linear map that changes no direction's spread by more than
  * a factor of 1.4. What prior and shape of the data do to the mean stays.
- * \param[in,out] paths one a chain, of positions (a, b) */
+ * \param[in,out] paths one per chain, of positions (a, b) */
 void
 spreadAsEstimated(const ProductCoordinates& coordinates, std::vector<Path>& paths);
 

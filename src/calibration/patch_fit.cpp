@@ -41,7 +41,7 @@ constexpr double negligible_misfit = 1e-3;
  * centre, and surfaces would look flatter than they are. */
 constexpr double ball_to_neighborhood = 1.5;
 
-/** A plane has so many points, and is thinner than this part of its radius. */
+/** Least points of a plane, and its largest thickness as a part of its radius. */
 constexpr Eigen::Index min_plane_points = 8;
 constexpr double max_thickness = 0.5;
 
@@ -150,7 +150,7 @@ struct Regression {
 private:
   static constexpr int max_degree = 4;
   static constexpr int num_product_terms = placeOfTerm(2 * max_degree + 1, 0);
-  /** One point a row. */
+  /** One point per row. */
   using ProductTerms = Eigen::Matrix<double, Eigen::Dynamic, num_product_terms>;
 
   /** Products of two quartic terms: those up to the eighth degree. */

@@ -12,7 +12,7 @@
 
 namespace bayesian_icp {
 
-/** \brief One point a row: loops over points are vectorised. */
+/** \brief One point per row: loops over points are vectorised. */
 using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 /** \brief Buffers of one thread. */
