@@ -10,7 +10,7 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Points of a batch whose curvature or noise is looked at. */
+/** Points of a batch whose curvature or noise is measured. */
 constexpr std::size_t probe_size = 160;
 constexpr int num_burn_in_steps = 80;
 /** Steps with the point-to-point curvature, and without the robust kernel: they reach

@@ -10,8 +10,8 @@
 
 namespace bayesian_icp {
 
-/** \brief Most threads that anything is given: where more are asked for than there is
- * memory for, OpenMP ends the program. */
+/** \brief Largest number of threads. If there is not enough memory for the requested
+ * number, OpenMP ends the program. */
 constexpr int max_num_threads = 1024;
 
 /** \brief Threads for a number of pieces of work: one inside a parallel region of
