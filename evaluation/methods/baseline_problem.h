@@ -12,7 +12,8 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief At most so many source points are registered, unless said otherwise. */
+/** \brief Largest number of source points that are registered, unless stated otherwise.
+ */
 constexpr Eigen::Index max_source_points = 2000;
 
 class BaselineProblem {

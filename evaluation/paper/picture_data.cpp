@@ -48,7 +48,7 @@ writeRows(const std::string& name, const Rows& rows, std::ostream& stream)
   }
 }
 
-/** Points evenly spread over the cloud, one a row. */
+/** Points evenly spread over the cloud, one per row. */
 Eigen::MatrixX3d
 someOf(const Eigen::Matrix3Xd& cloud)
 {

@@ -36,7 +36,7 @@ struct Scene {
 };
 
 /** \brief Read FOLDER/NAME/source.pcd and target.pcd.
- * \param[in] max_points the source is thinned evenly to so many points
+ * \param[in] max_points the source is thinned evenly to this number
  * \throws io::FileError */
 Scene
 readScene(const std::string& folder, const std::string& name, std::size_t max_points);

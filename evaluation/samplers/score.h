@@ -1,6 +1,6 @@
 /** \file
  * \brief What is measured of a sampler's run, and where it is kept: a CSV file that
- * grows by a row a run, so that an interrupted study goes on where it stopped.
+ * grows by one row per run, so an interrupted study continues where it stopped.
  */
 #pragma once
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/** All pairs of so many draws give the energy score's second term. */
+/** All pairs of this number of draws give the energy score's second term. */
 constexpr Eigen::Index num_paired_draws = 400;
 
 double

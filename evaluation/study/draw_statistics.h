@@ -46,8 +46,9 @@ double
 kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
 /** \brief Energy score E|X - y| - E|X - X'| / 2 of draws X, mean over the outcomes y
- * (one a row, at least one); smaller is better. E|X - X'| is that of 400 of the draws.
- * Coordinates need a common scale: give all in units of some standard deviations. */
+ * (one per row, at least one); smaller is better. E|X - X'| is that of 400 of the
+ * draws. Coordinates need a common scale: give all in units of some standard
+ * deviations. */
 double
 energyScore(const PoseMatrix& draws, const PoseMatrix& outcomes);
 

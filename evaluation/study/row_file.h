@@ -1,5 +1,5 @@
 /** \file
- * \brief A CSV file that grows by a row a run, so that an interrupted study goes on
+ * \brief A CSV file that grows by one row per run, so an interrupted study continues
  * where it stopped.
  */
 #pragma once

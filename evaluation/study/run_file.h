@@ -1,5 +1,5 @@
 /** \file
- * \brief Files of results, a row a run, in which runs are found by their name.
+ * \brief Files of results, one row per run, in which runs are found by their name.
  *
  * A type of rows says its columns once: `Run::columns(run, column)` calls
  * `column(title, value)` for each, in their order; the values are std::string, bool (0

@@ -48,9 +48,9 @@ struct PairPoses {
   Eigen::Isometry3d truth;
 };
 
-/** \brief Read a file with a JSON object a line: "set", the name of a sequence, "pair",
- * the number of the target's scan, "guess" and "truth", 3 x 4 matrices; other keys are
- * passed over.
+/** \brief Read a file with one JSON object per line: "set", the name of a sequence,
+ * "pair", the number of the target's scan, "guess" and "truth", 3 x 4 matrices. Other
+ * keys are ignored.
  * \param[in] file to read
  * \param[in] take gets each line's; a std::exception of it is an error of the line
  * \throws io::FileError with the number of the line that is wrong */

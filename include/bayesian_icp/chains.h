@@ -17,8 +17,8 @@ namespace bayesian_icp {
 struct ChainOptions {
   /** Number of independent chains, positive. */
   int num_chains = 4;
-  /** Draws kept in total over all chains, at least one a chain; earlier chains take the
-   * remainder. */
+  /** Draws kept in total over all chains, at least one per chain; earlier chains take
+   * the remainder. */
   int num_draws = 2000;
   /** Steps at the start of each chain that are not kept. */
   int num_burn_in = 0;

@@ -47,7 +47,7 @@ struct PreconditionedOptions {
  * Draws are bit-identical for every number of threads: what the chains share is put
  * together from their results in the order of the chains.
  *
- * \param[in] energies one a chain
+ * \param[in] energies one per chain
  * \param[in] sampler how the steps are made
  * \param[in] options num_burn_in 0 and thinning 1 are automatic, so that draws are
  *            nearly independent; initial_spread is not used (the energies draw their

@@ -22,7 +22,7 @@ struct StochasticGradientIcpOptions {
   SgdOptimizer optimizer = SgdOptimizer::Adam;
   /** Positive; NaN: defaultStepSize(). No effect on AdaDelta. */
   double step_size = std::numeric_limits<double>::quiet_NaN();
-  /** Source points a step, positive; more than the source has is all of it. */
+  /** Source points per step, positive. If the source has fewer, all are used. */
   int batch_size = 150;
   /** Positive. */
   int max_iterations = 150;
@@ -33,7 +33,7 @@ struct StochasticGradientIcpOptions {
    * is never. */
   double translation_epsilon = 5e-3;
   double rotation_epsilon = 5e-3;
-  /** Converged after so many still steps in a row, positive. */
+  /** Number of consecutive still steps that count as converged, positive. */
   int num_still_iterations = 5;
   std::uint64_t seed = 1;
 

@@ -31,12 +31,12 @@ constexpr double start_tolerance = 0.03;
 constexpr double mode_tolerance = 0.01;
 constexpr int max_mode_steps = 8;
 
-/** A point-to-point result is nearer to the mode than the prior's mean is, by about
- * this factor. */
+/** Distance of a point-to-point result from the mode, about, in units of the distance
+ * of the prior's mean. */
 constexpr double icp_to_prior_scale = 0.25;
 
-/** Neighbouring points repeat each other: weight against the prior of the Gaussian with
- * which the first secants are planned. */
+/** Weight of points against the prior in the Gaussian with which the first secants are
+ * planned: neighbouring points repeat each other. */
 constexpr double points_to_prior = 0.2;
 
 /** SecantPlan::min_displacement in the target's noise. */
@@ -46,12 +46,13 @@ constexpr double min_step_to_noise = 0.5;
  * only. */
 constexpr double min_relative_information = 0.02;
 
-/** Along a free motion the score is as unknown as the axis is, with the square of the
- * way; but no more than of so many squared steps, as new patches are met. */
+/** Along a free motion the score is as unknown as the axis is. Its variance grows with
+ * the square of the motion, up to this number of squared steps: then new patches are
+ * met. */
 constexpr double max_unheld_steps = 1.0;
 
-/** As uncertain as the information is: J comes from 12 to 96 clusters, H from noisy
- * secants. Chosen on simulated scans, docs/calibration.md. */
+/** The information is uncertain: J comes from 12 to 96 clusters, H from noisy
+ * secants. Chosen on simulated scans, docs/lab/calibration.md. */
 constexpr int information_degrees_of_freedom = 20;
 
 /** Two ends of starts, and which is the mode. */
@@ -61,9 +62,8 @@ struct Ends {
   long num_queries = 0;
 };
 
-/** Scale at which a start sees all of the target that the prior allows, but no more
- * than the source's root mean square radius: a small body would see nothing but a blur.
- */
+/** Scale at which a start sees all of the target that the prior allows. It is at most
+ * the source's root mean square radius, because a small body would only see a blur. */
 double
 startScale(const Prior& prior, const SurfaceScorer& scorer)
 {
@@ -104,9 +104,9 @@ followStarts(const SurfaceScorer& scorer,
 }
 
 /** Covariance whose principal axes, in the displacement metric, are the first
- * directions: of independent points, wider by the target's noise. (A noise that is the
- * least width instead makes all widths the same on most scenes, and then rounding
- * decides the directions.) */
+ * directions: that of independent points, plus the target's noise. (If the noise were
+ * the smallest width instead, all widths would be the same on most scenes, and rounding
+ * would decide the directions.) */
 Matrix6d
 firstCovariance(const CalibratedEstimate& estimate, double noise)
 {
@@ -119,8 +119,8 @@ firstCovariance(const CalibratedEstimate& estimate, double noise)
   return principal.axes * variances.asDiagonal() * principal.axes.transpose();
 }
 
-/** J with the noise of secants as far as the data do not hold their directions: the
- * pose is unknown along them, and the score with it. */
+/** J plus the noise of secants, as far as the data do not hold their directions: where
+ * the pose is unknown, the score is unknown, too. */
 Matrix6d
 withUnheldNoise(const Matrix6d& score_covariance,
                 const Secants& secants,
@@ -193,7 +193,7 @@ debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
   return debited;
 }
 
-/** Rounds of secants, each along the axes that the last one has found.
+/** Rounds of secants, each along the axes that the round before has found.
  * \return evaluations of all points */
 int
 measureCurvature(const SurfaceScorer& scorer,

@@ -18,8 +18,8 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Narrower than this, in standard deviations of the noise, a target is a line: patches
- * that are fitted to its noise would hold motions along it. */
+/** A target that is narrower than this, in standard deviations of the noise, is a line.
+ * Patches that are fitted to its noise would hold motions along it. */
 constexpr double min_width_to_noise = 3.0;
 
 std::string
@@ -49,7 +49,7 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   return checked;
 }
 
-/** Tells that something is under way of which the length is not known. */
+/** Reports progress of unknown length. Returns whether the user cancels. */
 bool
 isCancelled(const ProgressCallback& progress)
 {

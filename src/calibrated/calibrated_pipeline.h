@@ -7,7 +7,7 @@
 
 namespace bayesian_icp {
 
-/** \brief As estimatePosterior(), which see, for preset `calibrated`. */
+/** \brief As estimatePosterior(), for preset `calibrated`. */
 PosteriorEstimate
 estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                             const Eigen::Matrix3Xd& target_points,

@@ -28,8 +28,8 @@ shareOfPrior(const CalibratedEstimate& estimate, const Vector6d& twist)
   return prior / (prior + twist.dot(estimate.information * twist));
 }
 
-/** Motions that are independent of each other both in the posterior and in the prior,
- * those first of which the data say most in comparison with the prior. */
+/** Motions that are independent of each other both in the posterior and in the prior.
+ * Those come first about which the data say most in comparison with the prior. */
 Matrix6d
 independentAxes(const CalibratedEstimate& estimate)
 {
@@ -37,8 +37,8 @@ independentAxes(const CalibratedEstimate& estimate)
   Matrix6d axes = Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d>(
                       estimate.prior.precision, posterior_precision)
                       .eigenvectors();
-  // All motions within the space of those held by the prior only are as good: its
-  // principal axes are what a user can picture.
+  // All motions within the prior-only space are equivalent. A user can picture its
+  // principal axes.
   Eigen::Index first = 6;
   while (first > 0 && !(shareOfPrior(estimate, axes.col(first - 1)) <
                         max_share_of_prior * max_share_of_prior))
@@ -79,7 +79,7 @@ directionAlong(const Vector6d& axis, const CalibratedEstimate& estimate)
   direction.twist = axis / std::sqrt(axis.dot(estimate.displacement_metric * axis));
   const Vector6d& twist = direction.twist;
   const double prior = twist.dot(estimate.prior.precision * twist);
-  // Rounding may leave a little below zero of nothing.
+  // Rounding may make zero slightly negative.
   const double data = std::max(0.0, twist.dot(estimate.information * twist));
   direction.standard_deviation = 1.0 / std::sqrt(prior + data);
   direction.prior_standard_deviation = 1.0 / std::sqrt(prior);
@@ -106,7 +106,7 @@ directionsOf(const CalibratedEstimate& estimate)
   return directions;
 }
 
-/** Motions that the prior alone holds, one a column. */
+/** Motions that the prior alone holds, one per column. */
 Axes
 freeAxes(const std::vector<DataDirection>& directions)
 {

@@ -10,7 +10,7 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Points of a batch whose curvature or noise is looked at. */
+/** Points of a batch whose curvature or noise is measured. */
 constexpr std::size_t probe_size = 160;
 constexpr int num_burn_in_steps = 80;
 /** Steps with the point-to-point curvature, and without the robust kernel: they reach
@@ -22,7 +22,7 @@ constexpr int num_full_steps = 40;
 constexpr double near_point_share = 0.1;
 constexpr double fit_point_share = 0.02;
 constexpr double max_step_length = 0.5, max_step_angle = 0.3; // [m], [rad]
-/** The tempered Gaussian spans so many root mean square match distances. */
+/** Span of the tempered Gaussian, in root mean square match distances. */
 constexpr double tempered_span = 3.0;
 constexpr double max_temperature = 4096.0;
 

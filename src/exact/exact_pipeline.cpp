@@ -14,7 +14,7 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Widest spread of the starts that is chosen without being asked for [m, rad]. */
+/** Largest spread of the starts that is chosen automatically [m, rad]. */
 constexpr double max_automatic_spread = 0.5;
 
 Vector6d
@@ -25,13 +25,13 @@ startSpread(const Options& options, const Prior& prior)
   return prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread);
 }
 
-/** Least share of Tukey's kernel that the points together make use of: a tenth of them
- * on the target's surface would. */
+/** Smallest share of Tukey's kernel that the points together must use. A tenth of them
+ * on the target's surface would use it. */
 constexpr double min_used_by_kernel = 0.1;
 
-/** Root mean square of the residuals from which the stated sigma is not that of the
- * clouds: noise of sigma along all three axes makes 1.7, the spacing of the target's
- * points adds to it. */
+/** Root mean square of the residuals, in units of sigma, from which on the stated sigma
+ * does not fit the clouds. Noise of sigma along all three axes gives 1.7, and the
+ * spacing of the target's points adds to it. */
 constexpr double max_distance_in_sigmas = 3.0;
 
 /** Source points on which the energies of modes are compared. */
@@ -56,7 +56,8 @@ energyOfPoints(const PoseEnergy& energy, const Vector6d& pose)
 }
 
 /** Root mean square of the residuals [m] at the mean, or at one of some draws where it
- * is smaller: the mean of a curved posterior, or of several modes, is no pose of it. */
+ * is smaller: the mean of a curved posterior, or of several modes, may lie outside of
+ * it. */
 double
 distanceOfBest(const PoseEnergy& energy, const PosteriorEstimate& estimate)
 {

@@ -33,12 +33,13 @@ sampleExact(const PoseEnergy& energy,
 double
 thicknessOf(const Eigen::Matrix3Xd& points);
 
-/** \brief What calls for caution about an estimate: residuals that are much larger than
- * was stated, since the target is another one, or elsewhere; a source without shape, of
- * which the nearest points of the target say nothing along it; a kernel of Tukey's that
- * leaves out nearly all points: on that plateau the prior alone rules, and chains
- * agree.
- * \param[in] estimate of \p energy; nothing is said of one without a finite mean
+/** \brief Reasons for caution about an estimate.
+ *
+ * The residuals are much larger than was stated, because the target is another one or
+ * elsewhere. The source has no shape, so the nearest target points say nothing about
+ * motions along it. Tukey's kernel leaves out nearly all points: on that plateau the
+ * prior alone decides, and chains agree.
+ * \param[in] estimate of \p energy; without a finite mean there are no doubts
  * \param[in] thickness thicknessOf() the source [m]
  * \param[in] measurement_sigma as stated [m] */
 std::vector<std::string>

@@ -13,8 +13,8 @@ namespace bayesian_icp {
 namespace {
 
 constexpr int num_evidence_draws = 16;
-/** Squared distance of two means, in the sum of their covariances, up to which they
- * are one mode. */
+/** Largest squared distance of the means of one mode, in the sum of the covariances.
+ */
 constexpr double max_squared_distance = 25.0;
 constexpr double max_squared_distance_of_draws = 9.0;
 /** Energy above both ends that is no barrier [nats], and points where it is sought. */

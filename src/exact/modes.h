@@ -11,7 +11,7 @@
 
 namespace bayesian_icp {
 
-/** \brief Modes worse than the best by more than this are given up [nats]. */
+/** \brief Modes that are worse than the best by more than this are dropped [nats]. */
 constexpr double max_evidence_loss = 10.0;
 
 /** \brief log of the integral of exp(-U) around \p gaussian, by importance sampling
@@ -23,15 +23,15 @@ logEvidence(StochasticEnergy& energy, const Gaussian& gaussian, Random& random);
 double
 logMeanExp(const std::vector<double>& values);
 
-/** \brief Put chains together whose Gaussians overlap, or between which there is no
- * energy barrier.
+/** \brief Group chains whose Gaussians overlap, or between which there is no energy
+ * barrier.
  * \param[in] energy of any chain: all have the same values */
 std::vector<ChainMode>
 groupByMode(const std::vector<GaussianFit>& fits, StochasticEnergy& energy);
 
 /** \brief Set the evidence of the modes to the mean of their chains', and put the best
  * mode first.
- * \param[in] log_evidences one a chain */
+ * \param[in] log_evidences one per chain */
 void
 sortByEvidence(const std::vector<double>& log_evidences, std::vector<ChainMode>& modes);
 
@@ -40,7 +40,7 @@ sortByEvidence(const std::vector<double>& log_evidences, std::vector<ChainMode>&
 void
 moveFromWorseModes(ChainSet& set);
 
-/** \brief Put modes together whose draws overlap after all. */
+/** \brief Merge modes whose draws turn out to overlap. */
 void
 mergeOverlappingModes(ChainSet& set);
 

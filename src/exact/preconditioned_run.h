@@ -77,18 +77,18 @@ struct PreconditionedRun {
   ChainOptions options;
   RunState state;
   std::vector<PreconditionedChain> chains;
-  /** One a mode, in the order of the result's. */
+  /** One per mode, in the order of the result's. */
   std::vector<GaussianFit> fits;
   ChainSet result;
 };
 
-/** \brief Fit a Gaussian with each chain alone, tell modes apart, and let the chains of
+/** \brief Fit a Gaussian with each chain alone, find the modes, and let the chains of
  * a mode refine its Gaussian together. */
 void
 warmUp(PreconditionedRun& run);
 
-/** \brief Where there are several modes: measure what each of them weighs.
- * \param[in] gaussians one a chain */
+/** \brief If there are several modes, measure their weights.
+ * \param[in] gaussians one per chain */
 void
 measureEvidence(const std::vector<Gaussian>& gaussians, PreconditionedRun& run);
 

@@ -91,7 +91,7 @@ struct TimeText {
   }
 };
 
-/** "x: ...", "y: ...", a line each. */
+/** "x: ...", "y: ...", one line each. */
 std::string
 yamlFields(const Eigen::Ref<const Eigen::VectorXd>& values)
 {

@@ -12,17 +12,17 @@ namespace {
 
 /** Antithetic pairs of one chain and iteration. */
 constexpr int num_pairs_alone = 10;
-/** Noise of a pair's gradients that the regression copes with, posterior sd = 1. */
+/** Noise of a pair's gradients that the regression tolerates, posterior sd = 1. */
 constexpr double pair_noise_target = 4.0;
 constexpr double min_pair_batch = 64.0;
-/** Pairs' worth of belief that the slope is what the preconditioner says. */
+/** Weight, in pairs, of the slope that the preconditioner predicts. */
 constexpr double slope_ridge = 4.0;
 constexpr double min_slope = 0.1, max_slope = 10.0;
 constexpr double max_mean_step = 4.0;
 constexpr double cooling_factor = 4.0;
 constexpr int max_iterations_per_temperature = 6;
 constexpr int max_last_iterations = 20;
-/** Keeps a direction without prior finite: a standard deviation of 30 m or rad. */
+/** Keeps a direction without a prior finite: a standard deviation of 30 m or rad. */
 constexpr double least_prior_precision = 1e-3;
 
 Matrix6d

@@ -12,7 +12,7 @@ namespace {
 /** b = gain / (1 + noise) keeps a noisy direction stable. */
 constexpr double step_gain = 1.5;
 /** Variance of the gradient's noise, posterior sd = 1, at which the step size has just
- * reached its maximum: more terms a step would buy nothing. */
+ * reached its maximum: more terms per step would not help. */
 constexpr double noise_target = 1.0;
 constexpr double min_batch = 24.0;
 /** From this share of all terms on, the exact gradient is cheaper than its noise. */

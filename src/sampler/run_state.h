@@ -57,8 +57,8 @@ public:
     first_exception_.rethrow();
   }
 
-  /** \brief Counts a step of \p chain and tells the callback. As long as the run has
-   * no length the chain warms up, which counts as no step.
+  /** \brief Counts a step of \p chain and tells the callback. While the run has
+   * no length, the chain warms up, and the step is not counted.
    * \param[in] poseNow returns the pose at which the chain is; asked only if there is a
    *            callback */
   template <typename PoseFunction>
@@ -75,8 +75,7 @@ public:
       cancelled_ = stopped_ = true;
   }
 
-  /** \brief Tells the callback that \p chain still warms up, which counts as no step.
-   */
+  /** \brief Tells the callback that \p chain still warms up. No step is counted. */
   void
   reportWarmUp(int chain)
   {

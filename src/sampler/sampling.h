@@ -18,7 +18,7 @@ struct Schedule {
   int thinning = 1;
   int num_draws = 0;
 
-  /** \brief Steps from the start, or from where so many draws are there. */
+  /** \brief Steps from the start, or from where this number of draws is there. */
   long
   numSteps(long num_kept = 0) const
   {
@@ -26,9 +26,9 @@ struct Schedule {
   }
 };
 
-/** \brief What one chain has left behind. */
+/** \brief The results of one chain. */
 struct Path {
-  /** Kept positions in the sampler's space, one a column. */
+  /** Kept positions in the sampler's space, one per column. */
   Eigen::Matrix<double, 6, Eigen::Dynamic> positions{6, 0};
   long num_steps = 0;
   bool has_diverged = false;
@@ -37,7 +37,7 @@ struct Path {
 /** \brief The pose of a position in the sampler's space. */
 using ToPose = std::function<Vector6d(const Vector6d& position)>;
 
-/** \brief The schedule of one chain as \p options has it. */
+/** \brief The schedule of one chain according to \p options. */
 Schedule
 scheduleOf(const ChainOptions& options, int chain);
 
@@ -52,7 +52,7 @@ numStepsOf(const ChainOptions& options);
  * \param[in] to_pose for the report
  * \param[in] chain its number in the report
  * \param[in,out] run is told of every step
- * \param[in,out] path is made longer */
+ * \param[in,out] path is extended */
 void
 advance(SamplingChain& sampler,
         const Schedule& schedule,

@@ -4,7 +4,7 @@ namespace bayesian_icp {
 namespace kd_tree {
 namespace {
 
-/** Runs of fewer points are not worth a task of their own. */
+/** Smallest run of points that gets a task of its own. */
 constexpr std::size_t min_task_size = 8192;
 
 /** Points along an axis, equal coordinates by index: makes the order of the points, and
@@ -46,7 +46,7 @@ void
 select(Record* first, Record* nth, Record* last, IsBefore before)
 {
   constexpr std::ptrdiff_t small_size = 16;
-  // Pivots may be bad, but hardly that often; std::nth_element has a guard of its own.
+  // Pivots may be bad, but rarely that often; std::nth_element has its own guard.
   constexpr int max_rounds = 64;
   for (int round = 0; last - first > small_size && round < max_rounds; ++round) {
     const Record pivot = choosePivot(first, nth, last, before);

@@ -9,8 +9,8 @@ namespace bayesian_icp {
 namespace kd_tree {
 namespace {
 
-/** Worth some 5 ms. For less, waking a thread may cost more than it saves, by far if
- * other programs keep the cores busy. */
+/** Work of some 5 ms. For less, waking a thread may cost more than it saves, far more
+ * if other programs keep the cores busy. */
 constexpr std::ptrdiff_t min_points_per_thread = 50000;
 
 std::vector<Record>
@@ -47,8 +47,8 @@ isEqual(const Record& a, const Record& b)
 }
 
 /** Whether all points of a leaf equal two in the leaf before it: those have smaller
- * indices, and tell of the tie, so the leaf is never needed. Without this, a query as
- * near to a million equal points as to one would look at all of them. */
+ * indices and show the tie, so the leaf is never needed. Without this, a query to a
+ * million equal points would look at all of them. */
 bool
 isRedundant(const std::vector<Record>& records, std::size_t leaf)
 {

@@ -23,8 +23,8 @@ struct Storage {
   std::size_t num_points = 0;
 };
 
-/** Whether a search is to find all points that are equal to each other, or only the one
- * of the smallest index and that there are more. */
+/** Whether a search finds all points that are equal to each other, or only the one with
+ * the smallest index and the fact that there are more. */
 enum class RepeatedPoints { Kept, LeftOut };
 
 /** Build the tree over the finite points among \p num_points points x, y, z, x, y, z,

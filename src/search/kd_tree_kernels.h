@@ -4,7 +4,7 @@
  *
  * The searches are compiled with more instructions than the rest of the library. So
  * this file must not include anything that defines functions: a copy made of, say,
- * std::vector's in such a file could end up in everybody's program.
+ * std::vector's in such a file could end up in any program that uses it.
  */
 #pragma once
 

@@ -14,8 +14,8 @@
 
 namespace bayesian_icp {
 
-/** \brief Answer of a search and what makes the next one faster; for one thread and one
- * PointNeighbors. */
+/** \brief The result of a search, and data that make the next one faster. For one
+ * thread and one PointNeighbors. */
 class NeighborList {
 public:
   /** Nearest first, equally near ones by their index. */
@@ -47,8 +47,8 @@ public:
   explicit PointNeighbors(const Eigen::Matrix3Xf& points);
 
   /** \brief The \p count nearest points, at least 1, nearest first; fewer if there are
-   * fewer. A point is none if the squared distance to it is too large for a float.
-   * \param[in] query finite; near the last one asked with \p list, the search is faster
+   * fewer. A point is left out if the squared distance to it is too large for a float.
+   * \param[in] query finite; the search is faster near the last query with \p list
    * \param[in] count how many
    * \param[in,out] list an empty one, or of an earlier search in this object */
   void
@@ -60,7 +60,9 @@ public:
     return points_;
   }
 
-  /** \brief The indices of all points such that most are near the one before. */
+  /** \brief The indices of all points, in an order in which most are near the one
+   * before.
+   */
   std::vector<std::uint32_t>
   alongTree() const;
 

@@ -1,5 +1,5 @@
 /** \file
- * \brief A gate on distances as KdTree asks for it.
+ * \brief A gate on distances in the form that KdTree takes.
  */
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace bayesian_icp {
 
-/** \brief The square [m^2] of a gate \p max_distance [m], as large as float goes at
- * most. */
+/** \brief The square [m^2] of a gate \p max_distance [m], at most the largest
+ * float. */
 inline float
 squaredGate(double max_distance)
 {

@@ -12,7 +12,7 @@ namespace {
 
 /** Fewer pairs do not determine a pose. */
 constexpr std::size_t min_batch_pairs = 3;
-/** After so many mini-batches with fewer pairs the descent is given up. */
+/** The descent gives up after this number of mini-batches with too few pairs. */
 constexpr int max_skipped_batches = 100;
 
 /** Notices that a pose has come to rest. */

@@ -18,15 +18,15 @@ constexpr double min_translation_share = 0.95;
 constexpr double min_screw_share = 0.05;
 
 /** Residuals above this part of their largest scale that repeat each other over large
- * patches are those of another shape: so many patches are asked for then. */
+ * patches are those of another shape: then more patches are required. */
 constexpr double part_of_misfit = 0.3;
 constexpr double min_patches_with_misfit = 28.0;
 
-/** residualScale() is not below 0.3: there, the target's noise is not the one that the
- * residuals have. */
+/** residualScale() is at least 0.3. At this floor, the residuals have another noise
+ * than the target. */
 constexpr double min_residual_scale = 0.301;
 
-/** Without a sign where it would show as -0.00. */
+/** Rounded, without the sign of -0.00. */
 double
 rounded(double value, double unit)
 {

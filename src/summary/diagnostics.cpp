@@ -6,8 +6,8 @@
  * Convergence of MCMC", Bayesian Analysis 16(2), 2021, in the form of R's package
  * posterior, version 1.4.0 (functions rhat, ess_bulk, ess_tail, mcse_mean), whose
  * results the test compares. Two differences, both NaN here: an infinite draw, which
- * posterior ranks like any number, and two or three draws a chain, where its rhat mixes
- * up draws and chains.
+ * posterior ranks like any number, and two or three draws per chain, where its rhat
+ * confuses draws with chains.
  */
 #include <bayesian_icp/diagnostics.h>
 
@@ -61,8 +61,8 @@ splitChains(const MatrixXd& x)
   return halves;
 }
 
-/** \brief Distances from the median: turns a difference in scale into one in location.
- */
+/** \brief Distances from the median. They turn a difference in scale into one in
+ * location. */
 MatrixXd
 foldAboutMedian(const MatrixXd& x)
 {
@@ -158,7 +158,7 @@ effectiveSampleSize(const MatrixXd& x)
 {
   if (x.rows() < 3 || isDegenerate(x))
     return not_defined;
-  // Centred twice: a large common offset must not eat the digits of the chain means.
+  // Centred twice: a large common offset would cost digits of the chain means.
   MatrixXd centred = x.array() - x.mean();
   const Eigen::RowVectorXd means = centred.colwise().mean();
   centred.rowwise() -= means;

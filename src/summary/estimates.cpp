@@ -12,14 +12,16 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Where roll and yaw are one angle, covariances of angles are curved beyond use. */
+/** Near the poles roll and yaw are one angle, and covariances of angles are useless. */
 std::vector<std::string>
 doubtsAboutAngles(const Summary& summary)
 {
   constexpr double quarter_turn = 1.57079632679489661923;
   /** Standard deviations within which the draws are. */
   constexpr double reach = 3.0;
-  /** Draws that reach so far are of all attitudes: other doubts are larger [rad]. */
+  /** Draws that reach further have all attitudes: other doubts are more important
+   * [rad].
+   */
   constexpr double max_distance = 0.5;
   const Eigen::Matrix3d rotation =
       summary.covariance(CovarianceConvention::R3xSO3).bottomRightCorner<3, 3>();
@@ -65,7 +67,7 @@ estimateOf(ChainSet chain_set)
 void
 doubtRounding(double coordinate, const Options& options, Summary& summary)
 {
-  // Share of the rounding in the variance of a distance that begins to matter.
+  // Share of the rounding in the variance of a distance from which on it matters.
   constexpr double max_share = 0.1;
   const double noise = summary.data.is_available ? summary.data.noise_scale
                                                  : options.likelihood.measurement_sigma;

@@ -19,7 +19,7 @@ failure(Status status, const std::string& message);
 PosteriorEstimate
 estimateOf(ChainSet chain_set);
 
-/** \brief Lower an Ok to Doubtful if there are any, and add them to the message. */
+/** \brief If there are any, change an Ok to Doubtful, and add them to the message. */
 void
 addDoubts(const std::vector<std::string>& doubts, Summary& summary);
 

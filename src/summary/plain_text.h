@@ -1,5 +1,5 @@
 /** \file
- * \brief Numbers in text with a decimal point, whatever locale the program is in.
+ * \brief Numbers in text with a decimal point, in any locale of the program.
  */
 #pragma once
 
@@ -28,7 +28,7 @@ private:
   locale_t previous_;
 };
 
-/** \brief As `printf`; text beyond 400 characters is cut off. */
+/** \brief As `printf`; text is truncated to 400 characters. */
 template <typename... Values>
 std::string
 formatted(const char* format, Values... values)

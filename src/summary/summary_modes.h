@@ -1,5 +1,5 @@
 /** \file
- * \brief What a summary says of modes.
+ * \brief What a summary says about modes.
  */
 #pragma once
 

@@ -10,12 +10,12 @@
 
 namespace bayesian_icp {
 
-/** \brief Most threads that anything is given: where more are asked for than there is
- * memory for, OpenMP ends the program. */
+/** \brief Largest number of threads. If there is not enough memory for the requested
+ * number, OpenMP ends the program. */
 constexpr int max_num_threads = 1024;
 
-/** \brief Threads for so many pieces of work: one inside a parallel region of the
- * caller.
+/** \brief Threads for a number of pieces of work: one inside a parallel region of
+ * the caller.
  * \param[in] num_threads as asked for, 0: as OpenMP would
  * \param[in] num_pieces may be 0 */
 inline int

@@ -75,7 +75,7 @@ public:
     options_.step_size = step_size;
   }
 
-  /** \brief Source points a step. */
+  /** \brief Source points per step. */
   void
   setMiniBatchSize(int batch_size)
   {

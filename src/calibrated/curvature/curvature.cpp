@@ -22,40 +22,40 @@ namespace {
 constexpr double step_to_posterior_sd = 3.0;
 constexpr double max_step_to_prior_sd = 1.5;
 
-/** Longest steps: further away another side of the body, or its end, is met.
+/** Longest steps: further away, points meet another side of the body, or its end.
  * [rad], and displacement in parts of the source's root mean square radius. */
 constexpr double max_step_angle = 0.3, max_step_to_radius = 0.6;
 
-/** A step whose secant is below its noise is shortened by this factor, so many times.
- */
+/** A step whose secant is below its noise is shortened by this factor, at most
+ * max_shortenings times. */
 constexpr double step_shortening = 0.25;
 constexpr int max_shortenings = 3;
 /** Steps shorter than this part of the least displacement are not tried. */
 constexpr double min_shortened = 0.2;
 
-/** A step that would change by less than this factor, and turn by less than this cosine
- * where posterior standard deviations are one, is not measured again. */
+/** A step is not measured again if it would change by less than this factor, and turn
+ * by less than this cosine where posterior standard deviations are one. */
 constexpr double max_change_of_length = 1.5;
 constexpr double min_cosine_of_turn = 0.95;
 
-/** A secant is clear if the square of its restoring part is so many times its variance,
- * twice the 99.9 % quantile of chi-square: noise of other directions says nothing of
- * whether this one is held. */
+/** A secant is clear if the square of its restoring part is above this multiple of its
+ * variance, twice the 99.9 % quantile of chi-square. Noise of other directions says
+ * nothing about whether this one is held. */
 constexpr double min_clear_ratio = 21.6;
 
-/** Steps change the residuals of the points that hold a direction by so much, in units
- * of their scale. Noise differs by orders of magnitude between the parts of a scene, so
- * that no length will do for all directions. */
+/** Change that steps make to the residuals of the points that hold a direction, in
+ * units of their scale. Noise differs by orders of magnitude between the parts of a
+ * scene, so no length suits all directions. */
 constexpr double least_change = 0.7, most_change = 2.0;
 
 /** Squared cosine between the motion and the normal of the points that hold a
- * direction: up to the first nothing is trusted, from the second on everything.
+ * direction: nothing is trusted up to the first, everything from the second on.
  * Measured: 0.28 to 0.95 along true directions, 0 to 0.16 along free ones. */
 constexpr double grazing = 0.03, facing = 0.12;
 
-/** Up to this squared cosine, the score is looked at where these points have moved by
- * this part of their patches' radius. Where it is below so many standard deviations
- * squared nothing is trusted, from three times that on everything. */
+/** Below max_doubted_facing, the score is measured where these points have moved by
+ * part_of_patch of their patches' radius. Nothing is trusted if its square is below
+ * min_squared_ratio variances, everything from three times that on. */
 constexpr double max_doubted_facing = 0.3, part_of_patch = 0.3;
 constexpr double min_squared_ratio = 20.0;
 
@@ -176,7 +176,8 @@ private:
     return tukeyWeight(u / (SurfaceScorer::tukey_constant * tau_)) * u;
   }
 
-  /** What the correspondences of the mode do not predict of the points' differences. */
+  /** The part of the points' differences that the correspondences of the mode do not
+   * predict. */
   PointScores
   unpredictedScores(const Vector6d& step) const
   {
@@ -247,7 +248,7 @@ lengthOf(const Vector6d& axis,
                              most_change * unit_change));
 }
 
-/** Whether two steps are so much alike, up to sign, that one secant does for both.
+/** Whether one secant suffices for two steps, because they are alike up to sign.
  * \param[in] information inverse covariance: a little of a long step along a tight
  * direction matters, a little of a short one along a loose direction does not */
 bool

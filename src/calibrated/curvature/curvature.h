@@ -84,8 +84,8 @@ noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise);
 
 /** \brief What is left of the curvature after its noise is debited. */
 struct DebitedInformation {
-  /** keep_k = trust_k max(0, 1 - d_k / info_k), one a step: d_k is c tr(J^-1 N_k), c of
-   * noiseThreshold(), where info_k is no more than that, falling to the noise's mean
+  /** keep_k = trust_k max(0, 1 - d_k / info_k), one per step: d_k is c tr(J^-1 N_k), c
+   * of noiseThreshold(), where info_k is no more than that, falling to the noise's mean
    * tr(J^-1 N_k) where it is three times that; trust_k is that of the secant. */
   Vector6d keep = Vector6d::Zero();
   /** info_k: information of the data along each step before the debit. */

@@ -13,18 +13,18 @@ namespace {
 
 using Axes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/** Where the information is so many times the noise threshold, only the noise's mean is
- * debited. */
+/** From this multiple of the noise threshold on, only the noise's mean is debited from
+ * the information. */
 constexpr double full_to_threshold = 3.0;
 
 /** Longest turn of a step, as a part of its length, both in prior standard deviations.
- * A longer one comes of a curvature that is nearly zero along what holds, and the steps
- * would be nearly dependent after it. */
+ * A longer turn results from a curvature that is nearly zero along the held directions,
+ * and the steps would be nearly dependent after it. */
 constexpr double max_turn = 0.2;
 
-/** What a secant's noise of mean information \p noise is debited with: so much that
- * nothing is left up to the threshold, its mean where that is far exceeded, and in
- * between a line from the one to the other. */
+/** Information to debit for a secant's noise of mean information \p noise. Nothing is
+ * left of an information below the threshold. Far above it, the noise's mean is
+ * debited. A line from the one to the other is in between. */
 double
 noiseDebit(double information, double noise, double threshold)
 {

@@ -132,7 +132,7 @@ ProductCoordinates::heldPart(const Isometry3d& pose) const
   };
   Vector6d a = Vector6d::Zero();
   if (num_prior_only_ == 1 && prior_only_.col(0).tail<3>().norm() > 0.0) {
-    // Once around: far from the mode the rounds below may not converge.
+    // A first time: far from the mode the rounds below may not converge.
     constexpr double pi = 3.14159265358979323846;
     const double half_turn = pi / prior_only_.col(0).tail<3>().norm();
     double least = std::numeric_limits<double>::infinity(), best = 0.0;

@@ -13,10 +13,10 @@ namespace {
 constexpr double max_deviation = 3.0;
 constexpr double max_relative_deviation = 0.5;
 
-/** With a smaller part of the batch on the surface the scores say nothing. */
+/** Scores are not used if a smaller part of the batch is on the surface. */
 constexpr double min_part_with_patch = 0.5;
 
-/** Where the prior holds the pose alone, no point has a say. */
+/** No point is used where the prior alone holds the pose. */
 std::vector<std::size_t>
 activePoints(const CalibratedEstimate& estimate, const ProductCoordinates& coordinates)
 {
@@ -54,7 +54,8 @@ WeightedScore::gradient(const Vector6d& z, std::size_t batch_size, Random& rando
 }
 
 /** The control variate is the score to first order about the mode, without new
- * correspondences: exact for all points, and most of the noise of a batch. */
+ * correspondences. It is exact for all points, and contains most of the noise of a
+ * batch. */
 Vector6d
 WeightedScore::totalScore(const Vector6d& z, const std::vector<std::size_t>& batch)
 {

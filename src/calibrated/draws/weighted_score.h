@@ -44,8 +44,8 @@ public:
     shape_gain_ = gain;
   }
 
-  /** \brief The gradient whose likelihood part differs from that of a Gaussian
-   * likelihood by no more than would keep a chain from coming back. */
+  /** \brief The gradient, with its likelihood part so near to that of a Gaussian
+   * likelihood that a chain always comes back. */
   SplitGradient
   gradient(const Vector6d& z, std::size_t batch_size, Random& random) override;
 

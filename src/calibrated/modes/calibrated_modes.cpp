@@ -23,22 +23,22 @@ namespace {
  * source's extent. */
 constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
 
-/** Starts reach this far, in standard deviations: further out they are further from
- * where the truth is likely than the prior's mean is. */
+/** Starts reach this far, in standard deviations. Beyond, they are further from likely
+ * places of the truth than the prior's mean is. */
 constexpr double reach = 1.75;
 
 /** A start is brought near by point-to-point ICP on this part of the points, and then
  * sees this part of the source's root mean square radius. */
 constexpr double icp_part = 0.5, sight = 0.1;
 
-/** Where starts have ended is of no interest if their cost is above the best one's by
- * more than this part, or if they are within these Mahalanobis distances^2 of a mode:
- * on a few points, and after an estimate. */
+/** An end of a start is ignored if its cost is above the best one's by more than this
+ * part, or if it is within these squared Mahalanobis distances of a mode: on a few
+ * points, and after an estimate. */
 constexpr double cost_margin = 0.35;
 constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
 
-/** On the way between two modes that are one: steps at each place, and how far the
- * surface may be from the straight way, in parts of its length. */
+/** For the path between two modes that are one: steps at each place, and the largest
+ * distance of the surface from the straight path, in parts of its length. */
 constexpr int num_way_steps = 6;
 constexpr double max_aside = 0.15;
 
@@ -133,7 +133,7 @@ areConnected(const SurfaceScorer& subset,
   fit.tolerance = 0.1 * noise;
   for (const double part : {0.25, 0.5, 0.75}) {
     const Isometry3d start = movedBy(part * way, from.centre, from.mode);
-    // Of itself it stays where it was put.
+    // This prior keeps it where it was put.
     const Prior here(poseOf(start.matrix()), prior.variance(), prior.referencePoint());
     const RobustFit end = fitRobustly(subset, here, start, fit);
     const Vector6d aside = twistBetween(start, end.pose, from.centre);

@@ -14,16 +14,16 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** The scale of Tukey's weight is reduced by this factor a step. */
+/** The scale of Tukey's weight is reduced by this factor in each step. */
 constexpr double annealing = 0.65;
 
 /** Re-weightings between two searches of correspondences. */
 constexpr int num_reweightings = 2;
 
-/** Points count this much against the prior: neighbours repeat each other. */
+/** Weight of points against the prior: neighbours repeat each other. */
 constexpr double points_to_prior = 0.2;
 
-/** The scale of the residuals is reached when within this factor. */
+/** Annealing has ended when the scale is within this factor of the residuals'. */
 constexpr double scale_tolerance = 1.001;
 
 /** Longest step of point-to-point ICP [m, rad], its weight of a squared distance
@@ -60,7 +60,7 @@ reweighted(const SurfaceScores& linear, const Vector6d& xi, double tau)
   return equations;
 }
 
-/** One step: correspondences are fixed, weights are not. */
+/** One step, with fixed correspondences and new weights. */
 Vector6d
 stepFrom(const SurfaceScores& linear, double tau, const TwistPrior& prior)
 {

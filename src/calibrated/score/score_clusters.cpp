@@ -21,11 +21,11 @@ namespace {
 /** Seed of the partitions: they belong to the method, not to the run. */
 constexpr std::uint64_t partition_seed = 1;
 
-/** What six parameters cost in degrees of freedom: six were fitted, and the inverse of
- * an estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
+/** Degrees of freedom that six parameters cost: six were fitted, and the inverse of an
+ * estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
 constexpr double lost_degrees_of_freedom = 13.0;
 
-/** Largest part of the information that one cluster is taken to have. */
+/** Upper limit of one cluster's share of the information. */
 constexpr double max_share = 0.9;
 
 /** Leaves of one randomised kd-split. */
@@ -211,7 +211,7 @@ scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
 {
   const Matrix6d independent = points.scores * points.scores.transpose();
   const Matrix6d information = points.jacobians * points.jacobians.transpose();
-  // The prior held the fit with the weight that the robust start gives it.
+  // In the fit, the prior has the weight that the robust start gives it.
   const Matrix6d working_information = information + 5.0 * fit_precision;
   const Eigen::LDLT<Matrix6d> metric(
       independent + independent.trace() / information.trace() * fit_precision);
@@ -238,7 +238,7 @@ scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
   const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
                       0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
   result.kappa_inf = std::max({1.0, kappa_24, root * root});
-  // Independent points that the correlated ones amount to.
+  // Number of independent points to which the correlated ones are equivalent.
   const double nu = static_cast<double>(points.scores.cols()) / result.kappa_inf;
   const double correction = nu / std::max(1.0, nu - lost_degrees_of_freedom);
   result.covariance =

@@ -19,7 +19,7 @@ struct ClusterOptions {
 
 /** \brief Scores of points and where the points are. */
 struct PointScores {
-  /** One active point a column [1/m, 1/rad]. */
+  /** One active point per column [1/m, 1/rad]. */
   Matrix6Xd scores;
   /** Square roots of their Gauss-Newton informations; empty if the pose was not fitted
    * to these scores. */

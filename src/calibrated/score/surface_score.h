@@ -15,11 +15,11 @@
 
 namespace bayesian_icp {
 
-/** \brief Six numbers a point, one point a column. */
+/** \brief Six numbers for each point, one point per column. */
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
 /** \brief Nearest patch of each source point at the last evaluation; speeds up the next
- * one and never changes it. One object a thread. */
+ * one and never changes it. One object per thread. */
 using PatchHints = std::vector<std::uint32_t>;
 
 /** \brief Scores of all points at one pose, in twists about a centre. */

@@ -15,10 +15,10 @@ using Eigen::Vector3f;
 
 namespace {
 
-/** A neighbourhood grows to at most this many times num_neighbors, to be wider than its
- * noise and ... */
+/** A neighbourhood grows to at most this multiple of num_neighbors, until it is wide
+ * enough for its noise ... */
 constexpr int max_growth = 16;
-/** ... to be as wide as this, as aspectOf(). */
+/** ... and has this aspectOf(). */
 constexpr double wanted_aspect = 0.35;
 /** Narrower neighbourhoods are lines. */
 constexpr double min_aspect = 0.2;
@@ -26,22 +26,22 @@ constexpr double min_aspect = 0.2;
  * ellipse of the smallest aspect: 4 is the variance of a slope in the unit disc, of one
  * point and unit noise. */
 constexpr double max_slope_variance = 4.0 / (min_aspect * min_aspect);
-/** Clark and Evans' (1954) ratio of nearest neighbours' mean distance to that of
- * points scattered at random, from which on points cover a quadric. That of scan lines
- * apart is smaller, and between them anything goes for a quadric. */
+/** Smallest ratio of Clark and Evans (1954) of points that cover a quadric: the mean
+ * distance of nearest neighbours over that of points scattered at random. Separate scan
+ * lines have a smaller one; between them nothing constrains a quadric. */
 constexpr double min_evenness = 0.8;
-/** Points whose nearest neighbours are looked for. */
+/** Number of points whose nearest neighbours are searched. */
 constexpr Eigen::Index num_evenness_points = 32;
 /** A quadric that misses its points by less than this part of the radius is good
  * enough, however exact they are. */
 constexpr double negligible_misfit = 1e-3;
 
-/** Points are gathered in a ball and then chosen by their distance in the plane of the
- * surface: a ball prefers, at its rim, points whose noise brings them nearer to its
- * centre, and surfaces would look flatter than they are. */
+/** Points are gathered in a ball, and then chosen by their distance in the plane of the
+ * surface. At its rim, a ball prefers points whose noise brings them nearer to its
+ * centre; surfaces would look flatter than they are. */
 constexpr double ball_to_neighborhood = 1.5;
 
-/** A plane has so many points, and is thinner than this part of its radius. */
+/** Least points of a plane, and its largest thickness as a part of its radius. */
 constexpr Eigen::Index min_plane_points = 8;
 constexpr double max_thickness = 0.5;
 
@@ -80,8 +80,8 @@ principalFrame(const PointRows& points)
 }
 
 /** Ratio of the points' spread in the plane, across the parabola along the widest axis
- * that fits them best, to that along the axis. Scan lines are bent, and a bent line
- * seems to have a width, but it tells nothing of the slope across it.
+ * that fits them best, to that along the axis. Scan lines are bent. A bent line
+ * seems to have a width, but says nothing about the slope across it.
  * \param[in] local in the principal frame */
 double
 aspectOf(const PointRows& local)
@@ -150,7 +150,7 @@ struct Regression {
 private:
   static constexpr int max_degree = 4;
   static constexpr int num_product_terms = placeOfTerm(2 * max_degree + 1, 0);
-  /** One point a row. */
+  /** One point per row. */
   using ProductTerms = Eigen::Matrix<double, Eigen::Dynamic, num_product_terms>;
 
   /** Products of two quartic terms: those up to the eighth degree. */

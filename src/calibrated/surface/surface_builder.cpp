@@ -29,10 +29,10 @@ constexpr double min_sigma_to_median = 0.3;
 constexpr double min_sigma_to_spacing = 1e-4;
 
 /** Neighbourhoods have at most this part of the root mean square distance of the points
- * from their centroid as a radius: beyond, a plane through two distant scan lines says
- * nothing of the ground between them, and all of a large part of the source shares its
- * errors. Few points need more: so many times the radius in which an even sheet of them
- * has the wanted neighbours, in units of sqrt(neighbours / points). */
+ * from their centroid as a radius. A plane through two distant scan lines says nothing
+ * of the ground between them, and a large part of the source would share its errors. A
+ * target of few points needs more: max_radius_of_few, in units of sqrt(neighbours /
+ * points) of that distance. */
 constexpr double max_radius_to_extent = 0.25, max_radius_of_few = 4.0;
 /** A smaller share of quadrics does not say what the target's noise is. */
 constexpr double min_share_of_quadrics = 0.05;

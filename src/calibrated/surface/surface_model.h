@@ -81,9 +81,9 @@ struct SurfaceModelOptions {
   /** In-plane distance, in radii of the donor, within which a point that has no quadric
    * takes over its neighbour's; 0 for never. */
   double takeover_radius = 0.5;
-  /** Largest number of patches. Of a larger target, so many points that cover it evenly
-   * get one. Their neighbourhoods are of four times as many points, so that patches are
-   * about as wide as they are apart, whatever the density of the target. */
+  /** Largest number of patches. In a larger target, this number of points get one; they
+   * cover it evenly. Neighbourhoods consist of four times as many points, so patches
+   * are about as wide as they are apart, whatever the density of the target. */
   int max_patches = 20000;
 };
 
