@@ -4,10 +4,9 @@
 //
 // Processor time, so that other work of the machine matters less; every run is timed by
 // itself, which gives the standard error of their mean.
+#include "baselines/monte_carlo_icp.h"
 #include "benchmark_clouds.h"
-
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
-#include <bayesian_icp/calibration/twist.h>
+#include "geometry/twist.h"
 
 #include <pcl/registration/icp.h>
 

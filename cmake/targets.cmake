@@ -15,19 +15,31 @@ function(bayesian_icp_configure target)
                       $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
 endfunction()
 
-# bayesian_icp_library(<target> <export name> <file name>): a library of the project with
-# hidden symbols by default, a versioned file name and an alias pcl_bayesian_icp::<export name>.
-function(bayesian_icp_library target export_name file_name)
+# bayesian_icp_objects(<target>): objects of the project's libraries, with hidden symbols.
+function(bayesian_icp_objects target)
   bayesian_icp_configure(${target})
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden
+                                             VISIBILITY_INLINES_HIDDEN ON
+                                             POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/include
+                                               ${PROJECT_SOURCE_DIR}/src)
+endfunction()
+
+# bayesian_icp_library(<name> <file name>): the libraries made of bayesian_icp_<name>_objects.
+# - bayesian_icp_<name>, alias pcl_bayesian_icp::<name>: the one that is installed.
+# - bayesian_icp_<name>_internal: an archive with everything, and with the headers of src/.
+# - bayesian_icp_<name>_linked: what libraries of tools link. It is the archive in a program
+#   that uses internals, and the installed library in any other: never both in one program.
+function(bayesian_icp_library name file_name)
+  set(target bayesian_icp_${name})
+  add_library(${target} $<TARGET_OBJECTS:${target}_objects>)
   set_target_properties(
     ${target}
-    PROPERTIES EXPORT_NAME ${export_name}
+    PROPERTIES EXPORT_NAME ${name}
                OUTPUT_NAME ${file_name}
+               LINKER_LANGUAGE CXX
                VERSION ${PROJECT_VERSION}
-               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-               CXX_VISIBILITY_PRESET hidden
-               VISIBILITY_INLINES_HIDDEN ON
-               POSITION_INDEPENDENT_CODE ON)
+               SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   if(CMAKE_SYSTEM_NAME STREQUAL "Linux" AND BUILD_SHARED_LIBS)
     set(map ${PROJECT_SOURCE_DIR}/src/exported_symbols.map)
     target_link_options(${target} PRIVATE LINKER:--version-script=${map})
@@ -37,5 +49,27 @@ function(bayesian_icp_library target export_name file_name)
   target_include_directories(
     ${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                      $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  add_library(pcl_bayesian_icp::${export_name} ALIAS ${target})
+  add_library(pcl_bayesian_icp::${name} ALIAS ${target})
+
+  if(BUILD_SHARED_LIBS)
+    add_library(${target}_internal STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${target}_objects>)
+    set_target_properties(${target}_internal PROPERTIES LINKER_LANGUAGE CXX)
+    set(scope PUBLIC)
+  else()
+    add_library(${target}_internal INTERFACE)
+    target_link_libraries(${target}_internal INTERFACE ${target})
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(${target}_internal ${scope} ${PROJECT_SOURCE_DIR}/include
+                                                         ${PROJECT_SOURCE_DIR}/src)
+  add_library(${target}_linked INTERFACE)
+  set(uses_internals $<BOOL:$<TARGET_PROPERTY:BAYESIAN_ICP_INTERNALS>>)
+  target_link_libraries(${target}_linked
+                        INTERFACE $<IF:${uses_internals},${target}_internal,${target}>)
+endfunction()
+
+# bayesian_icp_use_internals(<target>): lets tests, studies and benchmarks reach src/.
+function(bayesian_icp_use_internals target)
+  set_target_properties(${target} PROPERTIES BAYESIAN_ICP_INTERNALS ON)
+  target_link_libraries(${target} PRIVATE bayesian_icp_core_linked)
 endfunction()

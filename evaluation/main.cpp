@@ -3,14 +3,13 @@
  * sub-command each.
  */
 #include "coverage/coverage_command.h"
+#include "io/program.h"
 #include "paper/paper_command.h"
-#include "report_program.h"
 #include "samplers/samplers_command.h"
 #include "sbc/sbc_command.h"
+#include "study/report_program.h"
 
 #include <boost/program_options/errors.hpp>
-
-#include <io/program.h>
 
 #include <functional>
 #include <iomanip>

@@ -4,7 +4,7 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$root/build
 
-# Parallel compile jobs: one a processor, and 2 GB of free memory for each.
+# Parallel compile jobs: one per processor, if there are 2 GB of free memory for each.
 num_jobs() {
   local processors memory
   processors=$(nproc)

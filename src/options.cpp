@@ -8,8 +8,9 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Of a scan the sensor is the origin and no further from the centroid than this many
- * times the radius. Further off, the cloud is an object that somebody looks at. */
+/** In a scan, the sensor is the origin, and at most this multiple of the radius away
+ * from the centroid. If it is further away, the cloud is an object that a sensor
+ * sees. */
 constexpr double max_distance_of_sensor = 1.5;
 
 /** Where finite points are. */

@@ -1,9 +1,9 @@
-#include "calibrated_pipeline.h"
-#include "exact_pipeline.h"
-#include "pipeline_parts.h"
+#include "calibrated/calibrated_pipeline.h"
+#include "exact/exact_pipeline.h"
+#include "paper/posterior_gradient.h"
+#include "summary/estimates.h"
 
 #include <bayesian_icp/pipeline.h>
-#include <bayesian_icp/posterior.h>
 #include <bayesian_icp/tree_search.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace bayesian_icp {
 
 namespace {
 
-/** A chain whose translation is further than this from the prior mean has run away: so
- * many prior standard deviations, on top of the deviation of its start and the size of
- * the source. For angles, whose prior is periodic, see the sampler. */
+/** A chain has run away if its translation is further than this number of prior
+ * standard deviations from the prior mean, plus the deviation of its start and the size
+ * of the source. For angles, whose prior is periodic, see SgldChain::isWhiteNoise(). */
 constexpr double max_prior_deviations = 20.0;
 
 std::size_t
@@ -145,7 +145,7 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
     return failure(Status::InvalidOptions,
                    "residual is point-to-plane, but must be point-to-point: a search "
                    "of the user's own gives no normals");
-  // The search knows points by their index in the whole source: it cannot be thinned.
+  // The search knows points by their index in the whole source, so it is not thinned.
   Options whole_source = options;
   whole_source.exact.max_source_points =
       std::max(options.exact.max_source_points, static_cast<int>(source_points.cols()));

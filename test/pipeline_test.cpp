@@ -1,5 +1,5 @@
 // The front door without PCL: options, statuses, and the posterior of small problems.
-#include "test_support.h"
+#include "support/test_support.h"
 
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/likelihood.h>

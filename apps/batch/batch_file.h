@@ -13,9 +13,9 @@
 
 namespace bayesian_icp::app {
 
-/** \brief FILE with a line a pair, and FILE.rank1, FILE.rank2, ... in which other
- * processes of a running batch put theirs. Whatever was killed when, each pair has one
- * line at most. */
+/** \brief FILE with one line per pair, and FILE.rank1, FILE.rank2, ... in which other
+ * processes of a running batch put their lines. Whatever was killed at whatever time,
+ * each pair has at most one line. */
 class BatchFile {
 public:
   /** \brief Read what earlier runs have finished, and take their rank files in.

@@ -28,7 +28,7 @@ struct CloudFile {
   /** Where the sensor stood [m] and how it was turned (w, x, y, z): PCD's VIEWPOINT. */
   Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
   Eigen::Vector4f sensor_orientation = Eigen::Vector4f::UnitX();
-  /** x, y, z [m], a column a point, those that are not finite included. */
+  /** x, y, z [m], one point per column, including those that are not finite. */
   Eigen::Matrix3Xf points;
   std::size_t num_finite = 0;
   /** Largest |x|, |y|, |z| of the finite points [m]. */

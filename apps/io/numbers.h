@@ -38,7 +38,8 @@ textOf(Number value)
   return std::string(buffer, result.ptr);
 }
 
-/** \brief At most so many significant digits, without trailing zeros. */
+/** \brief The value with at most \p num_digits significant digits, without trailing
+ * zeros. */
 inline std::string
 textOf(double value, int num_digits)
 {

@@ -6,7 +6,7 @@
 #include "register/export_options.h"
 #include "register/option_descriptions.h"
 #include "register/settings_options.h"
-#include "sgd_icp/request.h"
+#include "register/sgd_request.h"
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include "register/command_line.h"
 #include "register/export_options.h"
 #include "register/setting_fields.h"
-#include "sgd_icp/request.h"
+#include "register/sgd_request.h"
 
 #include <boost/program_options/value_semantic.hpp>
 

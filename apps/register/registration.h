@@ -34,7 +34,7 @@ struct RegistrationResult {
 using IcpCallback = std::function<void(const Eigen::Matrix4d& T_target_source)>;
 
 /** \brief Run ICP and sample the posterior.
- * \param[in] source,target x, y, z [m], a column a point; not finite ones are skipped
+ * \param[in] source,target x, y, z [m], one point per column; not finite: skipped
  * \param[in] progress called after each step of the chains
  * \param[in] icp_progress called at ICP's start and after each of its iterations; may
  * be empty */

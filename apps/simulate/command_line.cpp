@@ -1,7 +1,7 @@
-#include "command_line.h"
+#include "simulate/command_line.h"
 
-#include "numbers.h"
-#include "option_descriptions.h"
+#include "simulate/option_descriptions.h"
+#include "simulate/option_numbers.h"
 
 #include <boost/program_options.hpp>
 

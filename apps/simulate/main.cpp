@@ -2,10 +2,10 @@
  * \brief pcl_bayesian_icp_simulate: scans a simulated scene twice and writes the two
  * clouds with the transform between them.
  */
-#include "command_line.h"
 #include "io/interrupt.h"
 #include "io/program.h"
-#include "output.h"
+#include "simulate/command_line.h"
+#include "simulate/output.h"
 
 #include <stdexcept>
 

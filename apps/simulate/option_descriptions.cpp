@@ -1,4 +1,4 @@
-#include "option_descriptions.h"
+#include "simulate/option_descriptions.h"
 
 #include <boost/program_options/value_semantic.hpp>
 

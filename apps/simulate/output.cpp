@@ -1,7 +1,7 @@
-#include "output.h"
+#include "simulate/output.h"
 
 #include "io/output_folder.h"
-#include "record.h"
+#include "simulate/record.h"
 
 #include <pcl/io/pcd_io.h>
 #include <pcl/conversions.h>

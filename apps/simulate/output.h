@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "simulation.h"
+#include "simulator/simulation.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
-#include "record.h"
+#include "simulate/record.h"
 
-#include "numbers.h"
+#include "simulate/option_numbers.h"
 
 #include <nlohmann/json.hpp>
 

@@ -15,8 +15,7 @@ namespace bayesian_icp::viewer {
 void
 addLegend(const std::vector<LegendLine>& lines, int viewport, Window& window);
 
-/** \brief What a legend of so many lines, the status and a colour bar leave of a panel.
- */
+/** \brief The area of a panel that a legend, the status and a colour bar leave free. */
 PictureArea
 areaBeside(std::size_t num_lines, bool has_color_bar, const Window& window);
 

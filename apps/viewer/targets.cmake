@@ -10,7 +10,7 @@ add_library(
   viewer/scene.cpp
   viewer/view_options.cpp)
 bayesian_icp_configure(bayesian_icp_viewer_scene)
-target_link_libraries(bayesian_icp_viewer_scene PUBLIC bayesian_icp_app_io bayesian_icp_core)
+target_link_libraries(bayesian_icp_viewer_scene PUBLIC bayesian_icp_app_io)
 
 find_package(PCL 1.13 QUIET COMPONENTS visualization)
 find_package(X11 QUIET)
@@ -28,13 +28,13 @@ if(BAYESIAN_ICP_BUILD_VIEWER)
   endif()
   add_executable(
     pcl_bayesian_icp_viewer
-    pcl_bayesian_icp_viewer.cpp
     viewer/annotations.cpp
     viewer/command_line.cpp
     viewer/display.cpp
     viewer/drawing.cpp
     viewer/keys.cpp
     viewer/live_view.cpp
+    viewer/main.cpp
     viewer/option_descriptions.cpp
     viewer/option_values.cpp
     viewer/scene_files.cpp

@@ -38,8 +38,8 @@ public:
     return *visualizer_;
   }
 
-  /** \brief Divide the window into so many panels, row by row, and forget what was in
-   * it.
+  /** \brief Divide the window into a number of panels, row by row, and forget what was
+   * in it.
    * \return their viewports' numbers */
   std::vector<int>
   makePanels(std::size_t number);

@@ -1,11 +1,10 @@
 #include "coverage/coverage_baselines.h"
 
+#include "calibrated/surface/surface_model.h"
 #include "methods/baseline_problem.h"
 #include "methods/pcl_baselines.h"
 #include "methods/point_to_point_sandwich.h"
 #include "methods/published_covariances.h"
-
-#include <bayesian_icp/calibration/surface_model.h>
 
 namespace bayesian_icp::evaluate {
 

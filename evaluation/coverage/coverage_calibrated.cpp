@@ -1,9 +1,8 @@
 #include "coverage/coverage_calibrated.h"
 
+#include "calibrated/calibrated_report.h"
 #include "coverage/coverage_methods.h"
-#include "formatted_text.h"
-
-#include <bayesian_icp/calibration/calibrated_report.h>
+#include "study/formatted_text.h"
 
 #include <algorithm>
 

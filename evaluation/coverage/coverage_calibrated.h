@@ -3,9 +3,8 @@
  */
 #pragma once
 
-#include "coverage/coverage_case.h"
-
-#include <bayesian_icp/calibration/calibrated_estimate.h>
+#include "calibrated/calibrated_estimate.h"
+#include "study/coverage_case.h"
 
 namespace bayesian_icp::evaluate {
 

@@ -1,6 +1,6 @@
 #include "coverage/coverage_cases.h"
 
-#include <io/text_hash.h>
+#include "io/text_hash.h"
 
 #include <algorithm>
 #include <cmath>

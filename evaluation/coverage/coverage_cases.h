@@ -4,8 +4,8 @@
  */
 #pragma once
 
-#include "coverage/coverage_case.h"
 #include "coverage/coverage_setups.h"
+#include "study/coverage_case.h"
 
 #include <cstdint>
 #include <string>

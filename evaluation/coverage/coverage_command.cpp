@@ -6,14 +6,13 @@
 #include "coverage/coverage_sequences.h"
 #include "coverage/coverage_study.h"
 #include "coverage/coverage_table.h"
-#include "formatted_text.h"
-#include "report_program.h"
+#include "io/cloud_file.h"
+#include "io/errors.h"
+#include "io/folders.h"
+#include "study/formatted_text.h"
+#include "study/report_program.h"
 
 #include <boost/algorithm/string/join.hpp>
-
-#include <io/cloud_file.h>
-#include <io/errors.h>
-#include <io/folders.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "coverage/coverage_score.h"
-#include "run_file.h"
+#include "study/run_file.h"
 
 #include <array>
 #include <string>

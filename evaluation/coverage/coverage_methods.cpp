@@ -2,8 +2,7 @@
 
 #include "coverage/coverage_baselines.h"
 #include "coverage/coverage_calibrated.h"
-
-#include <bayesian_icp/calibration/twist.h>
+#include "geometry/twist.h"
 
 #include <Eigen/LU>
 

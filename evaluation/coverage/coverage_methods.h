@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "coverage/coverage_case.h"
+#include "study/coverage_case.h"
 
 #include <bayesian_icp/pipeline.h>
 

@@ -1,11 +1,10 @@
 #include "coverage/coverage_options.h"
 
-#include "option_values.h"
+#include "io/errors.h"
+#include "io/numbers.h"
+#include "study/option_values.h"
 
 #include <boost/program_options.hpp>
-
-#include <io/errors.h>
-#include <io/numbers.h>
 
 #include <cmath>
 #include <sstream>

@@ -1,11 +1,11 @@
 #include "coverage/coverage_real.h"
 
-#include "scene.h"
+#include "geometry/twist.h"
+#include "io/cloud_file.h"
+#include "io/errors.h"
+#include "io/text_hash.h"
 
-#include <bayesian_icp/calibration/twist.h>
-
-#include <io/errors.h>
-#include <io/text_hash.h>
+#include <bayesian_icp/random.h>
 
 namespace bayesian_icp::evaluate {
 
@@ -53,8 +53,10 @@ RealPairs::cloudsOf(const ManifestEntry& entry) const
     const Eigen::Isometry3d T_target_source =
         readTransform(folder_ + entry.ground_truth);
     read.source_in_target =
-        T_target_source * finitePoints(folder_ + entry.source).cast<double>();
-    read.target = finitePoints(folder_ + entry.target).cast<double>();
+        T_target_source *
+        io::finitePoints(io::readCloud(folder_ + entry.source)).cast<double>();
+    read.target =
+        io::finitePoints(io::readCloud(folder_ + entry.target)).cast<double>();
     clouds = std::make_shared<const Clouds>(std::move(read));
   }
   return clouds;

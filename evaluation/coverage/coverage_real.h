@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "coverage/coverage_case.h"
-#include "scan_manifest.h"
+#include "study/coverage_case.h"
+#include "study/scan_manifest.h"
 
 #include <map>
 #include <memory>

@@ -1,8 +1,8 @@
 #include "coverage/coverage_score.h"
 
-#include "draw_statistics.h"
+#include "geometry/twist.h"
+#include "study/draw_statistics.h"
 
-#include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>
@@ -24,7 +24,7 @@ constexpr Eigen::Index min_draws = 8;
 /** The posterior about MethodResult::mean, as twists. */
 struct TwistPosterior {
   Moments moments;
-  /** Draws of the method, one a row; none if it is a Gaussian. */
+  /** Draws of the method, one per row; none if it is a Gaussian. */
   PoseMatrix draws;
   Vector6d truth;
   /** F, where F F^T is the covariance of the truth itself. */

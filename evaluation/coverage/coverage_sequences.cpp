@@ -1,13 +1,12 @@
 #include "coverage/coverage_sequences.h"
 
-#include "scene.h"
+#include "io/cloud_file.h"
+#include "io/errors.h"
+#include "io/numbers.h"
+#include "io/text_hash.h"
 
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/random.h>
-
-#include <io/errors.h>
-#include <io/numbers.h>
-#include <io/text_hash.h>
 
 #include <cmath>
 
@@ -157,8 +156,9 @@ SequencePairs::makeCase(const std::string& name, std::uint64_t pair) const
   made.condition = condition(name);
   made.seed = ChainOptions().seed;
   made.source =
-      T_turned_sensor * finitePoints(sequence.scanFile(source)).cast<double>();
-  made.target = finitePoints(sequence.scanFile(pair)).cast<double>();
+      T_turned_sensor *
+      io::finitePoints(io::readCloud(sequence.scanFile(source))).cast<double>();
+  made.target = io::finitePoints(io::readCloud(sequence.scanFile(pair))).cast<double>();
   made.truth = poses.truth;
   made.prior_mean = poseOf(poses.guess.matrix());
   made.prior_sd = PriorOptions().variance.cwiseSqrt();

@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "coverage/coverage_case.h"
-#include "scan_sequences.h"
+#include "study/coverage_case.h"
+#include "study/scan_sequences.h"
 
 #include <map>
 #include <string>
@@ -14,9 +14,9 @@ namespace bayesian_icp::evaluate {
 
 /** \brief Which pairs, and from which guesses. */
 struct SequenceOptions {
-  /** The source is so many scans after the target. */
+  /** The source is this number of scans after the target. */
   std::size_t step = 1;
-  /** At most so many pairs of a recording, evenly spread; 0: all. */
+  /** Largest number of pairs of a recording, evenly spread; 0: all. */
   std::size_t max_pairs = 0;
   /** Of the guess about the sensor, of each axis. */
   AxisDeviation guess_sd = {0.1, 0.03};

@@ -1,8 +1,8 @@
 #include "coverage/coverage_setups.h"
 
-#include <Eigen/Geometry>
+#include "io/coordinates.h"
 
-#include <io/coordinates.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <stdexcept>

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "simulation.h"
+#include "simulator/simulation.h"
 
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>

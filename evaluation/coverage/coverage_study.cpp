@@ -1,6 +1,6 @@
 #include "coverage/coverage_study.h"
 
-#include <bayesian_icp/first_exception.h>
+#include "threads/first_exception.h"
 
 #include <chrono>
 

@@ -1,6 +1,6 @@
 #include "coverage/coverage_summary.h"
 
-#include "draw_statistics.h"
+#include "study/draw_statistics.h"
 
 #include <boost/math/distributions/normal.hpp>
 

@@ -1,7 +1,7 @@
 #include "coverage/coverage_table.h"
 
 #include "coverage/coverage_summary.h"
-#include "formatted_text.h"
+#include "study/formatted_text.h"
 
 #include <algorithm>
 #include <cmath>

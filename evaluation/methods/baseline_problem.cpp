@@ -1,6 +1,7 @@
 #include "methods/baseline_problem.h"
 
-#include <bayesian_icp/calibration/twist.h>
+#include "geometry/twist.h"
+
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>

@@ -4,15 +4,16 @@
  */
 #pragma once
 
-#include "coverage/coverage_case.h"
+#include "baselines/closed_form_covariance.h"
+#include "study/coverage_case.h"
 
-#include <bayesian_icp/baselines/closed_form_covariance.h>
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/prior.h>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief At most so many source points are registered, unless said otherwise. */
+/** \brief Largest number of source points that are registered, unless stated otherwise.
+ */
 constexpr Eigen::Index max_source_points = 2000;
 
 class BaselineProblem {

@@ -1,8 +1,8 @@
 #include "methods/point_to_point_sandwich.h"
 
-#include <bayesian_icp/calibration/curvature.h>
-#include <bayesian_icp/calibration/score_clusters.h>
-#include <bayesian_icp/calibration/twist.h>
+#include "calibrated/curvature/curvature.h"
+#include "calibrated/score/score_clusters.h"
+#include "geometry/twist.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int num_rounds = 2;
 
-/** A step is so many posterior, and at most so many prior, standard deviations. */
+/** Length of a step in posterior, and at most in prior, standard deviations. */
 constexpr double step_to_posterior_sd = 3.0;
 constexpr double max_step_to_prior_sd = 1.5;
 
@@ -28,7 +28,7 @@ constexpr double max_step_to_prior_sd = 1.5;
  * its 99.9 % quantile where it is of full rank. */
 constexpr double quantile_to_debit = 2.807;
 
-/** Scores J^T r of the points, one a column. */
+/** Scores J^T r of the points, one per column. */
 Matrix6Xd
 scoresOf(const MatchedPoints& matches, const Vector3d& centre)
 {

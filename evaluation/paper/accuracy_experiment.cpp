@@ -1,12 +1,10 @@
-#include "input_hash.h"
+#include "geometry/twist.h"
+#include "io/text_hash.h"
 #include "paper/accuracy_file.h"
 #include "paper/accuracy_methods.h"
 #include "paper/median_table.h"
 #include "paper/study_record.h"
-
-#include <bayesian_icp/calibration/twist.h>
-
-#include <io/text_hash.h>
+#include "study/input_hash.h"
 
 #include <cmath>
 #include <iostream>

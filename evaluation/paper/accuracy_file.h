@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "run_file.h"
+#include "study/run_file.h"
 
 #include <cstdint>
 #include <string>

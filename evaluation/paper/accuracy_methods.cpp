@@ -1,9 +1,10 @@
 #include "paper/accuracy_methods.h"
 
-#include <bayesian_icp/baselines/iterative_closest_point.h>
-#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
-#include <bayesian_icp/calibration/twist.h>
+#include "baselines/iterative_closest_point.h"
+#include "geometry/twist.h"
+
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/stochastic_gradient_icp.h>
 #include <bayesian_icp/tree_search.h>
 
 namespace bayesian_icp::evaluate {

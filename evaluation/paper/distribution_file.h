@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "run_file.h"
 #include "samplers/score.h"
+#include "study/run_file.h"
 
 #include <cstdint>
 #include <string>

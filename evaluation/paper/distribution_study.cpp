@@ -1,9 +1,8 @@
 #include "paper/distribution_study.h"
 
 #include "coverage/coverage_score.h"
-#include "draw_statistics.h"
-
-#include <bayesian_icp/calibration/twist.h>
+#include "geometry/twist.h"
+#include "study/draw_statistics.h"
 
 namespace bayesian_icp::evaluate {
 

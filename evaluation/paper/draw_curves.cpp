@@ -1,7 +1,7 @@
 #include "paper/draw_curves.h"
 
-#include "draw_statistics.h"
 #include "samplers/score.h"
+#include "study/draw_statistics.h"
 
 #include <algorithm>
 #include <limits>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "paper/paper_baseline.h"
-#include "run_file.h"
+#include "study/run_file.h"
 
 #include <string>
 #include <vector>

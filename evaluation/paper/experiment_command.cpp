@@ -1,9 +1,8 @@
-#include "option_values.h"
+#include "io/cloud_file.h"
+#include "io/folders.h"
 #include "paper/paper_experiment.h"
-#include "report_program.h"
-
-#include <io/cloud_file.h>
-#include <io/folders.h>
+#include "study/option_values.h"
+#include "study/report_program.h"
 
 #include <iostream>
 

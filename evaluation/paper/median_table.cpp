@@ -1,9 +1,8 @@
 #include "paper/median_table.h"
 
-#include "draw_statistics.h"
-#include "formatted_text.h"
-
-#include <io/numbers.h>
+#include "io/numbers.h"
+#include "study/draw_statistics.h"
+#include "study/formatted_text.h"
 
 #include <algorithm>
 #include <cmath>

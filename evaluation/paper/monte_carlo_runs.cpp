@@ -1,11 +1,10 @@
 #include "paper/monte_carlo_runs.h"
 
-#include "csv_fields.h"
-#include "input_hash.h"
-#include "row_file.h"
-
-#include <io/numbers.h>
-#include <io/text_hash.h>
+#include "io/numbers.h"
+#include "io/text_hash.h"
+#include "study/csv_fields.h"
+#include "study/input_hash.h"
+#include "study/row_file.h"
 
 #include <algorithm>
 #include <chrono>

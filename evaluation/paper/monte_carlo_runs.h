@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
+#include "baselines/monte_carlo_icp.h"
 
 #include <cstdint>
 #include <functional>
@@ -44,7 +44,7 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
                    const MonteCarloFile& file,
                    const std::function<void(const std::string&)>& report);
 
-/** \brief Ends of the runs that had enough pairs, one a row [m, rad], canonical: the
+/** \brief Ends of the runs that had enough pairs, one per row [m, rad], canonical: the
  * draws of the baseline. */
 PoseMatrix
 endsOf(const std::vector<MonteCarloIcpRun>& runs);

@@ -1,12 +1,11 @@
 #include "paper/paper_baseline.h"
 
-#include "input_hash.h"
+#include "io/errors.h"
+#include "io/text_hash.h"
 #include "paper/monte_carlo_runs.h"
+#include "study/input_hash.h"
 
 #include <bayesian_icp/summary.h>
-
-#include <io/errors.h>
-#include <io/text_hash.h>
 
 #include <algorithm>
 #include <limits>

@@ -3,10 +3,9 @@
  */
 #pragma once
 
+#include "baselines/monte_carlo_icp.h"
 #include "paper/paper_experiment.h"
 #include "paper/paper_methods.h"
-
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
 
 #include <vector>
 
@@ -14,7 +13,7 @@ namespace bayesian_icp::evaluate {
 
 /** \brief Where standard ICP ends from random starts about a pair's initial guess. */
 struct PaperBaseline {
-  /** Poses of all runs, canonical, one a row [m, rad]. */
+  /** Poses of all runs, canonical, one per row [m, rad]. */
   PoseMatrix ends;
   /** Those in the main basin: whose mean squared distance is at most twice the least.
    * The others are in far local minima. */

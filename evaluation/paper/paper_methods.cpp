@@ -1,9 +1,9 @@
 #include "paper/paper_methods.h"
 
-#include "cpu_time.h"
-#include "draw_statistics.h"
+#include "geometry/twist.h"
+#include "study/cpu_time.h"
+#include "study/draw_statistics.h"
 
-#include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/pipeline.h>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 #include "methods/published_covariances.h"
 #include "samplers/sampler_runs.h"
-#include "scan_pairs.h"
+#include "study/scan_pairs.h"
 
 #include <bayesian_icp/kd_tree.h>
 

@@ -1,10 +1,9 @@
 #include "paper/paper_options.h"
 
-#include "option_values.h"
+#include "io/errors.h"
+#include "study/option_values.h"
 
 #include <boost/program_options.hpp>
-
-#include <io/errors.h>
 
 #include <cmath>
 #include <ostream>

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "scan_pairs.h"
+#include "study/scan_pairs.h"
 
 #include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>

@@ -1,13 +1,12 @@
 #include "paper/picture_data.h"
 
-#include "csv_fields.h"
-#include "draw_statistics.h"
+#include "geometry/twist.h"
+#include "io/coordinates.h"
+#include "io/output_folder.h"
+#include "study/csv_fields.h"
+#include "study/draw_statistics.h"
 
-#include <bayesian_icp/calibration/twist.h>
 #include <bayesian_icp/summary.h>
-
-#include <io/coordinates.h>
-#include <io/output_folder.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +48,7 @@ writeRows(const std::string& name, const Rows& rows, std::ostream& stream)
   }
 }
 
-/** Points evenly spread over the cloud, one a row. */
+/** Points evenly spread over the cloud, one per row. */
 Eigen::MatrixX3d
 someOf(const Eigen::Matrix3Xd& cloud)
 {

@@ -1,10 +1,9 @@
-#include "input_hash.h"
+#include "io/text_hash.h"
 #include "paper/median_table.h"
 #include "paper/paper_methods.h"
 #include "paper/study_record.h"
-#include "run_file.h"
-
-#include <io/text_hash.h>
+#include "study/input_hash.h"
+#include "study/run_file.h"
 
 #include <chrono>
 #include <iostream>

@@ -1,15 +1,16 @@
 #include "paper/study_record.h"
 
+#include "io/errors.h"
+#include "io/json_file.h"
+#include "io/numbers.h"
+#include "io/output_folder.h"
+
 #include <pcl/pcl_config.h>
 
 #include <boost/version.hpp>
 
 #include <Eigen/Core>
 
-#include <io/errors.h>
-#include <io/json_file.h>
-#include <io/numbers.h>
-#include <io/output_folder.h>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>

@@ -20,8 +20,8 @@ struct PairKey {
 /** \brief Note what the last run of an experiment asked for: command, seeds, pairs; and
  * the versions of what took part. What is there of other experiments stays.
  * \param[in] name of its CSV file, without .csv
- * \param[in] num_starts rows are those of the first seed and of so many starts; 0: of
- *            as many seeds as there are repeats
+ * \param[in] num_starts rows are those of the first seed and of this number of starts;
+ *            0: of as many seeds as there are repeats
  * \throws io::FileError */
 void
 recordExperiment(const PaperStudy& study,

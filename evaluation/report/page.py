@@ -169,7 +169,7 @@ def write(output, sections, title="Bayesian ICP: evaluation"):
 
 
 def panels(num_rows, num_columns, width, height, **options):
-    """A figure of so many panels, each of this size [inch], as a 2-D array of axes."""
+    """A figure with rows and columns of panels of this size [inch], as a 2-D array of axes."""
     return pyplot.subplots(
         num_rows, num_columns, figsize=(width * num_columns, height * num_rows), squeeze=False,
         constrained_layout=True, **options,

@@ -1,10 +1,9 @@
 #include "samplers/gold_cache.h"
 
-#include "input_hash.h"
+#include "io/output_folder.h"
+#include "io/text_hash.h"
 #include "samplers/gold_file.h"
-
-#include <io/output_folder.h>
-#include <io/text_hash.h>
+#include "study/input_hash.h"
 
 #include <fstream>
 #include <stdexcept>

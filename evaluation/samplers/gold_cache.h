@@ -3,8 +3,8 @@
  */
 #pragma once
 
-#include "input_hash.h"
-#include "scene.h"
+#include "samplers/sampler_problem.h"
+#include "study/input_hash.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "samplers/gold_run.h"
 
-#include "draw_statistics.h"
+#include "study/draw_statistics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "cpu_time.h"
-#include "draw_statistics.h"
 #include "samplers/gold_run.h"
+#include "study/cpu_time.h"
+#include "study/draw_statistics.h"
 
 #include <bayesian_icp/diagnostics.h>
 
@@ -12,7 +12,7 @@ namespace bayesian_icp::evaluate {
 
 namespace {
 
-/** A chain whose energy is so much above the best one's [nats] is in a mode without
+/** A chain whose energy is further above the best one's [nats] is in a mode without
  * weight, and is moved to where the best one is. In six dimensions energies within one
  * mode differ by a few. */
 constexpr double worse_mode = 20.0;

@@ -14,8 +14,8 @@ namespace bayesian_icp::evaluate {
 
 /** \brief Length and stopping rule of the runs. */
 struct GoldOptions {
-  /** Two runs of so many chains each. They share the frozen proposal, fitted to what
-   * both found, and nothing else. */
+  /** There are two runs, each of this number of chains. They share the frozen proposal,
+   * fitted to what both found, and nothing else. */
   int chains_per_run = 4;
   /** Steps of each chain in each of the annealed and the adaptive stages, and between
    * looks at the convergence. */
@@ -61,7 +61,7 @@ struct GoldTarget {
 /** \brief Sample \p target: annealed random walks from over-dispersed starts, mixtures
  * fitted to what they find and then frozen, then mixture proposals and random walks in
  * turn until the runs agree.
- * \param[in] report gets a line a round */
+ * \param[in] report gets one line per round */
 GoldStandard
 sampleGold(const GoldTarget& target,
            const GoldOptions& options,

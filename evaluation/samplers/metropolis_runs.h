@@ -4,9 +4,10 @@
  */
 #pragma once
 
+#include "sampler/t_mixture.h"
+
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
-#include <bayesian_icp/t_mixture.h>
 
 #include <functional>
 

@@ -1,7 +1,7 @@
 #include "samplers/result_table.h"
 
-#include "draw_statistics.h"
-#include "formatted_text.h"
+#include "study/draw_statistics.h"
+#include "study/formatted_text.h"
 
 #include <algorithm>
 #include <map>

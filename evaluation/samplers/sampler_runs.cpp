@@ -1,7 +1,7 @@
 #include "samplers/sampler_runs.h"
 
-#include "cpu_time.h"
-#include "draw_statistics.h"
+#include "study/cpu_time.h"
+#include "study/draw_statistics.h"
 
 #include <bayesian_icp/pipeline.h>
 

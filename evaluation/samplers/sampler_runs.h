@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "scene.h"
+#include "samplers/sampler_problem.h"
 
 #include <bayesian_icp/chains.h>
 

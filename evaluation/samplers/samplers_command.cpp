@@ -1,11 +1,10 @@
 #include "samplers/samplers_command.h"
 
-#include "report_program.h"
+#include "io/cloud_file.h"
+#include "io/folders.h"
 #include "samplers/result_table.h"
 #include "samplers/study.h"
-
-#include <io/cloud_file.h>
-#include <io/folders.h>
+#include "study/report_program.h"
 
 #include <iostream>
 #include <sstream>

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "scene.h"
+#include "samplers/sampler_problem.h"
 
 #include <string>
 #include <vector>

@@ -1,11 +1,11 @@
 /** \file
  * \brief What is measured of a sampler's run, and where it is kept: a CSV file that
- * grows by a row a run, so that an interrupted study goes on where it stopped.
+ * grows by one row per run, so an interrupted study continues where it stopped.
  */
 #pragma once
 
-#include "run_file.h"
 #include "samplers/sampler_runs.h"
+#include "study/run_file.h"
 
 #include <bayesian_icp/summary.h>
 

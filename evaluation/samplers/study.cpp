@@ -1,8 +1,7 @@
 #include "samplers/study.h"
 
+#include "io/text_hash.h"
 #include "samplers/gold_cache.h"
-
-#include <io/text_hash.h>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "sbc/rank_models.h"
 
-#include <bayesian_icp/calibration/product_coordinates.h>
+#include "calibrated/draws/product_coordinates.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -26,7 +26,7 @@ constexpr double point_distance = 1.5;
 constexpr Index num_score_points = 400;
 constexpr double reference_distance = 1.0;
 constexpr double translation_sd = 0.03, angle_sd = 0.06, free_yaw_sd = 1.0;
-/** Points are so many times as uncertain, together, as each of them looks. */
+/** Factor by which all points together are less certain than each of them suggests. */
 constexpr double correlation = 4.0;
 /** Standard deviation of the points' errors, residual noise = 1. */
 constexpr double error_of_points = 0.5;

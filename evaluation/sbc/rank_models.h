@@ -4,7 +4,8 @@
  */
 #pragma once
 
-#include <bayesian_icp/calibration/calibrated_draws.h>
+#include "calibrated/draws/calibrated_draws.h"
+
 #include <bayesian_icp/random.h>
 
 namespace bayesian_icp::evaluate {

@@ -1,6 +1,6 @@
 #include "sbc/rank_study.h"
 
-#include <bayesian_icp/first_exception.h>
+#include "threads/first_exception.h"
 
 namespace bayesian_icp::evaluate {
 

@@ -4,8 +4,8 @@
  */
 #pragma once
 
-#include "run_file.h"
 #include "sbc/rank_samplers.h"
+#include "study/run_file.h"
 
 #include <stdexcept>
 #include <string>

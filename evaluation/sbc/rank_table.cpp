@@ -1,8 +1,7 @@
 #include "sbc/rank_table.h"
 
-#include "formatted_text.h"
-
-#include <io/coordinates.h>
+#include "io/coordinates.h"
+#include "study/formatted_text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,11 @@
 #include "sbc/sbc_command.h"
 
-#include "report_program.h"
+#include "io/errors.h"
+#include "io/folders.h"
 #include "sbc/rank_study.h"
 #include "sbc/rank_table.h"
 #include "sbc/sbc_options.h"
-
-#include <io/errors.h>
-#include <io/folders.h>
+#include "study/report_program.h"
 
 #include <algorithm>
 #include <iostream>

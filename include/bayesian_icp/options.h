@@ -70,8 +70,8 @@ private:
 struct ChainOptions {
   /** Number of independent chains, positive. */
   int num_chains = 4;
-  /** Draws kept in total over all chains, at least one a chain; earlier chains take the
-   * remainder. */
+  /** Draws kept in total over all chains, at least one per chain; earlier chains take
+   * the remainder. */
   int num_draws = 2000;
   /** Seed of all random numbers; chain i uses stream i of this seed. */
   std::uint64_t seed = 1;

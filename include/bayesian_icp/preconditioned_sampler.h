@@ -23,7 +23,7 @@ namespace bayesian_icp {
  * Draws are bit-identical for every number of threads: what the chains share is put
  * together from their results in the order of the chains.
  *
- * \param[in] energies one a chain
+ * \param[in] energies one per chain
  * \param[in] options how the steps are made, and how many; scale, residual and starts
  *            are the energies'
  * \param[in] chains how many chains and draws

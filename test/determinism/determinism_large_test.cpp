@@ -1,7 +1,7 @@
 // The same numbers to the last bit for any number of threads with clouds so large that
 // trees are built, and the pairs of ICP searched, by several threads, end to end.
-#include "../registration_support.h"
 #include "determinism_runs.h"
+#include "support/registration_support.h"
 
 #include <pcl/registration/bayesian_icp.h>
 #include <pcl/point_types.h>

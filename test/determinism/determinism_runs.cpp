@@ -1,8 +1,9 @@
 #include "determinism_runs.h"
 
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
-#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
+#include "baselines/monte_carlo_icp.h"
+
 #include <bayesian_icp/random.h>
+#include <bayesian_icp/stochastic_gradient_icp.h>
 #include <bayesian_icp/tree_search.h>
 
 #include <algorithm>

@@ -18,9 +18,8 @@ InstructionSet best_instruction_set = InstructionSet::Avx2;
 
 } // namespace
 
-#if defined(BAYESIAN_ICP_CAN_BE_INTERPOSED)
 // Takes the place of the library's own function, which says what the processor can do:
-// what a program defines goes before what a shared library does. So all of the library,
+// what a program defines goes before what an archive does. So all of the library,
 // wherever it builds a tree, searches by the instructions of this test.
 std::vector<InstructionSet>
 supportedInstructionSets()
@@ -34,7 +33,6 @@ supportedInstructionSets()
 #endif
   return supported;
 }
-#endif
 
 namespace test {
 namespace {
@@ -58,7 +56,6 @@ TEST_P(Determinism, NumberOfThreadsChangesNoBit)
   }
 }
 
-#if defined(BAYESIAN_ICP_CAN_BE_INTERPOSED)
 TEST_P(Determinism, InstructionSetChangesNoBit)
 {
   const RunRecord reference = makeRun(GetParam(), {2, false});
@@ -74,7 +71,6 @@ TEST_P(Determinism, InstructionSetChangesNoBit)
         << difference(reference, record) << " units";
   }
 }
-#endif
 
 TEST_P(Determinism, RoundingIsNotAmplified)
 {

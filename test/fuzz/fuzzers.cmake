@@ -8,7 +8,7 @@ set(evaluation ${PROJECT_SOURCE_DIR}/evaluation)
 add_library(
   fuzz_readers STATIC
   ${apps}/batch/manifest.cpp
-  ${evaluation}/scan_manifest.cpp
+  ${evaluation}/study/scan_manifest.cpp
   ${apps}/io/cloud_file.cpp
   ${apps}/io/folders.cpp
   ${apps}/io/input_file.cpp
@@ -26,18 +26,20 @@ add_library(
   ${apps}/register/settings_json.cpp
   fuzz_input.cpp)
 bayesian_icp_configure(fuzz_readers)
+bayesian_icp_use_internals(fuzz_readers)
 target_include_directories(fuzz_readers PUBLIC ${apps} ${evaluation})
 target_compile_definitions(fuzz_readers PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
-target_link_libraries(fuzz_readers PUBLIC bayesian_icp_core nlohmann_json::nlohmann_json
+target_link_libraries(fuzz_readers PUBLIC bayesian_icp_baselines nlohmann_json::nlohmann_json
                                           pcl_io)
 
 # Several files are compiled as one, which takes half the time.
-set_target_properties(bayesian_icp_core PROPERTIES UNITY_BUILD ON)
+set_target_properties(bayesian_icp_core_objects PROPERTIES UNITY_BUILD ON)
 
 add_custom_target(fuzzers)
 foreach(name IN LISTS fuzzers)
   add_executable(fuzz_${name} EXCLUDE_FROM_ALL ${name}_fuzzer.cpp)
   bayesian_icp_configure(fuzz_${name})
+  bayesian_icp_use_internals(fuzz_${name})
   target_link_libraries(fuzz_${name} PRIVATE fuzz_readers)
   target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
   add_dependencies(fuzzers fuzz_${name})
@@ -58,7 +60,7 @@ target_sources(
   fuzz_result_file
   PRIVATE ${apps}/batch/batch_file.cpp
           ${apps}/batch/batch_line.cpp
-          ${evaluation}/row_file.cpp
+          ${evaluation}/study/row_file.cpp
           ${evaluation}/samplers/gold_file.cpp
           ${apps}/register/data_json.cpp
           ${apps}/register/posterior_json.cpp)

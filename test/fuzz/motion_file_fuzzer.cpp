@@ -5,7 +5,7 @@
 #include "fuzz_input.h"
 #include "io/line_file.h"
 #include "io/motion.h"
-#include "scan_manifest.h"
+#include "study/scan_manifest.h"
 
 #include <vector>
 

@@ -6,7 +6,7 @@
 
 #include "registration_input.h"
 
-#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
+#include <bayesian_icp/stochastic_gradient_icp.h>
 #include <bayesian_icp/summary.h>
 
 namespace bayesian_icp::fuzz {

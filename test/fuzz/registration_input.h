@@ -3,10 +3,11 @@
  */
 #pragma once
 
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
-#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
+#include "baselines/monte_carlo_icp.h"
+
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/pose.h>
+#include <bayesian_icp/stochastic_gradient_icp.h>
 
 #include <cstdint>
 #include <string_view>

@@ -39,7 +39,7 @@ struct PictureArea {
 };
 
 /** \brief The camera nearest to \p points that sees them all within \p area.
- * \param[in] points finite ones, at least one, a column a point [m]
+ * \param[in] points finite ones, at least one, one per column [m]
  * \param[in] vertical_angle angle of view from bottom to top [rad]
  * \param[in] aspect width / height of the picture */
 CameraPose

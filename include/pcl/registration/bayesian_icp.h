@@ -62,7 +62,7 @@ public:
   using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
   using PointIndicesPtr = typename Base::PointIndicesPtr;
   using PointIndicesConstPtr = typename Base::PointIndicesConstPtr;
-  /** Draws, one a row: x y z roll pitch yaw [m, rad]. */
+  /** Draws, one per row: x y z roll pitch yaw [m, rad]. */
   using Samples = bayesian_icp::PoseMatrix;
   using Vector6d = bayesian_icp::Vector6d;
   using Matrix6d = bayesian_icp::Matrix6d;

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/baselines/stochastic_gradient_icp.h>
+#include <bayesian_icp/stochastic_gradient_icp.h>
 
 #include <pcl/registration/impl/checked_icp.hpp>
 
@@ -75,7 +75,7 @@ public:
     options_.step_size = step_size;
   }
 
-  /** \brief Source points a step. */
+  /** \brief Source points per step. */
   void
   setMiniBatchSize(int batch_size)
   {

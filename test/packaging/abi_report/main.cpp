@@ -3,13 +3,7 @@
 // is one.
 #include "report.h"
 
-#include <bayesian_icp/baselines/closed_form_covariance.h>
-#include <bayesian_icp/baselines/monte_carlo_icp.h>
-#include <bayesian_icp/calibration/calibrated_draws.h>
 #include <bayesian_icp/exports.h>
-#include <bayesian_icp/metropolis.h>
-#include <bayesian_icp/pose_energy.h>
-#include <bayesian_icp/t_mixture.h>
 #include <bayesian_icp/tree_search.h>
 
 #include <pcl/registration/bayesian_icp.h>
@@ -55,8 +49,6 @@ reportOptionsLayout()
   SIZE(ExactOptions);
   SIZE(CalibratedOptions);
   SIZE(Options);
-  SIZE(IcpOptions);
-  SIZE(MonteCarloIcpOptions);
   SIZE(StochasticGradientIcpOptions);
   SIZE(ExportOptions);
   OFFSET(Options, preset);
@@ -81,11 +73,8 @@ reportResultsLayout()
   SIZE(Summary);
   SIZE(PosteriorEstimate);
   SIZE(Correspondence);
-  SIZE(IcpResult);
-  SIZE(MonteCarloIcpRun);
   SIZE(StochasticGradientIcpResult);
   SIZE(PoseEstimate);
-  SIZE(CalibratedEstimate);
   OFFSET(Summary, status);
   OFFSET(Summary, message);
   OFFSET(Summary, mean);
@@ -109,9 +98,6 @@ reportClassesLayout()
   SIZE(KdTree);
   SIZE(TreeSearch);
   SIZE(CorrespondenceSearch);
-  SIZE(PoseEnergy);
-  SIZE(TMixture);
-  SIZE(SurfaceModel);
   SIZE(Registration);
   SIZE(Precise);
   SIZE(Descent);

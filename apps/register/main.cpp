@@ -1,0 +1,197 @@
+/** \file
+ * \brief pcl_bayesian_icp: registers a cloud to another and tells how sure that is.
+ */
+#include "io/interrupt.h"
+#include "io/numbers.h"
+#include "io/program.h"
+#include "plot/gnuplot.h"
+#include "register/command_line.h"
+#include "register/export_files.h"
+#include "register/output_files.h"
+#include "register/posterior_json.h"
+#include "register/progress_bar.h"
+#include "register/report_text.h"
+#include "register/sgd_run.h"
+#include "report/report_html.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+namespace bayesian_icp::app {
+namespace {
+
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, NoPosterior = 1, Interrupted = io::interrupted_exit_code };
+
+void
+tell(const std::string& message)
+{
+  std::cerr << "pcl_bayesian_icp: " << message << '\n';
+}
+
+/** PCL registers coordinates of 32 bits. */
+void
+warnOfLostDigits(const io::CloudFile& cloud)
+{
+  constexpr double noticeable = 1e-3;
+  const auto largest = static_cast<float>(cloud.largest_coordinate);
+  const double resolution =
+      double(std::nextafter(largest, std::numeric_limits<float>::infinity())) - largest;
+  if (resolution > noticeable)
+    tell(cloud.file + ": note: coordinates of up to " +
+         io::textOf(cloud.largest_coordinate, 4) + " m are kept to " +
+         io::textOf(resolution, 2) +
+         " m only; move the clouds towards the origin for more");
+}
+
+Run
+runRegistration(const Request& request)
+{
+  io::silencePcl();
+  Run run = readRun(request.source_file, request.target_file, request.settings);
+  if (!request.is_quiet) {
+    warnOfLostDigits(run.source);
+    warnOfLostDigits(run.target);
+  }
+  ProgressBar bar(!request.is_quiet);
+  io::catchInterrupt();
+  registerClouds(
+      [&bar](const Progress& progress) {
+        bar.update(progress);
+        return !io::wasInterrupted();
+      },
+      run);
+  return run;
+}
+
+/** Whether the pose is to be printed for other software. */
+bool
+printsExport(const Request& request)
+{
+  return !request.exports.formats.empty() && request.output_folder.empty();
+}
+
+/** \return whether it can be exported */
+bool
+printExport(const Request& request, const Run& run)
+{
+  const ExportFormat format = request.exports.formats.front();
+  try {
+    io::print(
+        exportText(format, PoseEstimate(run.result.summary), request.exports.options));
+    return true;
+  }
+  catch (const std::invalid_argument& error) {
+    tell(std::string("--export ") + toString(format) + ": " + error.what());
+    return false;
+  }
+}
+
+/** Adds the report, if it is wanted. What keeps it from being drawn keeps nothing else
+ * from being written.
+ * \return why there is none; empty if there is one, or none is wanted */
+std::string
+addReport(const Request& request, const Run& run, io::OutputFolder& folder)
+{
+  constexpr const char* name = "report.html";
+  std::string complaint;
+  if (request.wants_report)
+    try {
+      plot::requireGnuplot(name);
+      const std::string page = reportHtml(run, request.command);
+      folder.add(name, [&page](std::ostream& stream) { stream << page; });
+      return "";
+    }
+    catch (const plot::GnuplotError& error) {
+      complaint = std::string(name) + " is not written: " + error.what();
+    }
+  folder.leaveOut(name);
+  return complaint;
+}
+
+/** \return whether all that was asked for could be exported */
+bool
+writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
+{
+  const auto refusals =
+      addExports(request.exports, PoseEstimate(run.result.summary), folder);
+  const std::string complaint = addReport(request, run, folder);
+  writeOutputFiles(run, folder);
+  if (!complaint.empty())
+    tell(complaint);
+  for (const std::string& refusal : refusals)
+    tell(refusal);
+  return refusals.empty();
+}
+
+/** \return whether all that was asked for could be exported */
+bool
+report(const Request& request, const Run& run)
+{
+  bool is_exported = true;
+  if (printsExport(request))
+    is_exported = printExport(request, run);
+  else if (request.is_json)
+    io::print(posteriorJson(run));
+  else if (!request.is_quiet)
+    io::print(reportText(run));
+  // The table has the status already.
+  const bool has_table =
+      !printsExport(request) && !request.is_json && !request.is_quiet;
+  if (run.result.summary.status != Status::Ok && !has_table)
+    tell(statusText(run.result.summary));
+  return is_exported;
+}
+
+int
+registerAsAsked(const Request& request)
+{
+  if (!request.note.empty() && !request.is_quiet)
+    tell("note: " + request.note);
+  std::optional<io::OutputFolder> folder;
+  if (!request.output_folder.empty())
+    folder.emplace(request.output_folder);
+  const Run run = runRegistration(request);
+  const bool has_draws = run.result.summary.num_draws > 0;
+  bool is_exported = true;
+  if (folder && has_draws)
+    is_exported = writeFiles(request, run, *folder);
+  else if (folder)
+    tell("there are no draws, so no files are written");
+  is_exported &= report(request, run);
+  if (io::wasInterrupted())
+    return Interrupted;
+  const bool is_good = run.result.summary.status == Status::Ok && is_exported;
+  return is_good ? Good : NoPosterior;
+}
+
+int
+runTool(int argc, char** argv)
+{
+  if (isSgdIcpAskedFor(argc, argv))
+    return runSgdIcp(argc, argv);
+  const Request request = parseCommandLine(argc, argv);
+  switch (request.kind) {
+  case Request::Kind::ShowHelp:
+    io::print(helpText());
+    return Good;
+  case Request::Kind::ShowVersion:
+    io::print("pcl_bayesian_icp " BAYESIAN_ICP_VERSION "\n");
+    return Good;
+  case Request::Kind::Register:
+    break;
+  }
+  return registerAsAsked(request);
+}
+
+} // namespace
+} // namespace bayesian_icp::app
+
+int
+main(int argc, char** argv)
+{
+  using namespace bayesian_icp;
+  return io::runProgram("pcl_bayesian_icp", [&] { return app::runTool(argc, argv); });
+}

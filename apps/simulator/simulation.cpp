@@ -1,0 +1,129 @@
+#include "simulator/simulation.h"
+
+#include <stdexcept>
+
+namespace bayesian_icp {
+namespace simulator {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::uint32_t target_scan_number = 0;
+constexpr std::uint32_t source_scan_number = 1;
+
+/** \brief Twist of the sensor during one turn, in its own frame [m, rad]. */
+Vector6d
+sweepMotion(const SimulationOptions& options)
+{
+  const SensorKind kind = options.sensor.kind;
+  const Isometry3d T_target_source = sensorPose(kind, options.target_view).inverse() *
+                                     sensorPose(kind, options.source_view);
+  return options.sweep_motion * logSE3(T_target_source.matrix());
+}
+
+Scan
+scanView(const Scene& scene,
+         const SimulationOptions& options,
+         const View& view,
+         std::uint32_t scan_number,
+         const std::string& name)
+{
+  const Isometry3d T_world_sensor = sensorPose(options.sensor.kind, view);
+  Scan scan = scanScene(scene,
+                        options.sensor,
+                        T_world_sensor,
+                        options.seed,
+                        scan_number,
+                        sweepMotion(options));
+  if (scan.points.cols() == 0)
+    throw std::invalid_argument("the " + name + " view sees nothing of scene '" +
+                                options.scene + "'");
+  return scan;
+}
+
+/** \brief The frame of a cloud before the offset is applied. */
+Isometry3d
+cloudPose(const SimulationOptions& options, const View& view)
+{
+  return options.frame == CloudFrame::Sensor ? sensorPose(options.sensor.kind, view)
+                                             : Isometry3d::Identity();
+}
+
+void
+validateView(const Scene& scene, const View& view, const std::string& name)
+{
+  if (!view.eye.allFinite() || !view.look_at.allFinite())
+    throw std::invalid_argument(name + "-eye and " + name + "-look-at must be finite");
+  if ((view.look_at - view.eye).norm() < 1e-6)
+    throw std::invalid_argument(name + "-look-at must differ from " + name + "-eye");
+  if (scene.distance(view.eye) <= 0.0)
+    throw std::invalid_argument(name + "-eye is inside a solid of the scene");
+}
+
+} // namespace
+
+void
+validate(const SimulationOptions& options)
+{
+  const Scene scene = makeScene(options.scene);
+  validate(options.sensor);
+  validateView(scene, options.target_view, "target");
+  validateView(scene, options.source_view, "source");
+  if (!options.offset.allFinite())
+    throw std::invalid_argument("offset must be six finite numbers");
+  if (!(options.sweep_motion >= 0.0 && options.sweep_motion <= 1.0))
+    throw std::invalid_argument("sweep-motion must be within 0 and 1");
+  if (options.sweep_motion > 0.0 && options.sensor.kind != SensorKind::Lidar)
+    throw std::invalid_argument("sweep-motion is for a lidar, not a depth-camera");
+}
+
+Isometry3d
+sensorPose(SensorKind kind, const View& view)
+{
+  const Vector3d forward = (view.look_at - view.eye).normalized();
+  const bool is_vertical = forward.cross(Vector3d::UnitZ()).norm() < 1e-6;
+  const Vector3d up_hint = is_vertical ? Vector3d::UnitY() : Vector3d::UnitZ();
+  const Vector3d right = forward.cross(up_hint).normalized();
+  const Vector3d up = right.cross(forward);
+  Isometry3d T_world_sensor = Isometry3d::Identity();
+  if (kind == SensorKind::DepthCamera)
+    T_world_sensor.linear() << right, -up, forward;
+  else
+    T_world_sensor.linear() << forward, -right, up;
+  T_world_sensor.translation() = view.eye;
+  return T_world_sensor;
+}
+
+ScanPair
+simulate(const SimulationOptions& options)
+{
+  validate(options);
+  const Scene scene = makeScene(options.scene);
+  const View& target_view = options.target_view;
+  const View& source_view = options.source_view;
+  const Scan target =
+      scanView(scene, options, target_view, target_scan_number, "target");
+  const Scan source =
+      scanView(scene, options, source_view, source_scan_number, "source");
+
+  const SensorKind kind = options.sensor.kind;
+  const Isometry3d T_offset(matrixOf(options.offset));
+  const Isometry3d T_target_world = cloudPose(options, target_view).inverse();
+  const Isometry3d T_source_world =
+      (cloudPose(options, source_view) * T_offset).inverse();
+  const Isometry3d T_target_sensor = T_target_world * sensorPose(kind, target_view);
+  const Isometry3d T_source_sensor = T_source_world * sensorPose(kind, source_view);
+
+  ScanPair pair;
+  pair.target = (T_target_sensor * target.points).cast<float>();
+  pair.source = (T_source_sensor * source.points).cast<float>();
+  pair.T_target_source = (T_target_world * T_source_world.inverse()).matrix();
+  pair.T_source_world = T_source_world.matrix();
+  pair.T_target_world = T_target_world.matrix();
+  return pair;
+}
+
+} // namespace simulator
+} // namespace bayesian_icp

@@ -1,0 +1,104 @@
+#include "samplers/sampler_problem.h"
+
+#include "io/cloud_file.h"
+
+#include <limits>
+#include <memory>
+#include <numeric>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+constexpr double half_turn = 3.14159265358979323846;
+
+/** \p size columns, evenly spread. */
+Eigen::Matrix3Xd
+thinned(const Eigen::Matrix3Xf& points, std::size_t size)
+{
+  const Eigen::Index num_kept =
+      std::min(points.cols(), static_cast<Eigen::Index>(size));
+  Eigen::Matrix3Xd kept(3, num_kept);
+  for (Eigen::Index i = 0; i < num_kept; ++i)
+    kept.col(i) = points.col(i * points.cols() / num_kept).cast<double>();
+  return kept;
+}
+
+} // namespace
+
+Scene
+readScene(const std::string& folder, const std::string& name, std::size_t max_points)
+{
+  const std::string path = folder + "/" + name + "/";
+  return {name,
+          thinned(io::finitePoints(io::readCloud(path + "source.pcd")), max_points),
+          KdTree(io::finitePoints(io::readCloud(path + "target.pcd")))};
+}
+
+Problem::Problem(const Scene& scene, const Cell& cell)
+: scene_(scene)
+, cell_(cell)
+, target_(scene.target, ResidualOptions().max_distance)
+, energy_(scene.source,
+          target_,
+          Prior(Vector6d::Zero(), PriorOptions().variance),
+          options(Preset::Exact).exact.scale.weight(),
+          ResidualOptions())
+{}
+
+Vector6d
+Problem::startSpread() const
+{
+  if (!cell_.isTight())
+    return PriorOptions().variance.cwiseSqrt();
+  Vector6d spread;
+  spread << 0.05, 0.05, 0.05, 0.1, 0.1, 0.1;
+  return spread;
+}
+
+Options
+Problem::options(Preset preset) const
+{
+  Options options;
+  options.preset = preset;
+  options.paper.scale = options.exact.scale = {cell_.effective_points, cell_.sigma};
+  options.paper.initial_spread = startSpread();
+  options.exact.initial_spread = startSpread();
+  return options;
+}
+
+GoldTarget
+Problem::goldTarget() const
+{
+  GoldTarget target;
+  target.make_energy = [this]() -> EnergyFunction {
+    const auto workspace = std::make_shared<EnergyWorkspace>(energy_.makeWorkspace());
+    return [this, workspace](const Vector6d& phi) {
+      if ((phi.tail<3>().array().abs() > half_turn).any())
+        return std::numeric_limits<double>::infinity();
+      return energy_.energy(energy_.toTheta(phi), *workspace);
+    };
+  };
+  const Vector6d spread = startSpread();
+  target.draw_start = [spread](Random& random) -> Vector6d {
+    return spread.cwiseProduct(random.normal6());
+  };
+  target.start_spread = spread;
+  return target;
+}
+
+GradientFunction
+Problem::makeGradient() const
+{
+  const auto workspace = std::make_shared<EnergyWorkspace>(energy_.makeWorkspace());
+  std::vector<std::size_t> all(energy_.numPoints());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  return [this, workspace, all](const Vector6d& phi, Vector6d& gradient) {
+    const BatchTerms terms = energy_.batchTerms(
+        phi, all, BatchTerms::Nothing, energy_.residual(), *workspace);
+    gradient = energy_.weight() * terms.gradient + energy_.priorGradient(phi);
+    return energy_.weight() * terms.energy + energy_.priorEnergy(phi);
+  };
+}
+
+} // namespace bayesian_icp::evaluate

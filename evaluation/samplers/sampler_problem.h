@@ -1,0 +1,96 @@
+/** \file
+ * \brief A pair of scans and the posteriors ("cells") that are sampled on it.
+ */
+#pragma once
+
+#include "exact/pose_energy.h"
+#include "samplers/gold_standard.h"
+
+#include <bayesian_icp/kd_tree.h>
+#include <bayesian_icp/options.h>
+
+#include <string>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Scale of the likelihood. */
+struct Cell {
+  /** sigma [m] and N of LikelihoodScale. */
+  double sigma;
+  double effective_points;
+
+  /** \brief Whether the posterior is much narrower than the prior. */
+  bool
+  isTight() const
+  {
+    return sigma < 0.1;
+  }
+};
+
+/** \brief Two scans, the source thinned. */
+struct Scene {
+  std::string name;
+  /** 3 x n, finite, source frame [m]. */
+  Eigen::Matrix3Xd source;
+  KdTree target;
+};
+
+/** \brief Read FOLDER/NAME/source.pcd and target.pcd.
+ * \param[in] max_points the source is thinned evenly to this number
+ * \throws io::FileError */
+Scene
+readScene(const std::string& folder, const std::string& name, std::size_t max_points);
+
+/** \brief The posterior of a scene at a cell: preset `exact` with the default prior
+ * about the identity. */
+class Problem {
+public:
+  /** \p scene must outlive this object. */
+  Problem(const Scene& scene, const Cell& cell);
+  Problem(const Problem&) = delete;
+  Problem&
+  operator=(const Problem&) = delete;
+
+  /** \brief Options with the likelihood, and starts as wide as the prior, or +-5 cm and
+   * +-0.1 rad for tight cells; 4 chains, 2000 draws. */
+  Options
+  options(Preset preset) const;
+
+  /** \brief Density of the centred pose phi of PoseEnergy, angles within half a turn:
+   * beyond, everything comes again. */
+  GoldTarget
+  goldTarget() const;
+
+  /** \brief Its energy and gradient, for one chain. */
+  GradientFunction
+  makeGradient() const;
+
+  const PoseEnergy&
+  energy() const
+  {
+    return energy_;
+  }
+
+  const Scene&
+  scene() const
+  {
+    return scene_;
+  }
+
+  const Cell&
+  cell() const
+  {
+    return cell_;
+  }
+
+private:
+  Vector6d
+  startSpread() const;
+
+  const Scene& scene_;
+  Cell cell_;
+  TreeTarget target_;
+  PoseEnergy energy_;
+};
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,67 @@
+/** \file
+ * \brief One registration of the coverage study: what a method is given, and what is
+ * true.
+ */
+#pragma once
+
+#include "study/coverage_region.h"
+
+#include <bayesian_icp/pose.h>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Two scans whose relative pose was drawn from the prior. The prior is about
+ * the source's centroid (PriorFrame::SourceCentroid) with mean \p prior_mean. */
+struct CoverageCase {
+  std::string scene;
+  std::string condition;
+  std::uint64_t seed = 0;
+  /** 3 x n, finite [m]. */
+  Eigen::Matrix3Xd source;
+  Eigen::Matrix3Xd target;
+  /** T_target_source. */
+  Eigen::Isometry3d truth = Eigen::Isometry3d::Identity();
+  /** Pose and standard deviations (x, y, z, roll, pitch, yaw) [m, rad]. */
+  Vector6d prior_mean = Vector6d::Zero();
+  Vector6d prior_sd = Vector6d::Zero();
+  /** Accuracy of the truth itself [m, rad], root mean square over three axes; zero in
+   * simulation. Of the source's centroid and the rotation, of recordings of its origin
+   * and the rotation. */
+  double truth_sd_translation = 0.0;
+  double truth_sd_rotation = 0.0;
+  /** Of recordings: mean displacement of the source's points beyond which a pose is
+   * lost [m]. NaN: no pose is. */
+  double lost_displacement = std::numeric_limits<double>::quiet_NaN();
+};
+
+/** \brief What a method makes of a case. */
+struct MethodResult {
+  /** False if the method gave nothing; \p notes says why. */
+  bool is_valid = false;
+  /** T_target_source. */
+  Eigen::Isometry3d mean = Eigen::Isometry3d::Identity();
+  /** There is a pose, \p mean, but no posterior. */
+  bool is_pose_only = false;
+  /** Of left twists (v, w) about \p centre, target frame [m, rad]. */
+  Matrix6d covariance = Matrix6d::Zero();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  /** What the posterior is about its mean, if not a Gaussian. */
+  RegionShape shape;
+  /** Draws, one pose a row, of methods that have any; they then take the place of the
+   * Gaussian in every score. */
+  PoseMatrix draws;
+  /** Raised flags, each as "flag:NAME", and other remarks, separated by ';', no
+   * commas. */
+  std::string notes;
+  double seconds = 0.0;
+  /** Nearest-neighbour queries, -1 if not counted. */
+  long num_queries = -1;
+};
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,179 @@
+#include "study/scan_sequences.h"
+
+#include "io/errors.h"
+#include "io/input_file.h"
+#include "io/json_file.h"
+#include "io/motion.h"
+#include "io/numbers.h"
+#include "study/formatted_text.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace bayesian_icp::evaluate {
+
+namespace fs = std::filesystem;
+
+using Eigen::Isometry3d;
+using nlohmann::json;
+
+namespace {
+
+constexpr char set_name[] = "set.json";
+constexpr std::uint64_t max_set_size = 1 << 20;
+
+/** Hand the lines of a file to \p read; what it throws is told with the line's number.
+ * \throws io::FileError */
+void
+forEachLine(const std::string& file,
+            const std::function<void(const std::string& line)>& read)
+{
+  io::InputFile input = io::openInput(file);
+  std::string line;
+  int number = 1;
+  const auto refuse = [&](const std::string& reason) {
+    throw io::FileError(file, "line " + std::to_string(number) + ": " + reason);
+  };
+  for (; input.readLine(line); ++number)
+    try {
+      read(line);
+    }
+    catch (const std::exception& error) {
+      refuse(error.what());
+    }
+  if (input.numBytesLeft() > 0)
+    refuse("is too long");
+}
+
+/** The motion of the 12 numbers of a 3 x 4 matrix.
+ * \throws std::runtime_error if they are not those of one */
+Isometry3d
+motionOf(const std::vector<double>& numbers)
+{
+  if (numbers.size() != 12)
+    throw std::runtime_error("has " + std::to_string(numbers.size()) +
+                             " numbers in place of the 12 of a 3x4 matrix");
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topRows<3>() =
+      Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(numbers.data());
+  const std::string complaint = io::complaintAboutMotion(matrix);
+  if (!complaint.empty())
+    throw std::runtime_error(complaint);
+  return Isometry3d(matrix);
+}
+
+Isometry3d
+motionOf(const std::string& line)
+{
+  std::vector<double> numbers;
+  for (const std::string_view word : io::words(line))
+    if (!io::readNumber(word, numbers.emplace_back()))
+      throw std::runtime_error(io::quoted(word) + " is not a number");
+  return motionOf(numbers);
+}
+
+/** \throws nlohmann::json::exception, std::runtime_error */
+Isometry3d
+motionAt(const json& object, const char* key)
+{
+  std::vector<double> numbers;
+  for (const json& row : object.at(key))
+    for (const json& number : row)
+      numbers.push_back(number.get<double>());
+  try {
+    return motionOf(numbers);
+  }
+  catch (const std::runtime_error& error) {
+    throw std::runtime_error(std::string(key) + ": " + error.what());
+  }
+}
+
+/** \throws nlohmann::json::exception, std::runtime_error if it is not at least 0 */
+double
+lengthAt(const json& object, const char* key)
+{
+  const auto length = object.at(key).get<double>();
+  if (!(length >= 0.0) || std::isinf(length))
+    throw std::runtime_error(std::string(key) + " must be finite and not negative");
+  return length;
+}
+
+ScanSequence
+readSequence(const fs::path& folder)
+{
+  ScanSequence sequence;
+  sequence.folder = folder.string();
+  sequence.name = folder.filename().string();
+  const std::string set_file = (folder / set_name).string();
+  const json set = io::readJson(set_file, max_set_size);
+  try {
+    sequence.quality = set.at("quality");
+    if (sequence.quality != "A" && sequence.quality != "B" && sequence.quality != "C")
+      throw std::runtime_error("quality is " + io::quoted(sequence.quality) +
+                               ", but must be A, B or C");
+    sequence.truth_sd = {lengthAt(set, "accuracy_translation_m"),
+                         lengthAt(set, "accuracy_rotation_rad")};
+    sequence.lost_displacement = lengthAt(set, "lost_displacement_m");
+  }
+  catch (const std::exception& error) {
+    throw io::FileError(set_file, error.what());
+  }
+  forEachLine((folder / "poses.txt").string(), [&sequence](const std::string& line) {
+    sequence.poses.push_back(motionOf(line));
+  });
+  return sequence;
+}
+
+} // namespace
+
+std::string
+ScanSequence::scanFile(std::size_t scan) const
+{
+  return folder + format("/scan_%04zu.pcd", scan);
+}
+
+Isometry3d
+ScanSequence::relativePose(std::size_t target, std::size_t source) const
+{
+  return poses[target].inverse() * poses[source];
+}
+
+std::vector<ScanSequence>
+readSequences(const std::string& folder)
+{
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (fs::exists(entry.path() / set_name))
+      folders.push_back(entry.path());
+  if (error)
+    throw io::FileError(folder, error.message());
+  if (folders.empty())
+    throw io::FileError(folder,
+                        std::string("has neither a ") + manifest_name +
+                            " nor a folder with a " + set_name);
+  std::sort(folders.begin(), folders.end());
+  std::vector<ScanSequence> sequences;
+  for (const fs::path& path : folders)
+    sequences.push_back(readSequence(path));
+  return sequences;
+}
+
+void
+readPairPoses(
+    const std::string& file,
+    const std::function<
+        void(const std::string& set, std::uint64_t pair, const PairPoses& poses)>& take)
+{
+  forEachLine(file, [&take](const std::string& line) {
+    const json row = json::parse(line);
+    take(row.at("set").get<std::string>(),
+         row.at("pair").get<std::uint64_t>(),
+         {motionAt(row, "guess"), motionAt(row, "truth")});
+  });
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,63 @@
+/** \file
+ * \brief Recordings: folders of consecutive scans of one sensor with their poses.
+ */
+#pragma once
+
+#include "study/scan_manifest.h"
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief A recording. Scans are in the sensor's frame [m]. */
+struct ScanSequence {
+  std::string folder;
+  /** That of the folder. */
+  std::string name;
+  /** Of the poses: A (known exactly), B (independent), C (found from the scans). */
+  std::string quality;
+  /** Accuracy of the pose of a scan relative to its neighbour. */
+  AxisDeviation truth_sd;
+  /** Mean displacement of a scan's points beyond which its pose is lost [m]. */
+  double lost_displacement = 0.0;
+  /** T_world_sensor of each scan. */
+  std::vector<Eigen::Isometry3d> poses;
+
+  /** \brief The name of a scan's file, which is read when it is needed. */
+  std::string
+  scanFile(std::size_t scan) const;
+
+  /** \brief Where the scan \p source is in the frame of \p target. */
+  Eigen::Isometry3d
+  relativePose(std::size_t target, std::size_t source) const;
+};
+
+/** \brief Every folder in \p folder that has a set.json, by name, with its poses.txt.
+ * \throws io::FileError if there is none, or what is wrong with a file */
+std::vector<ScanSequence>
+readSequences(const std::string& folder);
+
+/** \brief A guess and the truth of a pair of scans, T_target_source. */
+struct PairPoses {
+  Eigen::Isometry3d guess;
+  Eigen::Isometry3d truth;
+};
+
+/** \brief Read a file with one JSON object per line: "set", the name of a sequence,
+ * "pair", the number of the target's scan, "guess" and "truth", 3 x 4 matrices. Other
+ * keys are ignored.
+ * \param[in] file to read
+ * \param[in] take gets each line's; a std::exception of it is an error of the line
+ * \throws io::FileError with the number of the line that is wrong */
+void
+readPairPoses(
+    const std::string& file,
+    const std::function<void(
+        const std::string& set, std::uint64_t pair, const PairPoses& poses)>& take);
+
+} // namespace bayesian_icp::evaluate

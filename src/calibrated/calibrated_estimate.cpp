@@ -1,0 +1,261 @@
+#include "calibrated/calibrated_estimate.h"
+
+#include "calibrated/curvature/curvature.h"
+#include "calibrated/modes/robust_mode.h"
+#include "calibrated/score/score_clusters.h"
+#include "calibrated/surface/even_choice.h"
+#include "geometry/principal_axes.h"
+
+#include <bayesian_icp/random.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+
+namespace {
+
+/** Stream of the random order of source points; those of chains count from 0. */
+constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
+
+/** Starts and the mode have converged at this part of the target's noise. */
+constexpr double start_tolerance = 0.03;
+constexpr double mode_tolerance = 0.01;
+constexpr int max_mode_steps = 8;
+
+/** Distance of a point-to-point result from the mode, about, in units of the distance
+ * of the prior's mean. */
+constexpr double icp_to_prior_scale = 0.25;
+
+/** Weight of points against the prior in the Gaussian with which the first secants are
+ * planned: neighbouring points repeat each other. */
+constexpr double points_to_prior = 0.2;
+
+/** SecantPlan::min_displacement in the target's noise. */
+constexpr double min_step_to_noise = 0.5;
+
+/** Directions with less information, in units of the prior's, are held by the prior
+ * only. */
+constexpr double min_relative_information = 0.02;
+
+/** Along a free motion the score is as unknown as the axis is. Its variance grows with
+ * the square of the motion, up to this number of squared steps: then new patches are
+ * met. */
+constexpr double max_unheld_steps = 1.0;
+
+/** The information is uncertain: J comes from 12 to 96 clusters, H from noisy
+ * secants. Chosen on simulated scans, docs/lab/calibration.md. */
+constexpr int information_degrees_of_freedom = 20;
+
+/** Two ends of starts, and which is the mode. */
+struct Ends {
+  RobustFit best;
+  RobustFit other;
+  long num_queries = 0;
+};
+
+/** Scale at which a start sees all of the target that the prior allows. It is at most
+ * the source's root mean square radius, because a small body would only see a blur. */
+double
+startScale(const Prior& prior, const SurfaceScorer& scorer)
+{
+  const double radius = radiusOf(displacementMetric(scorer, Isometry3d::Identity()));
+  return std::min(radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
+         scorer.model().medianSigma();
+}
+
+Ends
+followStarts(const SurfaceScorer& scorer,
+             const Prior& prior,
+             const EstimateOptions& options,
+             const Isometry3d* start)
+{
+  const Index num_points =
+      std::min<Index>(options.num_mode_points, scorer.sourcePoints().cols());
+  const SurfaceScorer subset(scorer.sourcePoints().leftCols(num_points),
+                             scorer.model());
+  RobustFitOptions fit;
+  fit.tolerance = start_tolerance * scorer.model().medianSigma();
+  Ends ends;
+  if (start) {
+    ends.best = ends.other = fitRobustly(subset, prior, *start, fit);
+    ends.num_queries = num_points * ends.best.num_evaluations;
+    return ends;
+  }
+  const Isometry3d prior_mean = isometryOf(prior.mean());
+  fit.start_scale = startScale(prior, subset);
+  ends.best = fitRobustly(subset, prior, prior_mean, fit);
+  const RobustFit icp = fitPointToPoint(subset, prior, prior_mean);
+  fit.start_scale *= icp_to_prior_scale;
+  ends.other = fitRobustly(subset, prior, icp.pose, fit);
+  ends.num_queries = num_points * (ends.best.num_evaluations + icp.num_evaluations +
+                                   ends.other.num_evaluations);
+  if (ends.other.cost < ends.best.cost)
+    std::swap(ends.best, ends.other);
+  return ends;
+}
+
+/** Covariance whose principal axes, in the displacement metric, are the first
+ * directions: that of independent points, plus the target's noise. (If the noise were
+ * the smallest width instead, all widths would be the same on most scenes, and rounding
+ * would decide the directions.) */
+Matrix6d
+firstCovariance(const CalibratedEstimate& estimate, double noise)
+{
+  const double weight =
+      points_to_prior / (estimate.residual_scale * estimate.residual_scale);
+  const Matrix6d covariance =
+      (weight * estimate.scores.information + estimate.prior.precision).inverse();
+  const PrincipalAxes principal(covariance, estimate.displacement_metric);
+  const Vector6d variances = principal.variances.array() + noise * noise;
+  return principal.axes * variances.asDiagonal() * principal.axes.transpose();
+}
+
+/** J plus the noise of secants, as far as the data do not hold their directions: where
+ * the pose is unknown, the score is unknown, too. */
+Matrix6d
+withUnheldNoise(const Matrix6d& score_covariance,
+                const Secants& secants,
+                const DebitedInformation& debited,
+                const Matrix6d& covariance)
+{
+  const Matrix6d to_steps = debited.steps.inverse();
+  const Matrix6d in_steps = to_steps * covariance * to_steps.transpose();
+  Matrix6d J = score_covariance;
+  for (int k = 0; k < 6; ++k)
+    J += (1.0 - debited.keep[k]) * std::min(max_unheld_steps, in_steps(k, k)) *
+         secants.noise[static_cast<std::size_t>(k)];
+  return J;
+}
+
+void
+finish(const Secants& secants, const DebitedInformation& debited, CalibratedEstimate& e)
+{
+  const Eigen::LDLT<Matrix6d> J(e.score_covariance);
+  e.curvature = secants.curvature;
+  e.transfer = debited.transfer;
+  e.information = debited.information;
+  e.keep = debited.keep;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d step = debited.steps.col(k);
+    e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
+  }
+  e.covariance = (e.information + e.prior.precision).inverse();
+  e.covariance = (0.5 * (e.covariance + e.covariance.transpose())).eval();
+  e.degrees_of_freedom = information_degrees_of_freedom;
+  e.mean =
+      -e.covariance * (e.transfer.transpose() * e.curvature * J.solve(e.scores.total) +
+                       e.prior.gradient);
+}
+
+/** The mode with all that is evaluated at it. */
+CalibratedEstimate
+atMode(const SurfaceScorer& scorer,
+       const Prior& prior,
+       const Ends& ends,
+       const RobustFit& mode)
+{
+  CalibratedEstimate e;
+  e.mode = mode.pose;
+  e.centre = e.mode * scorer.centroid();
+  e.residual_scale = mode.residual_scale;
+  e.cost = mode.cost;
+  e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
+  e.other_cost_ratio = ends.other.cost / ends.best.cost;
+  PatchHints hints;
+  scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
+  e.prior = twistPrior(prior, e.mode, e.centre);
+  e.displacement_metric = displacementMetric(scorer, e.mode);
+  return e;
+}
+
+/** Set covariance and score_covariance by what the secants leave of the information. */
+DebitedInformation
+debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
+{
+  DebitedInformation debited;
+  e.score_covariance = J;
+  for (int pass = 0; pass < 2; ++pass) {
+    debited = debitedInformation(
+        secants, e.score_covariance, e.prior.precision, min_relative_information);
+    e.covariance = (debited.information + e.prior.precision).inverse();
+    if (pass == 0)
+      e.score_covariance = withUnheldNoise(J, secants, debited, e.covariance);
+  }
+  return debited;
+}
+
+/** Rounds of secants, each along the axes that the round before has found.
+ * \return evaluations of all points */
+int
+measureCurvature(const SurfaceScorer& scorer,
+                 const Matrix6d& J,
+                 const EstimateOptions& options,
+                 CalibratedEstimate& e)
+{
+  const double noise = scorer.model().medianSigma(), tau = e.residual_scale;
+  e.covariance = firstCovariance(e, noise);
+  int num_evaluations = 0;
+  Secants secants;
+  DebitedInformation debited;
+  for (int round = 0; round < options.num_rounds; ++round) {
+    const SecantPlan plan = {e.covariance,
+                             e.displacement_metric,
+                             e.prior.precision,
+                             min_step_to_noise * noise};
+    secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
+    num_evaluations += secants.num_evaluations;
+    debited = debit(secants, J, e);
+  }
+  finish(secants, debited, e);
+  return num_evaluations;
+}
+
+} // namespace
+
+Eigen::Matrix3Xd
+evenSource(const Eigen::Matrix3Xd& points, Index max_points, std::uint64_t seed)
+{
+  const Eigen::Vector3d centroid = points.rowwise().mean();
+  std::vector<Index> columns =
+      evenChoice((points.colwise() - centroid).cast<float>(), max_points);
+  Random random(seed, order_stream);
+  shuffle(columns, random);
+  return points(Eigen::all, columns);
+}
+
+CalibratedEstimate
+estimateCalibrated(const SurfaceScorer& scorer,
+                   const Prior& prior,
+                   const EstimateOptions& options,
+                   const Isometry3d* start)
+{
+  const Index num_points = scorer.sourcePoints().cols();
+  const double noise = scorer.model().medianSigma();
+  const Ends ends = followStarts(scorer, prior, options, start);
+  RobustFitOptions fit;
+  fit.max_steps = max_mode_steps;
+  fit.tolerance = mode_tolerance * noise;
+  const RobustFit mode = fitRobustly(scorer, prior, ends.best.pose, fit);
+  CalibratedEstimate e = atMode(scorer, prior, ends, mode);
+
+  const double tau = e.residual_scale;
+  const ScoreCovariance J = scoreCovariance(
+      activeScores(e.scores, scorer.sourcePoints()), tau * tau * e.prior.precision);
+  e.kappa_48 = J.kappa_48;
+  e.kappa_inf = J.kappa_inf;
+  const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
+  e.num_queries =
+      ends.num_queries + num_points * (mode.num_evaluations + 1 + num_evaluations);
+  return e;
+}
+
+} // namespace bayesian_icp

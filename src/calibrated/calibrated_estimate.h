@@ -1,0 +1,94 @@
+/** \file
+ * \brief The calibrated Gaussian: mode, score covariance, curvature, and what follows.
+ */
+#pragma once
+
+#include "calibrated/score/surface_score.h"
+#include "geometry/twist.h"
+
+#include <cstdint>
+
+namespace bayesian_icp {
+
+/** \brief What the data say about the pose at one mode. Twists are about centre, in the
+ * target frame [m, rad]. Formulas: docs/calibration.md. */
+struct CalibratedEstimate {
+  /** Mode of the robust surface likelihood times the prior. */
+  Eigen::Isometry3d mode = Eigen::Isometry3d::Identity();
+  /** The moved source's centroid at the mode, target frame [m]. */
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  /** tau: robust scale of the residuals at the mode, in units of the target's noise. */
+  double residual_scale = 1.0;
+  /** Scores at the mode. */
+  SurfaceScores scores;
+  /** J: covariance of the total score. */
+  Matrix6d score_covariance = Matrix6d::Zero();
+  /** H: curvature of the total score with correspondences made anew, symmetric. */
+  Matrix6d curvature = Matrix6d::Zero();
+  /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
+  Matrix6d displacement_metric = Matrix6d::Identity();
+  /** V: columns are twists of unit root mean squared displacement, along which the
+   * curvature was measured. */
+  Matrix6d directions = Matrix6d::Identity();
+  /** Share of the information along each direction that is above its noise, in [0, 1];
+   * 0: the direction is held by the prior only. */
+  Vector6d keep = Vector6d::Zero();
+  /** T = V diag(sqrt(keep)) V^-1. */
+  Matrix6d transfer = Matrix6d::Zero();
+  /** Lambda = T^T H J^-1 H T. */
+  Matrix6d information = Matrix6d::Zero();
+  TwistPrior prior;
+  /** Sigma = (Lambda + P)^-1. */
+  Matrix6d covariance = Matrix6d::Identity();
+  /** Twist from the mode to the posterior mean. */
+  Vector6d mean = Vector6d::Zero();
+  /** nu: along the directions that the data hold, the posterior is Student's t with so
+   * many degrees of freedom and the covariance above, since the information is itself
+   * an estimate. At least 3, or 0 for a Gaussian. */
+  int degrees_of_freedom = 0;
+  /** Ratio of the score's covariance to that of independent points: for patches of
+   * about 1/48 of the source, and extrapolated to patches that are independent. */
+  double kappa_48 = 1.0;
+  double kappa_inf = 1.0;
+  /** meanCappedResidual() at the mode. */
+  double cost = 0.0;
+  /** Twist from the mode to the other start's end; zero if both ended in one place. */
+  Vector6d other_end = Vector6d::Zero();
+  /** meanCappedResidual() at the other start's end, in units of that at the better one;
+   * at least 1. */
+  double other_cost_ratio = 1.0;
+  /** Nearest-neighbour queries used. */
+  long num_queries = 0;
+};
+
+/** \brief How many points and rounds the estimate uses. */
+struct EstimateOptions {
+  /** Source points on which the starts are followed. */
+  int num_mode_points = 500;
+  /** Rounds of curvature. */
+  int num_rounds = 3;
+};
+
+/** \brief The source points that the estimate is made of: they cover the source evenly,
+ * since near the sensor most points repeat each other, and rotations are held by those
+ * that are far.
+ * \param[in] points 3 x n, finite [m]
+ * \param[in] max_points how many, at most
+ * \param[in] seed of their order, which is random: any part of them, the first ones
+ * for the search of the mode, is a random choice */
+Eigen::Matrix3Xd
+evenSource(const Eigen::Matrix3Xd& points, Eigen::Index max_points, std::uint64_t seed);
+
+/** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
+ * result from there) and estimate its covariance.
+ * \param[in] scorer of the source against the target's surface
+ * \param[in] prior whose mean is the first start
+ * \param[in] options how many points and rounds
+ * \param[in] start of a single start in place of the two; may be null */
+CalibratedEstimate
+estimateCalibrated(const SurfaceScorer& scorer,
+                   const Prior& prior,
+                   const EstimateOptions& options = EstimateOptions(),
+                   const Eigen::Isometry3d* start = nullptr);
+
+} // namespace bayesian_icp

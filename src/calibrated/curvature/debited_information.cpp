@@ -1,0 +1,116 @@
+#include "calibrated/curvature/curvature.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace bayesian_icp {
+
+namespace {
+
+using Axes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+/** From this multiple of the noise threshold on, only the noise's mean is debited from
+ * the information. */
+constexpr double full_to_threshold = 3.0;
+
+/** Longest turn of a step, as a part of its length, both in prior standard deviations.
+ * A longer turn results from a curvature that is nearly zero along the held directions,
+ * and the steps would be nearly dependent after it. */
+constexpr double max_turn = 0.2;
+
+/** Information to debit for a secant's noise of mean information \p noise. Nothing is
+ * left of an information below the threshold. Far above it, the noise's mean is
+ * debited. A line from the one to the other is in between. */
+double
+noiseDebit(double information, double noise, double threshold)
+{
+  const double above =
+      (information / noise / threshold - 1.0) / (full_to_threshold - 1.0);
+  return noise * (threshold + (1.0 - threshold) * std::clamp(above, 0.0, 1.0));
+}
+
+} // namespace
+
+Matrix6d
+alongTheSurface(const Secants& secants,
+                const std::array<bool, 6>& held,
+                const Matrix6d& prior_precision)
+{
+  std::vector<int> firm, loose;
+  for (int k = 0; k < 6; ++k)
+    (held[static_cast<std::size_t>(k)] ? firm : loose).push_back(k);
+  Matrix6d steps = secants.steps;
+  if (firm.empty() || loose.empty())
+    return steps;
+  const Axes V = steps(Eigen::all, firm);
+  const Eigen::MatrixXd H = V.transpose() * secants.curvature * V;
+  const Eigen::MatrixXd change = V.transpose() * secants.differences(Eigen::all, loose);
+  const Axes turns = V * H.ldlt().solve(change);
+  const auto lengthOf = [&](const Vector6d& step) {
+    return std::sqrt(step.dot(prior_precision * step));
+  };
+  for (std::size_t i = 0; i < loose.size(); ++i) {
+    const Vector6d turn = turns.col(static_cast<Eigen::Index>(i));
+    if (lengthOf(turn) <= max_turn * lengthOf(steps.col(loose[i])))
+      steps.col(loose[i]) -= turn;
+  }
+  return steps;
+}
+
+double
+noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise)
+{
+  // 99.9 % quantile of a chi-square variate over its mean; z is the normal quantile.
+  constexpr double z = 3.09;
+  const auto L = score_covariance.llt();
+  const Matrix6d half = L.matrixL().solve(noise);
+  const Matrix6d whitened = L.matrixL().solve(half.transpose());
+  const double sum = whitened.trace(), sum_of_squares = whitened.squaredNorm();
+  const double nu =
+      sum_of_squares > 0.0 ? std::clamp(sum * sum / sum_of_squares, 1.0, 6.0) : 6.0;
+  const double q = 2.0 / (9.0 * nu);
+  const double root = 1.0 - q + z * std::sqrt(q);
+  return root * root * root;
+}
+
+DebitedInformation
+debitedInformation(const Secants& secants,
+                   const Matrix6d& score_covariance,
+                   const Matrix6d& prior_precision,
+                   double min_relative_information)
+{
+  const Eigen::LDLT<Matrix6d> J(score_covariance);
+  const Matrix6d HV = secants.curvature * secants.steps;
+  DebitedInformation result;
+  result.raw = (HV.transpose() * J.solve(HV)).diagonal();
+  std::array<bool, 6> held = {};
+  for (int k = 0; k < 6; ++k) {
+    const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
+    const Vector6d step = secants.steps.col(k);
+    const double mean_noise = J.solve(noise).trace();
+    const double debit = mean_noise > 0.0
+                             ? noiseDebit(result.raw[k],
+                                          mean_noise,
+                                          noiseThreshold(score_covariance, noise))
+                             : 0.0;
+    const double kept = secants.trust[k] * (result.raw[k] - debit);
+    bool& is_held = held[static_cast<std::size_t>(k)];
+    is_held = kept > 0.0 &&
+              kept >= min_relative_information * step.dot(prior_precision * step);
+    result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
+  }
+  result.steps = alongTheSurface(secants, held, prior_precision);
+  result.transfer =
+      result.steps * result.keep.cwiseSqrt().asDiagonal() * result.steps.inverse();
+  const Matrix6d HT = secants.curvature * result.transfer;
+  result.information = HT.transpose() * J.solve(HT);
+  result.information =
+      (0.5 * (result.information + result.information.transpose())).eval();
+  return result;
+}
+
+} // namespace bayesian_icp

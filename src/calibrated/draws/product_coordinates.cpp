@@ -1,0 +1,201 @@
+#include "calibrated/draws/product_coordinates.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+/** Ad(exp(xi))^T g: a gradient with respect to twists on the left of exp(xi), for
+ * twists on its right. */
+Vector6d
+carriedToTheRight(const Vector6d& xi, const Vector6d& gradient)
+{
+  const Eigen::Matrix4d motion = expSE3(xi);
+  const Matrix3d R = motion.topLeftCorner<3, 3>();
+  const Vector3d t = motion.topRightCorner<3, 1>();
+  Vector6d carried;
+  carried.head<3>() = R.transpose() * gradient.head<3>();
+  carried.tail<3>() =
+      R.transpose() * (gradient.tail<3>() - t.cross(Vector3d(gradient.head<3>())));
+  return carried;
+}
+
+/** J_l(xi)^T g: a gradient with respect to twists on the left of exp(xi), for changes
+ * of xi itself. J_l = sum_n ad(xi)^n / (n + 1)!. */
+Vector6d
+carriedToTheExponent(const Vector6d& xi, const Vector6d& gradient)
+{
+  constexpr int max_terms = 40;
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = crossMatrix(xi.tail<3>());
+  ad.topRightCorner<3, 3>() = crossMatrix(xi.head<3>());
+  Vector6d sum = gradient, term = gradient;
+  for (int n = 1; n < max_terms; ++n) {
+    term = (ad.transpose() * term / (n + 1)).eval();
+    sum += term;
+    if (term.squaredNorm() <= 1e-28 * sum.squaredNorm())
+      break;
+  }
+  return sum;
+}
+
+} // namespace
+
+ProductCoordinates::ProductCoordinates(const CalibratedEstimate& estimate)
+: mode_(estimate.mode)
+, centre_(estimate.centre)
+, transfer_(estimate.transfer)
+, prior_only_(Matrix6d::Zero())
+, held_(Matrix6d::Zero())
+{
+  for (int k = 0; k < 6; ++k)
+    if (estimate.keep[k] <= 0.0)
+      prior_only_.col(num_prior_only_++) = estimate.directions.col(k);
+  int next = num_prior_only_;
+  for (int k = 0; k < 6; ++k)
+    if (estimate.keep[k] > 0.0)
+      held_.col(next++) = estimate.directions.col(k);
+  setUnwinding(estimate.prior.precision);
+  setLikelihood(estimate);
+  const Matrix6d basis = prior_only_ + held_;
+  const Vector6d gradient = basis.transpose() * estimate.prior.gradient;
+  const Matrix6d precision =
+      information_ + basis.transpose() * estimate.prior.precision * basis;
+  gaussian_ = Gaussian(
+      precision.llt().solve(Vector6d(information_ * best_fit_ - gradient)), precision);
+}
+
+void
+ProductCoordinates::setUnwinding(const Matrix6d& prior_precision)
+{
+  if (num_prior_only_ == 0)
+    return;
+  const Eigen::MatrixXd V0 = prior_only_.leftCols(num_prior_only_);
+  const Eigen::MatrixXd rotations = V0.bottomRows<3>();
+  const Eigen::MatrixXd weighted =
+      (V0.transpose() * prior_precision * V0).llt().solve(rotations.transpose());
+  const Eigen::MatrixXd turns = rotations * weighted;
+  unwinding_ = V0 * weighted * turns.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+Vector6d
+ProductCoordinates::priorOnlyTwist(const Vector6d& z) const
+{
+  constexpr double turn = 6.283185307179586;
+  Vector6d twist = prior_only_ * z;
+  const double angle = twist.tail<3>().norm();
+  const double num_turns = std::round(angle / turn);
+  if (num_turns == 0.0)
+    return twist;
+  return twist - unwinding_ * (num_turns * turn / angle * twist.tail<3>());
+}
+
+void
+ProductCoordinates::setLikelihood(const CalibratedEstimate& estimate)
+{
+  const int num_held = 6 - num_prior_only_;
+  if (num_held == 0)
+    return;
+  const Eigen::LDLT<Matrix6d> J(estimate.score_covariance);
+  const Matrix6d HT = estimate.curvature * transfer_ * held_;
+  score_weights_ = J.solve(HT).transpose();
+  information_ = held_.transpose() * estimate.information * held_;
+  best_fit_.tail(num_held) =
+      -information_.bottomRightCorner(num_held, num_held)
+           .ldlt()
+           .solve((score_weights_ * estimate.scores.total).tail(num_held));
+}
+
+Isometry3d
+ProductCoordinates::pose(const Vector6d& z) const
+{
+  return movedBy(priorOnlyTwist(z), centre_, movedBy(held_ * z, centre_, mode_));
+}
+
+Vector6d
+ProductCoordinates::heldPart(const Isometry3d& pose) const
+{
+  constexpr int num_scanned = 60, max_rounds = 20;
+  const Matrix6d to_z = (prior_only_ + held_).inverse();
+  const auto restOf = [&](const Vector6d& a) -> Vector6d {
+    return to_z *
+           twistBetween(mode_, movedBy(-prior_only_ * a, centre_, pose), centre_);
+  };
+  Vector6d a = Vector6d::Zero();
+  if (num_prior_only_ == 1 && prior_only_.col(0).tail<3>().norm() > 0.0) {
+    // A first time: far from the mode the rounds below may not converge.
+    constexpr double pi = 3.14159265358979323846;
+    const double half_turn = pi / prior_only_.col(0).tail<3>().norm();
+    double least = std::numeric_limits<double>::infinity(), best = 0.0;
+    for (int i = -num_scanned; i <= num_scanned; ++i) {
+      a[0] = half_turn * i / num_scanned;
+      const Vector6d rest = restOf(a);
+      const double energy = rest.dot((information_ * rest)) +
+                            rest[0] * rest[0] * gaussian_.precision()(0, 0);
+      if (energy < least) {
+        least = energy;
+        best = a[0];
+      }
+    }
+    a[0] = best;
+  }
+  for (int round = 0; round < max_rounds && num_prior_only_ > 0; ++round) {
+    const Vector6d rest = restOf(a);
+    a.head(num_prior_only_) += rest.head(num_prior_only_);
+    if (rest.head(num_prior_only_).norm() < 1e-10)
+      break;
+  }
+  Vector6d rest = restOf(a);
+  rest.head(num_prior_only_).setZero();
+  return rest;
+}
+
+double
+ProductCoordinates::logVolume() const
+{
+  return std::log(std::abs((prior_only_ + held_).determinant()));
+}
+
+Vector6d
+ProductCoordinates::scoredTwist(const Vector6d& z) const
+{
+  return transfer_ * (held_ * z);
+}
+
+Isometry3d
+ProductCoordinates::scoredPose(const Vector6d& z) const
+{
+  return movedBy(scoredTwist(z), centre_, mode_);
+}
+
+Vector6d
+ProductCoordinates::linearGradient(const Vector6d& z) const
+{
+  return information_ * (z - best_fit_);
+}
+
+double
+ProductCoordinates::linearEnergy(const Vector6d& z) const
+{
+  return 0.5 * (z - best_fit_).dot(linearGradient(z));
+}
+
+Vector6d
+ProductCoordinates::priorGradient(const Vector6d& z, const Prior& prior) const
+{
+  const Vector6d gradient = twistPrior(prior, pose(z), centre_).gradient;
+  const Vector6d a = priorOnlyTwist(z), b = held_ * z;
+  return prior_only_.transpose() * carriedToTheExponent(a, gradient) +
+         held_.transpose() * carriedToTheExponent(b, carriedToTheRight(a, gradient));
+}
+
+} // namespace bayesian_icp

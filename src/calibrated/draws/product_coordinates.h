@@ -1,0 +1,104 @@
+/** \file
+ * \brief Coordinates of poses near a mode in which motions held by the prior only are
+ * set apart, and the calibrated density in them.
+ */
+#pragma once
+
+#include "calibrated/calibrated_estimate.h"
+#include "sampler/gaussian_fit.h"
+
+namespace bayesian_icp {
+
+/** \brief Coordinates z = (a, b) with pose(z) = exp(V0 a) exp(VK b) mode, V0 the
+ * directions that the prior alone holds (keep = 0), VK the others.
+ *
+ * The likelihood depends on b only, so that it stays the same however far a wide prior
+ * lets a go: along an axis of symmetry, along an edge. Whole turns of V0 a are dropped,
+ * as the prior's angles do: a turn of a screw would shift b. To second order in b its
+ * energy is 1/2 (b - b^)^T Lambda_b (b - b^); the prior is exact everywhere. */
+class ProductCoordinates {
+public:
+  explicit ProductCoordinates(const CalibratedEstimate& estimate);
+
+  /** \brief Number of directions held by the prior only, the length of a. */
+  int
+  numPriorOnly() const
+  {
+    return num_prior_only_;
+  }
+
+  Eigen::Isometry3d
+  pose(const Vector6d& z) const;
+
+  /** \brief The b, with a zero, of the pose that is left of \p pose when the motion
+   * held by the prior only that brings it nearest to the mode is taken off. */
+  Vector6d
+  heldPart(const Eigen::Isometry3d& pose) const;
+
+  /** \brief The twist T VK b from the mode: where scores count for z. */
+  Vector6d
+  scoredTwist(const Vector6d& z) const;
+
+  /** \brief The mode moved by scoredTwist(). */
+  Eigen::Isometry3d
+  scoredPose(const Vector6d& z) const;
+
+  /** \brief Matrix from total scores to gradients of the likelihood's energy with
+   * respect to z, VK^T T^T H J^-1: weighs scores such that their spread is right. */
+  const Matrix6d&
+  scoreWeights() const
+  {
+    return score_weights_;
+  }
+
+  /** \brief Lambda_b (z - (0, b^)): gradient of the likelihood if it were Gaussian. */
+  Vector6d
+  linearGradient(const Vector6d& z) const;
+
+  /** \brief Energy of the likelihood if it were Gaussian. */
+  double
+  linearEnergy(const Vector6d& z) const;
+
+  /** \brief Gradient of -log prior at pose(z) with respect to z, exact. */
+  Vector6d
+  priorGradient(const Vector6d& z, const Prior& prior) const;
+
+  /** \brief log |det [V0 VK]|: what turns densities of z into those of twists. */
+  double
+  logVolume() const;
+
+  /** \brief The posterior if the prior were Gaussian, too. */
+  const Gaussian&
+  gaussian() const
+  {
+    return gaussian_;
+  }
+
+private:
+  void
+  setUnwinding(const Matrix6d& prior_precision);
+
+  /** V0 a less whole turns. */
+  Vector6d
+  priorOnlyTwist(const Vector6d& z) const;
+
+  void
+  setLikelihood(const CalibratedEstimate& estimate);
+
+  Eigen::Isometry3d mode_;
+  Eigen::Vector3d centre_;
+  Matrix6d transfer_;
+  /** Twists from the mode of (a, 0) and (0, b). */
+  Matrix6d prior_only_, held_;
+  int num_prior_only_ = 0;
+  /** The twist V0 a that the prior likes best of those that turn by a vector. */
+  Eigen::Matrix<double, 6, 3> unwinding_ = Eigen::Matrix<double, 6, 3>::Zero();
+  Matrix6d score_weights_ = Matrix6d::Zero();
+  /** Lambda_b, and zero where a is concerned. */
+  Matrix6d information_ = Matrix6d::Zero();
+  /** (0, b^). */
+  Vector6d best_fit_ = Vector6d::Zero();
+  Gaussian gaussian_;
+};
+
+} // namespace bayesian_icp

@@ -1,0 +1,259 @@
+#include "calibrated/modes/calibrated_modes.h"
+
+#include "calibrated/draws/product_coordinates.h"
+#include "calibrated/modes/mode_weights.h"
+#include "calibrated/modes/robust_mode.h"
+#include "calibrated/surface/even_choice.h"
+#include "geometry/principal_axes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+
+namespace {
+
+/** A prior is wide from these standard deviations on: [rad], and in parts of the
+ * source's extent. */
+constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
+
+/** Starts reach this far, in standard deviations. Beyond, they are further from likely
+ * places of the truth than the prior's mean is. */
+constexpr double reach = 1.75;
+
+/** A start is brought near by point-to-point ICP on this part of the points, and then
+ * sees this part of the source's root mean square radius. */
+constexpr double icp_part = 0.5, sight = 0.1;
+
+/** An end of a start is ignored if its cost is above the best one's by more than this
+ * part, or if it is within these squared Mahalanobis distances of a mode: on a few
+ * points, and after an estimate. */
+constexpr double cost_margin = 0.35;
+constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
+
+/** For the path between two modes that are one: steps at each place, and the largest
+ * distance of the surface from the straight path, in parts of its length. */
+constexpr int num_way_steps = 6;
+constexpr double max_aside = 0.15;
+
+/** Modes with a smaller share of the posterior are left out. */
+constexpr double min_share = 0.02;
+
+/** Diagonal of the bounding box. */
+double
+extentOf(const Eigen::Matrix3Xd& points)
+{
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
+std::array<bool, 6>
+wideCoordinates(const SurfaceScorer& scorer, const Prior& prior)
+{
+  const double extent = extentOf(scorer.sourcePoints());
+  std::array<bool, 6> wide;
+  for (int k = 0; k < 6; ++k)
+    wide[static_cast<std::size_t>(k)] =
+        std::sqrt(prior.variance()[k]) >
+        (k < 3 ? wide_part_of_extent * extent : wide_angle);
+  return wide;
+}
+
+/** Deviations from the prior's mean: a Latin hypercube in the wide coordinates, draws
+ * in the others. */
+Matrix6Xd
+startDeviations(const std::array<bool, 6>& wide,
+                const Prior& prior,
+                int num_starts,
+                Random& random)
+{
+  constexpr double pi = 3.14159265358979323846;
+  Matrix6Xd deviations(6, num_starts);
+  for (int k = 0; k < 6; ++k) {
+    const double sd = std::sqrt(prior.variance()[k]);
+    std::vector<Index> strata(static_cast<std::size_t>(num_starts));
+    std::iota(strata.begin(), strata.end(), Index(0));
+    shuffle(strata, random);
+    const double range = k < 3 ? reach * sd : std::min(pi, reach * sd);
+    for (Index i = 0; i < num_starts; ++i) {
+      const double share = (static_cast<double>(strata[static_cast<std::size_t>(i)]) +
+                            random.uniform()) /
+                           num_starts;
+      deviations(k, i) = wide[static_cast<std::size_t>(k)] ? (2.0 * share - 1.0) * range
+                                                           : sd * random.normal();
+    }
+  }
+  return deviations;
+}
+
+/** The pose of a deviation (as in Prior::deviation()) from the prior's mean. */
+Isometry3d
+poseAt(const Vector6d& deviation, const Prior& prior)
+{
+  Vector6d pose = prior.mean() + deviation;
+  const Eigen::Vector3d reference = isometryOf(prior.mean()) * prior.referencePoint();
+  pose.head<3>() =
+      reference + deviation.head<3>() - rotationOf(pose) * prior.referencePoint();
+  return isometryOf(pose);
+}
+
+bool
+isKnown(const Isometry3d& pose,
+        const std::vector<ProductCoordinates>& known,
+        double squared_distance)
+{
+  return std::any_of(known.begin(), known.end(), [&](const auto& coordinates) {
+    return 2.0 * coordinates.linearEnergy(coordinates.heldPart(pose)) <
+           squared_distance;
+  });
+}
+
+/** Whether one can go from a mode to the other along motions that the prior alone
+ * holds, without leaving the surface. The axes of the two are not exact: far along,
+ * each is far from the other's. */
+bool
+areConnected(const SurfaceScorer& subset,
+             const Prior& prior,
+             const CalibratedEstimate& from,
+             const CalibratedEstimate& to,
+             double max_cost)
+{
+  if (from.keep.minCoeff() > 0.0 || to.keep.minCoeff() > 0.0)
+    return false;
+  const Vector6d way = twistBetween(from.mode, to.mode, from.centre);
+  const double noise = subset.model().medianSigma();
+  const double length = std::sqrt(way.dot(from.displacement_metric * way));
+  RobustFitOptions fit;
+  fit.max_steps = num_way_steps;
+  fit.tolerance = 0.1 * noise;
+  for (const double part : {0.25, 0.5, 0.75}) {
+    const Isometry3d start = movedBy(part * way, from.centre, from.mode);
+    // This prior keeps it where it was put.
+    const Prior here(poseOf(start.matrix()), prior.variance(), prior.referencePoint());
+    const RobustFit end = fitRobustly(subset, here, start, fit);
+    const Vector6d aside = twistBetween(start, end.pose, from.centre);
+    if (end.cost > max_cost || std::sqrt(aside.dot(from.displacement_metric * aside)) >
+                                   max_aside * length + noise)
+      return false;
+  }
+  return true;
+}
+
+/** Where starts end, least cost first. */
+std::vector<RobustFit>
+followStarts(const SurfaceScorer& subset,
+             const Prior& prior,
+             const std::array<bool, 6>& wide,
+             const ModeSearchOptions& options)
+{
+  const double noise = subset.model().medianSigma();
+  const double radius = radiusOf(displacementMetric(subset, Isometry3d::Identity()));
+  const auto num_icp_points =
+      static_cast<Index>(icp_part * static_cast<double>(subset.sourcePoints().cols()));
+  const SurfaceScorer icp_points(subset.sourcePoints().leftCols(num_icp_points),
+                                 subset.model());
+  RobustFitOptions fit;
+  fit.start_scale =
+      std::min(sight * radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
+      noise;
+  fit.max_steps = 20;
+  fit.tolerance = 0.1 * noise;
+  Random random(options.seed, std::numeric_limits<std::uint64_t>::max() / 2);
+  const Matrix6Xd starts = startDeviations(wide, prior, options.num_starts, random);
+  std::vector<RobustFit> ends;
+  for (Index i = 0; i < starts.cols(); ++i) {
+    const RobustFit icp =
+        fitPointToPoint(icp_points, prior, poseAt(starts.col(i), prior));
+    ends.push_back(fitRobustly(subset, prior, icp.pose, fit));
+    ends.back().num_evaluations +=
+        static_cast<int>(std::ceil(icp_part * icp.num_evaluations));
+  }
+  std::stable_sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) {
+    return a.cost < b.cost;
+  });
+  return ends;
+}
+
+} // namespace
+
+bool
+mayHaveSeveralModes(const SurfaceScorer& scorer, const Prior& prior)
+{
+  const auto wide = wideCoordinates(scorer, prior);
+  return std::any_of(wide.begin(), wide.end(), [](bool is_wide) { return is_wide; });
+}
+
+ModeSearch
+findModes(const SurfaceScorer& scorer,
+          const Prior& prior,
+          const CalibratedEstimate& first,
+          const ModeSearchOptions& options)
+{
+  const Index num_points =
+      std::min<Index>(options.num_points, scorer.sourcePoints().cols());
+  const SurfaceScorer subset(scorer.sourcePoints().leftCols(num_points),
+                             scorer.model());
+  const std::vector<RobustFit> ends =
+      followStarts(subset, prior, wideCoordinates(scorer, prior), options);
+  ModeSearch search;
+  search.modes.push_back({first, 0.0});
+  std::vector<ProductCoordinates> known = {ProductCoordinates(first)};
+  PatchHints hints;
+  SurfaceScores scores;
+  subset.evaluate(
+      first.mode, first.centre, std::numeric_limits<double>::infinity(), hints, scores);
+  search.num_queries += num_points;
+  double best_cost = meanCappedResidual(scores);
+  for (const RobustFit& end : ends) {
+    best_cost = std::min(best_cost, end.cost);
+    search.num_queries += num_points * end.num_evaluations;
+  }
+  for (const RobustFit& end : ends) {
+    if (end.cost > (1.0 + cost_margin) * best_cost ||
+        static_cast<int>(known.size()) >= options.max_modes)
+      break;
+    if (isKnown(end.pose, known, min_squared_distance))
+      continue;
+    const CalibratedEstimate estimate =
+        estimateCalibrated(scorer, prior, options.estimate, &end.pose);
+    search.num_queries += estimate.num_queries;
+    if (isKnown(estimate.mode, known, min_squared_distance_of_modes) ||
+        std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
+          return areConnected(
+              subset, prior, mode.estimate, estimate, (1.0 + cost_margin) * best_cost);
+        }))
+      continue;
+    known.emplace_back(estimate);
+    search.modes.push_back({estimate, 0.0});
+  }
+  weighModes(prior, search.modes);
+  return search;
+}
+
+std::vector<CalibratedMode>
+significantModes(std::vector<CalibratedMode> modes)
+{
+  const std::vector<double> shares = sharesOf(modes);
+  const auto num_large = std::count_if(
+      shares.begin(), shares.end(), [](double share) { return share >= min_share; });
+  modes.erase(modes.begin() + num_large, modes.end());
+  return modes;
+}
+
+std::vector<CalibratedMode>
+calibratedModes(const SurfaceScorer& scorer,
+                const Prior& prior,
+                const ModeSearchOptions& options)
+{
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior, options.estimate);
+  if (!mayHaveSeveralModes(scorer, prior))
+    return {{first, 0.0}};
+  return significantModes(findModes(scorer, prior, first, options).modes);
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,116 @@
+#include "calibrated/modes/mode_weights.h"
+
+#include "calibrated/draws/product_coordinates.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+using Eigen::VectorXd;
+
+namespace {
+
+/** Standard deviations of the difference of two modes' energies that count as none. */
+constexpr double unheeded_deviations = 2.0;
+
+/** The scalar nearest to what scores are weighted with: the energy's weight. */
+double
+energyWeight(const CalibratedEstimate& estimate)
+{
+  std::vector<Index> held;
+  for (int k = 0; k < 6; ++k)
+    if (estimate.keep[k] > 0.0)
+      held.push_back(k);
+  if (held.empty())
+    return 1.0 / estimate.kappa_inf;
+  Eigen::MatrixXd V(6, held.size());
+  for (std::size_t i = 0; i < held.size(); ++i)
+    V.col(static_cast<Index>(i)) = estimate.directions.col(held[i]);
+  const Eigen::MatrixXd information = V.transpose() * estimate.information * V;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ratio(
+      V.transpose() * estimate.curvature * V, information);
+  double sum = 0.0;
+  int count = 0;
+  for (const double value : ratio.eigenvalues())
+    if (value > 0.0) {
+      sum += std::log(value);
+      ++count;
+    }
+  return count > 0 ? std::exp(-sum / count) : 1.0 / estimate.kappa_inf;
+}
+
+/** Tukey's energy of each point; one without a patch has the largest. */
+VectorXd
+energiesOf(const SurfaceScores& scores, double tau)
+{
+  const double scale = SurfaceScorer::tukey_constant * tau;
+  VectorXd energies(scores.residuals.size());
+  for (Index i = 0; i < energies.size(); ++i) {
+    const double z = scores.has_patch[static_cast<std::size_t>(i)]
+                         ? std::min(1.0, std::abs(scores.residuals[i]) / scale)
+                         : 1.0;
+    energies[i] = scale * scale / 6.0 * (1.0 - std::pow(1.0 - z * z, 3));
+  }
+  return energies;
+}
+
+/** log of the Gaussian's integral times the prior at its mean. */
+double
+logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
+{
+  const ProductCoordinates coordinates(estimate);
+  const Gaussian& gaussian = coordinates.gaussian();
+  const Isometry3d pose = coordinates.pose(gaussian.mean());
+  return gaussian.factor().diagonal().array().log().sum() + coordinates.logVolume() -
+         prior.energy(poseOf(pose.matrix()));
+}
+
+} // namespace
+
+void
+weighModes(const Prior& prior, std::vector<CalibratedMode>& modes)
+{
+  const auto least_cost =
+      std::min_element(modes.begin(), modes.end(), [](const auto& a, const auto& b) {
+        return a.estimate.cost < b.estimate.cost;
+      });
+  const double tau = least_cost->estimate.residual_scale;
+  const double kappa = least_cost->estimate.kappa_inf;
+  double weight = 0.0;
+  std::vector<VectorXd> energies;
+  for (const auto& mode : modes) {
+    weight += energyWeight(mode.estimate) / static_cast<double>(modes.size());
+    energies.push_back(energiesOf(mode.estimate.scores, tau));
+  }
+  const VectorXd best =
+      *std::min_element(energies.begin(),
+                        energies.end(),
+                        [](const auto& a, const auto& b) { return a.sum() < b.sum(); });
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    const VectorXd difference = energies[m] - best;
+    const double sum = difference.sum();
+    double heeded = 0.0;
+    if (sum > 0.0) {
+      // Independent patches; not clusters, which take what one place tells for noise.
+      const double variance = kappa * difference.squaredNorm();
+      heeded = std::max(0.0,
+                        1.0 - unheeded_deviations * unheeded_deviations * variance /
+                                  (sum * sum));
+    }
+    const double log_weight =
+        logVolumeOf(modes[m].estimate, prior) - weight * sum * heeded;
+    modes[m].log_weight =
+        std::isfinite(log_weight) ? log_weight : std::numeric_limits<double>::lowest();
+  }
+  std::stable_sort(modes.begin(), modes.end(), [](const auto& a, const auto& b) {
+    return a.log_weight > b.log_weight;
+  });
+}
+
+} // namespace bayesian_icp

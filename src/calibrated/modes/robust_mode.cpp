@@ -1,0 +1,173 @@
+#include "calibrated/modes/robust_mode.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+/** The scale of Tukey's weight is reduced by this factor in each step. */
+constexpr double annealing = 0.65;
+
+/** Re-weightings between two searches of correspondences. */
+constexpr int num_reweightings = 2;
+
+/** Weight of points against the prior: neighbours repeat each other. */
+constexpr double points_to_prior = 0.2;
+
+/** Annealing has ended when the scale is within this factor of the residuals'. */
+constexpr double scale_tolerance = 1.001;
+
+/** Longest step of point-to-point ICP [m, rad], its weight of a squared distance
+ * against the prior [1/m^2], and when it ends. */
+constexpr double max_point_step = 0.2;
+constexpr double point_weight = 1e4;
+constexpr int max_point_steps = 20;
+constexpr double point_tolerance = 1e-4;
+
+struct NormalEquations {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+};
+
+/** Of the linearised residuals u + j^T xi, weighted at \p xi. \p linear was evaluated
+ * without robust weights. */
+NormalEquations
+reweighted(const SurfaceScores& linear, const Vector6d& xi, double tau)
+{
+  NormalEquations equations;
+  for (Index i = 0; i < linear.residuals.size(); ++i) {
+    if (!linear.has_patch[static_cast<std::size_t>(i)])
+      continue;
+    const auto jacobian = linear.jacobians.col(i);
+    const double residual = linear.residuals[i] + jacobian.dot(xi);
+    const double weight = tukeyWeight(residual / (SurfaceScorer::tukey_constant * tau));
+    if (weight == 0.0)
+      continue;
+    equations.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    equations.gradient += weight * residual * jacobian;
+  }
+  equations.information =
+      Matrix6d(equations.information.selfadjointView<Eigen::Lower>());
+  return equations;
+}
+
+/** One step, with fixed correspondences and new weights. */
+Vector6d
+stepFrom(const SurfaceScores& linear, double tau, const TwistPrior& prior)
+{
+  const double weight = points_to_prior / (tau * tau);
+  Vector6d xi = Vector6d::Zero();
+  for (int k = 0; k < num_reweightings; ++k) {
+    const NormalEquations equations = reweighted(linear, xi, tau);
+    const Matrix6d matrix = weight * equations.information + prior.precision;
+    xi -= matrix.ldlt().solve(weight * equations.gradient + prior.gradient +
+                              prior.precision * xi);
+  }
+  return xi;
+}
+
+} // namespace
+
+Matrix6d
+displacementMetric(const SurfaceScorer& scorer, const Isometry3d& T_target_source)
+{
+  const Eigen::Matrix3Xd arms =
+      T_target_source.linear() * (scorer.sourcePoints().colwise() - scorer.centroid());
+  const Eigen::Matrix3d moment =
+      arms * arms.transpose() / static_cast<double>(arms.cols());
+  Matrix6d metric = Matrix6d::Identity();
+  metric.bottomRightCorner<3, 3>() =
+      moment.trace() * Eigen::Matrix3d::Identity() - moment;
+  return metric;
+}
+
+RobustFit
+fitRobustly(const SurfaceScorer& scorer,
+            const Prior& prior,
+            const Isometry3d& start,
+            const RobustFitOptions& options)
+{
+  constexpr double no_weights = std::numeric_limits<double>::infinity();
+  RobustFit fit;
+  fit.pose = start;
+  double scale = options.start_scale;
+  PatchHints hints;
+  SurfaceScores linear;
+  for (int step = 0; step < options.max_steps; ++step) {
+    const Vector3d centre = fit.pose * scorer.centroid();
+    scorer.evaluate(fit.pose, centre, no_weights, hints, linear);
+    ++fit.num_evaluations;
+    fit.residual_scale = residualScale(linear);
+    const double tau = std::max(fit.residual_scale, scale);
+    const bool is_annealing = tau > scale_tolerance * fit.residual_scale;
+    scale *= annealing;
+    const Vector6d xi = stepFrom(linear, tau, twistPrior(prior, fit.pose, centre));
+    if (!xi.allFinite())
+      break;
+    const Matrix6d metric = displacementMetric(scorer, fit.pose);
+    fit.pose = movedBy(xi, centre, fit.pose);
+    if (!is_annealing && xi.dot(metric * xi) < options.tolerance * options.tolerance)
+      break;
+  }
+  scorer.evaluate(fit.pose, fit.pose * scorer.centroid(), no_weights, hints, linear);
+  ++fit.num_evaluations;
+  fit.cost = meanCappedResidual(linear);
+  fit.residual_scale = residualScale(linear);
+  return fit;
+}
+
+RobustFit
+fitPointToPoint(const SurfaceScorer& scorer,
+                const Prior& prior,
+                const Isometry3d& start)
+{
+  const SurfaceModel& model = scorer.model();
+  const Eigen::Matrix3Xd& source = scorer.sourcePoints();
+  RobustFit fit;
+  fit.pose = start;
+  PatchHints hints(static_cast<std::size_t>(source.cols()), KdTree::none);
+  for (int step = 0; step < max_point_steps; ++step) {
+    const Vector3d centre = fit.pose * scorer.centroid();
+    const TwistPrior pull = twistPrior(prior, fit.pose, centre);
+    Vector6d gradient = pull.gradient;
+    for (Index i = 0; i < source.cols(); ++i) {
+      const Vector3d point = fit.pose * source.col(i) - model.origin();
+      auto& hint = hints[static_cast<std::size_t>(i)];
+      hint = model.tree()
+                 .nearest(
+                     point.cast<float>(), std::numeric_limits<float>::infinity(), hint)
+                 .index;
+      if (hint == KdTree::none)
+        continue;
+      const Vector3d residual = point - model.tree().points().col(hint).cast<double>();
+      const Vector3d arm = point + model.origin() - centre;
+      gradient.head<3>() += point_weight * residual;
+      gradient.tail<3>() += point_weight * arm.cross(residual);
+    }
+    ++fit.num_evaluations;
+    const Matrix6d matrix = point_weight * static_cast<double>(source.cols()) *
+                                displacementMetric(scorer, fit.pose) +
+                            pull.precision;
+    Vector6d xi = -matrix.ldlt().solve(gradient);
+    if (!xi.allFinite())
+      break;
+    const double length = xi.norm();
+    if (length > max_point_step)
+      xi *= max_point_step / length;
+    fit.pose = movedBy(xi, centre, fit.pose);
+    if (length < point_tolerance)
+      break;
+  }
+  return fit;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,56 @@
+/** \file
+ * \brief The mode of robust surface likelihood times prior, by re-weighted least
+ * squares.
+ */
+#pragma once
+
+#include "calibrated/score/surface_score.h"
+#include "geometry/twist.h"
+
+namespace bayesian_icp {
+
+/** \brief How a mode is approached. */
+struct RobustFitOptions {
+  /** Scale tau of Tukey's weight to start with, in units of the target's noise; reduced
+   * to that of the residuals. 0 starts there. */
+  double start_scale = 0.0;
+  /** Most steps; each finds all correspondences anew. */
+  int max_steps = 25;
+  /** Root mean squared displacement of the source at which it has converged [m]. */
+  double tolerance = 0.0;
+};
+
+/** \brief Where a fit ended. */
+struct RobustFit {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  /** residualScale() there. */
+  double residual_scale = 1.0;
+  /** meanCappedResidual() there. */
+  double cost = 0.0;
+  /** Evaluations of all points. */
+  int num_evaluations = 0;
+};
+
+/** \brief Iteratively re-weighted least squares from \p start: the robust mean of
+ * distances to the surface, annealed, with a fifth of the points' weight against the
+ * prior (they are correlated). */
+RobustFit
+fitRobustly(const SurfaceScorer& scorer,
+            const Prior& prior,
+            const Eigen::Isometry3d& start,
+            const RobustFitOptions& options);
+
+/** \brief Point-to-point ICP on the model's points from \p start, held loosely by the
+ * prior. */
+RobustFit
+fitPointToPoint(const SurfaceScorer& scorer,
+                const Prior& prior,
+                const Eigen::Isometry3d& start);
+
+/** \brief D of the source about its centroid at a pose: the mean squared displacement
+ * of its points by a twist xi about the moved centroid is xi^T D xi [m^2]. */
+Matrix6d
+displacementMetric(const SurfaceScorer& scorer,
+                   const Eigen::Isometry3d& T_target_source);
+
+} // namespace bayesian_icp

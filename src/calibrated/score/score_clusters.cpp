@@ -1,0 +1,249 @@
+#include "calibrated/score/score_clusters.h"
+
+#include <bayesian_icp/random.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+namespace {
+
+/** Seed of the partitions: they belong to the method, not to the run. */
+constexpr std::uint64_t partition_seed = 1;
+
+/** Degrees of freedom that six parameters cost: six were fitted, and the inverse of an
+ * estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
+constexpr double lost_degrees_of_freedom = 13.0;
+
+/** Upper limit of one cluster's share of the information. */
+constexpr double max_share = 0.9;
+
+/** Leaves of one randomised kd-split. */
+class Partition {
+public:
+  Partition(const Matrix3Xd& positions, Index max_points, Random& random)
+  : rotated_(randomRotation(random) * positions)
+  , max_points_(max_points)
+  , random_(random)
+  , order_(static_cast<std::size_t>(positions.cols()))
+  , keys_(order_.size())
+  , labels_(order_.size())
+  {
+    std::iota(order_.begin(), order_.end(), Index(0));
+    split(0, positions.cols());
+  }
+
+  Index
+  numLeaves() const
+  {
+    return num_leaves_;
+  }
+
+  Index
+  leafOf(Index point) const
+  {
+    return labels_[static_cast<std::size_t>(point)];
+  }
+
+private:
+  static Eigen::Matrix3d
+  randomRotation(Random& random)
+  {
+    const double w = random.normal(), x = random.normal(), y = random.normal(),
+                 z = random.normal();
+    return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+  }
+
+  void
+  split(Index begin, Index end)
+  {
+    if (end - begin <= max_points_) {
+      for (Index i = begin; i < end; ++i)
+        labels_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])] =
+            num_leaves_;
+      ++num_leaves_;
+      return;
+    }
+    const Index axis = widestAxis(begin, end);
+    const double part = 0.4 + 0.2 * random_.uniform();
+    const Index middle =
+        begin + std::max<Index>(1, static_cast<Index>(part * double(end - begin)));
+    const auto size = static_cast<std::size_t>(end - begin);
+    for (std::size_t i = 0; i < size; ++i) {
+      const Index point = order_[static_cast<std::size_t>(begin) + i];
+      keys_[i] = {rotated_(axis, point), point};
+    }
+    std::nth_element(
+        keys_.begin(), keys_.begin() + (middle - begin), keys_.begin() + (end - begin));
+    for (std::size_t i = 0; i < size; ++i)
+      order_[static_cast<std::size_t>(begin) + i] = keys_[i].second;
+    split(begin, middle);
+    split(middle, end);
+  }
+
+  Index
+  widestAxis(Index begin, Index end) const
+  {
+    Vector3d low = rotated_.col(order_[static_cast<std::size_t>(begin)]), high = low;
+    for (Index i = begin; i < end; ++i) {
+      const auto point = rotated_.col(order_[static_cast<std::size_t>(i)]);
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+    Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    return axis;
+  }
+
+  Matrix3Xd rotated_;
+  Index max_points_;
+  Random& random_;
+  std::vector<Index> order_;
+  /** Coordinate and index of the points that are being split. */
+  std::vector<std::pair<double, Index>> keys_;
+  std::vector<Index> labels_;
+  Index num_leaves_ = 0;
+};
+
+/** Sums of the clusters' scores, less their share of the total. */
+Matrix6Xd
+clusterSums(const Matrix6Xd& scores, const Partition& partition)
+{
+  Matrix6Xd sums = Matrix6Xd::Zero(6, partition.numLeaves());
+  Eigen::RowVectorXd counts = Eigen::RowVectorXd::Zero(partition.numLeaves());
+  for (Index i = 0; i < scores.cols(); ++i) {
+    sums.col(partition.leafOf(i)) += scores.col(i);
+    counts[partition.leafOf(i)] += 1.0;
+  }
+  const Vector6d mean = scores.rowwise().mean();
+  return sums - mean * counts;
+}
+
+/** Give back to the clusters what fitting six parameters took from them, so that their
+ * outer products are right on average for independent points: CR2 of Bell and McCaffrey
+ * (2002), (I - H_b)^-1/2 s_b, H_b being the cluster's share of the information. A
+ * direction that a few clusters hold loses nearly all of their scores.
+ * \param[in] whitened L^-1 j of each point, working information L L^T
+ * \param[in,out] sums L^-1 s_b of each cluster */
+void
+undoFit(const Matrix6Xd& whitened, const Partition& partition, Matrix6Xd& sums)
+{
+  std::vector<Matrix6d> shares(static_cast<std::size_t>(partition.numLeaves()),
+                               Matrix6d::Zero());
+  for (Index i = 0; i < whitened.cols(); ++i)
+    shares[static_cast<std::size_t>(partition.leafOf(i))]
+        .selfadjointView<Eigen::Lower>()
+        .rankUpdate(whitened.col(i));
+  for (Index b = 0; b < sums.cols(); ++b) {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> share(
+        shares[static_cast<std::size_t>(b)]);
+    const Vector6d left = 1.0 - share.eigenvalues().array().min(max_share);
+    sums.col(b) = share.eigenvectors() * left.cwiseSqrt().cwiseInverse().asDiagonal() *
+                  share.eigenvectors().transpose() * sums.col(b);
+  }
+}
+
+} // namespace
+
+PointScores
+activeScores(const SurfaceScores& scores, const Matrix3Xd& source_points)
+{
+  PointScores points;
+  points.scores.resize(6, scores.num_active);
+  points.jacobians.resize(6, scores.num_active);
+  points.positions.resize(3, scores.num_active);
+  Index next = 0;
+  for (Index i = 0; i < source_points.cols(); ++i)
+    if (scores.active[static_cast<std::size_t>(i)]) {
+      points.scores.col(next) = scores.scores.col(i);
+      points.jacobians.col(next) = scores.jacobians.col(i);
+      points.positions.col(next) = source_points.col(i);
+      ++next;
+    }
+  return points;
+}
+
+Matrix6d
+clusteredCovariance(const PointScores& points,
+                    const Matrix6d& working_information,
+                    const ClusterOptions& options)
+{
+  const Index num_points = points.scores.cols();
+  if (num_points == 0)
+    return Matrix6d::Zero();
+  const Index max_points =
+      std::max<Index>(2, num_points / std::max(1, options.num_clusters));
+  const bool is_fitted = points.jacobians.cols() == num_points;
+  Matrix6d L = Matrix6d::Identity();
+  Matrix6Xd whitened;
+  if (is_fitted) {
+    L = working_information.llt().matrixL();
+    whitened = L.triangularView<Eigen::Lower>().solve(points.jacobians);
+  }
+  Random random(partition_seed, options.stream);
+  Matrix6d sum = Matrix6d::Zero();
+  for (int k = 0; k < options.num_partitions; ++k) {
+    const Partition partition(points.positions, max_points, random);
+    Matrix6Xd sums =
+        L.triangularView<Eigen::Lower>().solve(clusterSums(points.scores, partition));
+    const auto num_leaves = static_cast<double>(partition.numLeaves());
+    if (is_fitted)
+      undoFit(whitened, partition, sums);
+    else
+      sums *= std::sqrt(num_leaves / std::max(1.0, num_leaves - 1.0));
+    sum += sums * sums.transpose();
+  }
+  return L * sum * L.transpose() / options.num_partitions;
+}
+
+ScoreCovariance
+scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
+{
+  const Matrix6d independent = points.scores * points.scores.transpose();
+  const Matrix6d information = points.jacobians * points.jacobians.transpose();
+  // In the fit, the prior has the weight that the robust start gives it.
+  const Matrix6d working_information = information + 5.0 * fit_precision;
+  const Eigen::LDLT<Matrix6d> metric(
+      independent + independent.trace() / information.trace() * fit_precision);
+  const double size = metric.solve(independent).trace();
+  const auto kappa = [&](const Matrix6d& covariance) {
+    return metric.solve(covariance).trace() / size;
+  };
+  const auto clustered = [&](int num_clusters, int num_partitions) {
+    ClusterOptions options;
+    options.num_clusters = num_clusters;
+    options.num_partitions = num_partitions;
+    options.stream = static_cast<std::uint64_t>(num_clusters);
+    return clusteredCovariance(points, working_information, options);
+  };
+  ScoreCovariance result;
+  const Matrix6d J_48 = clustered(48, 8);
+  const double kappa_12 = kappa(clustered(12, 16));
+  const double kappa_24 = kappa(clustered(24, 12));
+  const double kappa_96 = kappa(clustered(96, 8));
+  result.kappa_48 = kappa(J_48);
+  // Points at the border of a square cluster of side a miss a part of their neighbours
+  // that shrinks as 1 / a on each axis: sqrt(kappa) = sqrt(kappa_inf) (1 - b / a), and
+  // a is twice as large for 12 clusters as for 48, and for 24 as for 96.
+  const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
+                      0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
+  result.kappa_inf = std::max({1.0, kappa_24, root * root});
+  // Number of independent points to which the correlated ones are equivalent.
+  const double nu = static_cast<double>(points.scores.cols()) / result.kappa_inf;
+  const double correction = nu / std::max(1.0, nu - lost_degrees_of_freedom);
+  result.covariance =
+      0.5 * correction * result.kappa_inf * (J_48 / result.kappa_48 + independent);
+  return result;
+}
+
+} // namespace bayesian_icp

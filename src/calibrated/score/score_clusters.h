@@ -1,0 +1,69 @@
+/** \file
+ * \brief Covariance of a sum of scores whose points are correlated in space.
+ */
+#pragma once
+
+#include "calibrated/score/surface_score.h"
+
+namespace bayesian_icp {
+
+/** \brief How points are grouped. */
+struct ClusterOptions {
+  /** Number of clusters, about. */
+  int num_clusters = 48;
+  /** Random partitions over which the result is averaged. */
+  int num_partitions = 8;
+  /** Stream of the random partitions. */
+  std::uint64_t stream = 0;
+};
+
+/** \brief Scores of points and where the points are. */
+struct PointScores {
+  /** One active point per column [1/m, 1/rad]. */
+  Matrix6Xd scores;
+  /** Square roots of their Gauss-Newton informations; empty if the pose was not fitted
+   * to these scores. */
+  Matrix6Xd jacobians;
+  /** Source frame [m]. */
+  Eigen::Matrix3Xd positions;
+};
+
+/** \brief The active points of \p scores. */
+PointScores
+activeScores(const SurfaceScores& scores, const Eigen::Matrix3Xd& source_points);
+
+/** \brief Covariance of the total score if clusters of neighbouring points are
+ * independent of each other.
+ *
+ * Clusters are the leaves of randomised kd-splits, about equal in number of points. The
+ * sum of outer products of the L clusters' total scores is corrected for the pose
+ * having been fitted: with H_b the Gauss-Newton information of cluster b, its score is
+ * multiplied by (I - H_b H_w^-1)^-1/2, which is the whitened form of CR2 (Bell and
+ * McCaffrey 2002); without jacobians the sum by L / (L - 1).
+ * \param[in] points their scores and positions
+ * \param[in] working_information H_w: what the fit was held by
+ * \param[in] options number of clusters, and partitions to average over */
+Matrix6d
+clusteredCovariance(const PointScores& points,
+                    const Matrix6d& working_information,
+                    const ClusterOptions& options);
+
+/** \brief Covariance J of the total score at a fitted pose. */
+struct ScoreCovariance {
+  Matrix6d covariance = Matrix6d::Zero();
+  /** Ratio to that of independent points, for about 48 clusters ... */
+  double kappa_48 = 1.0;
+  /** ... and extrapolated to clusters so large that they are independent, at least 1.
+   */
+  double kappa_inf = 1.0;
+};
+
+/** \brief Estimate J: half the shape of 48 clusters, half that of independent points,
+ * both of the size of clusters that are independent, and larger by nu / (nu - 13) for
+ * the nu = n / kappa_inf independent points from which it was estimated.
+ * \param[in] points their scores and positions
+ * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
+ScoreCovariance
+scoreCovariance(const PointScores& points, const Matrix6d& fit_precision);
+
+} // namespace bayesian_icp

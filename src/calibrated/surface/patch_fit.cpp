@@ -1,0 +1,330 @@
+#include "calibrated/surface/patch_fit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+namespace {
+
+/** A neighbourhood grows to at most this multiple of num_neighbors, until it is wide
+ * enough for its noise ... */
+constexpr int max_growth = 16;
+/** ... and has this aspectOf(). */
+constexpr double wanted_aspect = 0.35;
+/** Narrower neighbourhoods are lines. */
+constexpr double min_aspect = 0.2;
+/** A quadric's slopes are known at least as well as from points that fill, evenly, an
+ * ellipse of the smallest aspect: 4 is the variance of a slope in the unit disc, of one
+ * point and unit noise. */
+constexpr double max_slope_variance = 4.0 / (min_aspect * min_aspect);
+/** Smallest ratio of Clark and Evans (1954) of points that cover a quadric: the mean
+ * distance of nearest neighbours over that of points scattered at random. Separate scan
+ * lines have a smaller one; between them nothing constrains a quadric. */
+constexpr double min_evenness = 0.8;
+/** Number of points whose nearest neighbours are searched. */
+constexpr Eigen::Index num_evenness_points = 32;
+/** A quadric that misses its points by less than this part of the radius is good
+ * enough, however exact they are. */
+constexpr double negligible_misfit = 1e-3;
+
+/** Points are gathered in a ball, and then chosen by their distance in the plane of the
+ * surface. At its rim, a ball prefers points whose noise brings them nearer to its
+ * centre; surfaces would look flatter than they are. */
+constexpr double ball_to_neighborhood = 1.5;
+
+/** Least points of a plane, and its largest thickness as a part of its radius. */
+constexpr Eigen::Index min_plane_points = 8;
+constexpr double max_thickness = 0.5;
+
+constexpr int num_quadric_terms = 6;
+constexpr int num_quartic_terms = 15;
+/** Points below which the quartic is no test of the quadric. */
+constexpr Eigen::Index min_points = 21;
+
+using QuarticTerms = Eigen::Matrix<double, num_quartic_terms, 1>;
+using QuarticMatrix = Eigen::Matrix<double, num_quartic_terms, num_quartic_terms>;
+
+/** Principal axes of a neighbourhood. */
+struct PrincipalFrame {
+  /** Columns: widest, second, normal. */
+  Matrix3d axes;
+  /** Standard deviation across the surface [m]. */
+  double thickness;
+};
+
+PrincipalFrame
+principalFrame(const PointRows& points)
+{
+  const PointRows centred = points.rowwise() - points.colwise().mean();
+  Matrix3d covariance;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j)
+      covariance(i, j) = covariance(j, i) = centred.col(i).dot(centred.col(j));
+  covariance /= static_cast<double>(points.rows());
+  Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
+  solver.computeDirect(covariance);
+  PrincipalFrame frame;
+  frame.axes << solver.eigenvectors().col(2), solver.eigenvectors().col(1),
+      solver.eigenvectors().col(0);
+  frame.thickness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+  return frame;
+}
+
+/** Ratio of the points' spread in the plane, across the parabola along the widest axis
+ * that fits them best, to that along the axis. Scan lines are bent. A bent line
+ * seems to have a width, but says nothing about the slope across it.
+ * \param[in] local in the principal frame */
+double
+aspectOf(const PointRows& local)
+{
+  const Eigen::ArrayXd x = local.col(0).array() - local.col(0).mean();
+  const double spread = x.square().sum();
+  if (!(spread > 0.0))
+    return 0.0;
+  // Second axis and parabola without what a line explains; the axes are uncorrelated.
+  const Eigen::ArrayXd y = local.col(1).array() - local.col(1).mean();
+  Eigen::ArrayXd bend = x.square() - x.square().mean();
+  bend -= x * ((bend * x).sum() / spread);
+  const double size = bend.square().sum();
+  const double explained =
+      size > 0.0 ? (bend * y).sum() * (bend * y).sum() / size : 0.0;
+  return std::sqrt(std::max(0.0, y.square().sum() - explained) / spread);
+}
+
+/** Clark and Evans' ratio: 1 for points at random, 2 for a square grid, less if they
+ * are on lines.
+ * \param[in] local in the principal frame */
+double
+evennessOf(const PointRows& local)
+{
+  const Eigen::Index num_points = local.rows();
+  const Eigen::ArrayXd x = local.col(0), y = local.col(1);
+  // Of an ellipse that is filled evenly.
+  constexpr double pi = 3.14159265358979323846;
+  const double area =
+      4.0 * pi *
+      std::sqrt((x - x.mean()).square().mean() * (y - y.mean()).square().mean());
+  const Eigen::Index step = std::max<Eigen::Index>(1, num_points / num_evenness_points);
+  double sum = 0.0;
+  int count = 0;
+  for (Eigen::Index i = 0; i < num_points; i += step, ++count) {
+    Eigen::ArrayXd squared_distances = (x - x[i]).square() + (y - y[i]).square();
+    squared_distances[i] = std::numeric_limits<double>::infinity();
+    sum += std::sqrt(squared_distances.minCoeff());
+  }
+  return sum / count / (0.5 * std::sqrt(area / static_cast<double>(num_points)));
+}
+
+/** Place of x^a y^b, a + b = degree, among 1, x, y, x^2, x y, y^2, ... */
+constexpr int
+placeOfTerm(int degree, int power_of_y)
+{
+  return degree * (degree + 1) / 2 + power_of_y;
+}
+
+/** Normal equations of the regression of heights on quartic terms of the plane, which
+ * is scaled to the unit disc. */
+struct Regression {
+  QuarticMatrix normal_matrix;
+  QuarticTerms moments;
+  double squared_heights;
+
+  Regression(const PointRows& local, double radius)
+  {
+    const ProductTerms terms =
+        productTerms(local.col(0) / radius, local.col(1) / radius);
+    moments = terms.leftCols<num_quartic_terms>().transpose() * local.col(2);
+    squared_heights = local.col(2).squaredNorm();
+    fillNormalMatrix(terms.colwise().sum());
+  }
+
+private:
+  static constexpr int max_degree = 4;
+  static constexpr int num_product_terms = placeOfTerm(2 * max_degree + 1, 0);
+  /** One point per row. */
+  using ProductTerms = Eigen::Matrix<double, Eigen::Dynamic, num_product_terms>;
+
+  /** Products of two quartic terms: those up to the eighth degree. */
+  static ProductTerms
+  productTerms(const Eigen::VectorXd& x, const Eigen::VectorXd& y)
+  {
+    ProductTerms terms(x.size(), num_product_terms);
+    terms.col(0).setOnes();
+    for (int degree = 1; degree <= 2 * max_degree; ++degree) {
+      const int place = placeOfTerm(degree, 0), lower = placeOfTerm(degree - 1, 0);
+      for (int k = 0; k < degree; ++k)
+        terms.col(place + k) = x.cwiseProduct(terms.col(lower + k));
+      terms.col(place + degree) = y.cwiseProduct(terms.col(place - 1));
+    }
+    return terms;
+  }
+
+  void
+  fillNormalMatrix(const Eigen::Matrix<double, 1, num_product_terms>& sums)
+  {
+    for (int p = 0; p <= max_degree; ++p)
+      for (int q = 0; q <= max_degree; ++q)
+        for (int j = 0; j <= p; ++j)
+          for (int k = 0; k <= q; ++k)
+            normal_matrix(placeOfTerm(p, j), placeOfTerm(q, k)) =
+                sums[placeOfTerm(p + q, j + k)];
+  }
+};
+
+/** F statistic of the quartic's extra terms. */
+double
+misfit(const Regression& regression, double quadric_rss, Eigen::Index num_points)
+{
+  QuarticMatrix matrix = regression.normal_matrix;
+  // A scan line leaves some terms undetermined.
+  matrix.diagonal().array() += 1e-9 * static_cast<double>(num_points);
+  const QuarticTerms solution = matrix.ldlt().solve(regression.moments);
+  constexpr double least_rss = 1e-18;
+  const double rss = std::max(
+      least_rss, regression.squared_heights - solution.dot(regression.moments));
+  constexpr double extra_terms = num_quartic_terms - num_quadric_terms;
+  return (quadric_rss - rss) / extra_terms /
+         (rss / static_cast<double>(num_points - num_quartic_terms));
+}
+
+/** Make a patch the quadric of the neighbours in its frame, if they lie on one. */
+void
+fitQuadric(const PointRows& local,
+           double aspect,
+           const SurfaceModelOptions& options,
+           SurfacePatch& patch)
+{
+  const Eigen::Index num_points = local.rows();
+  const Regression regression(local, patch.radius);
+  using QuadricMatrix = Eigen::Matrix<double, num_quadric_terms, num_quadric_terms>;
+  const QuadricMatrix matrix =
+      regression.normal_matrix.topLeftCorner<num_quadric_terms, num_quadric_terms>();
+  const Vector6d moments = regression.moments.head<num_quadric_terms>();
+  const Eigen::LDLT<QuadricMatrix> factors = matrix.ldlt();
+  const Vector6d solution = factors.solve(moments);
+  const double slope_variance =
+      static_cast<double>(num_points) * std::max(factors.solve(Vector6d::Unit(1))[1],
+                                                 factors.solve(Vector6d::Unit(2))[2]);
+  const double rss = std::max(0.0, regression.squared_heights - solution.dot(moments));
+  const double sigma =
+      std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
+  const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
+  // The tests that cost as much as the fit are last.
+  const bool is_quadric =
+      solution.allFinite() && aspect >= min_aspect &&
+      slope_variance < max_slope_variance &&
+      centroid_offset < options.max_centroid_offset * patch.radius &&
+      patch.radius > options.min_radius_to_noise * sigma &&
+      (sigma < negligible_misfit * patch.radius ||
+       misfit(regression, rss, num_points) < options.max_misfit) &&
+      evennessOf(local) > min_evenness;
+  if (!is_quadric)
+    return;
+  const double r = 1.0 / patch.radius;
+  patch.quadric = {solution[0],
+                   solution[1] * r,
+                   solution[2] * r,
+                   solution[3] * r * r,
+                   solution[4] * r * r,
+                   solution[5] * r * r};
+  patch.sigma = sigma;
+  patch.kind = PatchKind::Quadric;
+}
+
+/** Make a patch the plane of the neighbours in its frame, if they are a surface at all.
+ */
+void
+fitPlane(const PointRows& local, double thickness, double aspect, SurfacePatch& patch)
+{
+  const auto num_points = static_cast<double>(local.rows());
+  patch.quadric.fill(0.0);
+  patch.quadric[0] = local.col(2).mean();
+  patch.sigma = thickness * std::sqrt(num_points / std::max(1.0, num_points - 3.0));
+  const bool is_plane = local.rows() >= min_plane_points && patch.radius > 0.0 &&
+                        aspect >= min_aspect &&
+                        patch.sigma < max_thickness * patch.radius;
+  patch.kind = is_plane ? PatchKind::Plane : PatchKind::None;
+}
+
+/** The \p count points around \p point that are nearest to it in the plane of the
+ * surface, relative to it, into workspace.neighbors. */
+void
+gatherNeighbors(const PointNeighbors& cloud,
+                const Vector3f& point,
+                int count,
+                PatchFitWorkspace& workspace)
+{
+  cloud.find(
+      point, static_cast<std::size_t>(ball_to_neighborhood * count), workspace.nearest);
+  const auto& indices = workspace.nearest.indices;
+  PointRows ball(static_cast<Eigen::Index>(indices.size()), 3);
+  for (Eigen::Index i = 0; i < ball.rows(); ++i)
+    ball.row(i) = (cloud.points().col(indices[static_cast<std::size_t>(i)]) - point)
+                      .cast<double>()
+                      .transpose();
+  const Matrix3d axes = principalFrame(ball).axes;
+  const Eigen::ArrayXd distances = ball.lazyProduct(axes.col(0)).array().square() +
+                                   ball.lazyProduct(axes.col(1)).array().square();
+  auto& ordered = workspace.ordered;
+  ordered.assign(distances.data(), distances.data() + distances.size());
+  count = std::min(count, static_cast<int>(ordered.size()));
+  std::nth_element(ordered.begin(), ordered.begin() + count - 1, ordered.end());
+  const double furthest = ordered[static_cast<std::size_t>(count - 1)];
+  workspace.neighbors.resize(count, 3);
+  int next = 0;
+  for (Eigen::Index i = 0; i < ball.rows() && next < count; ++i)
+    if (distances[i] <= furthest)
+      workspace.neighbors.row(next++) = ball.row(i);
+}
+
+} // namespace
+
+SurfacePatch
+fitPatch(const PointNeighbors& cloud,
+         const Vector3f& point,
+         double max_radius,
+         const SurfaceModelOptions& options,
+         PatchFitWorkspace& workspace,
+         double& spacing)
+{
+  const int num_points = static_cast<int>(cloud.points().cols());
+  SurfacePatch patch;
+  patch.origin = patch.centre = point.cast<double>();
+  for (int growth = 1;; growth *= 2) {
+    const int count = std::min(growth * options.num_neighbors, num_points);
+    gatherNeighbors(cloud, point, count, workspace);
+    const PointRows& neighbors = workspace.neighbors;
+    const PrincipalFrame frame = principalFrame(neighbors);
+    const PointRows local = neighbors.lazyProduct(frame.axes);
+    const double aspect = aspectOf(local);
+    patch.axes = frame.axes;
+    patch.radius = std::sqrt(local.leftCols<2>().rowwise().squaredNorm().maxCoeff());
+    const bool is_too_wide = patch.radius > max_radius;
+    const bool is_thick = patch.radius < options.min_radius_to_noise * frame.thickness;
+    const bool is_narrow = aspect < wanted_aspect;
+    const int next = 2 * growth;
+    if (!is_too_wide && (is_thick || is_narrow) && next <= max_growth &&
+        next * options.num_neighbors <= num_points)
+      continue;
+    const auto& squared_distances = workspace.nearest.squared_distances;
+    spacing =
+        squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
+    fitPlane(local, frame.thickness, aspect, patch);
+    if (is_too_wide)
+      patch.kind = PatchKind::None;
+    else if (neighbors.rows() >= min_points && patch.radius > 0.0)
+      fitQuadric(local, aspect, options, patch);
+    return patch;
+  }
+}
+
+} // namespace bayesian_icp

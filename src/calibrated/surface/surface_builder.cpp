@@ -1,0 +1,267 @@
+#include "calibrated/surface/surface_builder.h"
+
+#include "calibrated/median.h"
+#include "calibrated/surface/even_choice.h"
+#include "calibrated/surface/patch_fit.h"
+#include "threads/first_exception.h"
+#include "threads/num_threads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Matrix3Xf;
+using Eigen::Vector3d;
+
+namespace {
+
+/** Patches over which the noise is pooled. */
+constexpr std::size_t num_pooled = 12;
+/** How far a point may be off the surface that it takes over, in the donor's noise. */
+constexpr double max_takeover_residual = 2.5;
+/** Smallest sigma of a patch: in units of the median, and of the spacing for targets
+ * without noise. */
+constexpr double min_sigma_to_median = 0.3;
+constexpr double min_sigma_to_spacing = 1e-4;
+
+/** Neighbourhoods have at most this part of the root mean square distance of the points
+ * from their centroid as a radius. A plane through two distant scan lines says nothing
+ * of the ground between them, and a large part of the source would share its errors. A
+ * target of few points needs more: max_radius_of_few, in units of sqrt(neighbours /
+ * points) of that distance. */
+constexpr double max_radius_to_extent = 0.25, max_radius_of_few = 4.0;
+/** A smaller share of quadrics does not say what the target's noise is. */
+constexpr double min_share_of_quadrics = 0.05;
+
+/** Indices that a thread takes at a time. */
+constexpr int share_size = 64;
+
+/** work(index, workspace) for every index of \p order; a thread has one workspace.
+ * Rethrows the first exception. */
+template <typename Workspace, typename Work>
+void
+forEachIndex(const std::vector<std::uint32_t>& order, int num_threads, const Work& work)
+{
+  const auto count = static_cast<std::ptrdiff_t>(order.size());
+  FirstException failure;
+#pragma omp parallel num_threads(num_threads)
+  {
+    Workspace workspace;
+#pragma omp for schedule(dynamic, share_size)
+    for (std::ptrdiff_t i = 0; i < count; ++i)
+      failure.guard([&] { work(order[static_cast<std::size_t>(i)], workspace); });
+  }
+  failure.rethrow();
+}
+
+bool
+isQuadric(const SurfacePatch& patch)
+{
+  return patch.kind == PatchKind::Quadric;
+}
+
+} // namespace
+
+SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
+                               const SurfaceModelOptions& options,
+                               int num_threads)
+: options_(options)
+, num_threads_(numThreadsFor(num_threads, points.cols() / share_size))
+, points_(points)
+, columns_(evenChoice(points, options.max_patches))
+, patch_of_(static_cast<std::size_t>(points.cols()), KdTree::none)
+, patches_(columns_.size())
+, neighbors_(columns_.size())
+, spacings_(columns_.size())
+{
+  for (std::size_t j = 0; j < columns_.size(); ++j)
+    patch_of_[static_cast<std::size_t>(columns_[j])] = static_cast<std::uint32_t>(j);
+}
+
+void
+SurfaceBuilder::fitPatches()
+{
+  const PointNeighbors cloud(points_);
+  const Eigen::Matrix3Xd centred =
+      points_.cast<double>().colwise() - points_.cast<double>().rowwise().mean();
+  const auto num_points = static_cast<double>(centred.cols());
+  const double max_radius =
+      std::sqrt(centred.squaredNorm() / num_points) *
+      std::max(max_radius_to_extent,
+               max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
+  const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
+    const std::uint32_t patch = patch_of_[point];
+    if (patch == KdTree::none)
+      return;
+    patches_[patch] = fitPatch(
+        cloud, points_.col(point), max_radius, options_, workspace, spacings_[patch]);
+    noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
+  };
+  forEachIndex<PatchFitWorkspace>(cloud.alongTree(), num_threads_, fitAt);
+  completeNeighbors();
+}
+
+/** \param[in] points nearest first */
+void
+SurfaceBuilder::noteNeighbors(const std::vector<std::uint32_t>& points,
+                              NearestPatches& nearest) const
+{
+  for (const std::uint32_t point : points) {
+    if (nearest.count == num_donors)
+      return;
+    if (patch_of_[point] != KdTree::none)
+      nearest.patches[nearest.count++] = patch_of_[point];
+  }
+}
+
+/** Whether fewer neighbours are known than will be asked for. */
+bool
+SurfaceBuilder::lacksNeighbors(std::size_t patch) const
+{
+  const std::size_t wanted = isQuadric(patches_[patch]) ? num_pooled : num_donors;
+  return neighbors_[patch].count < std::min(wanted, patches_.size());
+}
+
+/** Searches where a neighbourhood had too few points with a patch. */
+void
+SurfaceBuilder::completeNeighbors()
+{
+  bool is_complete = true;
+  for (std::size_t j = 0; j < patches_.size() && is_complete; ++j)
+    is_complete = !lacksNeighbors(j);
+  if (is_complete)
+    return;
+  Matrix3Xf centre_points(3, static_cast<Index>(columns_.size()));
+  for (std::size_t j = 0; j < columns_.size(); ++j)
+    centre_points.col(static_cast<Index>(j)) = points_.col(columns_[j]);
+  const PointNeighbors centres(centre_points);
+  const auto searchAt = [&](std::uint32_t patch, NeighborList& nearest) {
+    if (!lacksNeighbors(patch))
+      return;
+    centres.find(centre_points.col(patch), num_donors, nearest);
+    neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
+    std::copy(nearest.indices.begin(),
+              nearest.indices.end(),
+              neighbors_[patch].patches.begin());
+  };
+  forEachIndex<NeighborList>(centres.alongTree(), num_threads_, searchAt);
+}
+
+/** Root mean square of the noise of quadrics around a patch, its own if there is none.
+ */
+double
+SurfaceBuilder::pooledNoise(std::size_t patch) const
+{
+  const NearestPatches& nearest = neighbors_[patch];
+  const std::size_t count = std::min<std::size_t>(nearest.count, num_pooled);
+  double sum = 0.0;
+  int used = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const SurfacePatch& neighbor = patches_[nearest.patches[k]];
+    if (isQuadric(neighbor)) {
+      sum += neighbor.sigma * neighbor.sigma;
+      ++used;
+    }
+  }
+  return used > 0 ? std::sqrt(sum / used) : patches_[patch].sigma;
+}
+
+void
+SurfaceBuilder::poolNoise()
+{
+  std::vector<double> noise(patches_.size());
+  const auto count = static_cast<std::ptrdiff_t>(patches_.size());
+#pragma omp parallel for num_threads(num_threads_) schedule(static)
+  for (std::ptrdiff_t j = 0; j < count; ++j) {
+    const auto patch = static_cast<std::size_t>(j);
+    noise[patch] =
+        isQuadric(patches_[patch]) ? pooledNoise(patch) : patches_[patch].sigma;
+  }
+  std::vector<double> of_quadrics;
+  for (std::size_t j = 0; j < patches_.size(); ++j)
+    if (isQuadric(patches_[j]))
+      of_quadrics.push_back(noise[j]);
+  const bool are_few = static_cast<double>(of_quadrics.size()) <
+                       min_share_of_quadrics * static_cast<double>(noise.size());
+  median_sigma_ = medianOf(are_few ? noise : of_quadrics);
+  const double least =
+      std::max({min_sigma_to_median * median_sigma_,
+                min_sigma_to_spacing * spacing(),
+                static_cast<double>(std::numeric_limits<float>::min())});
+  for (std::size_t j = 0; j < patches_.size(); ++j)
+    patches_[j].sigma = std::max(noise[j], least);
+  median_sigma_ = std::max(median_sigma_, least);
+}
+
+void
+SurfaceBuilder::takeOver()
+{
+  std::vector<std::uint32_t> donors(patches_.size(), KdTree::none);
+  const auto count = static_cast<std::ptrdiff_t>(patches_.size());
+#pragma omp parallel for num_threads(num_threads_) schedule(dynamic, 1024)
+  for (std::ptrdiff_t j = 0; j < count; ++j)
+    if (!isQuadric(patches_[static_cast<std::size_t>(j)]))
+      donors[static_cast<std::size_t>(j)] = donorOf(static_cast<std::size_t>(j));
+  // Donors are quadrics, so none of them is overwritten.
+  for (std::size_t j = 0; j < patches_.size(); ++j)
+    if (donors[j] != KdTree::none) {
+      const Vector3d centre = patches_[j].centre;
+      patches_[j] = patches_[donors[j]];
+      patches_[j].centre = centre;
+    }
+}
+
+/** The quadric on which a point lies, or KdTree::none. */
+std::uint32_t
+SurfaceBuilder::donorOf(std::size_t patch) const
+{
+  std::uint32_t best = KdTree::none;
+  double best_rank = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < neighbors_[patch].count; ++k) {
+    const std::uint32_t index = neighbors_[patch].patches[k];
+    const SurfacePatch& donor = patches_[index];
+    if (!isQuadric(donor))
+      continue;
+    const SurfaceOffset offset = offsetFrom(donor, patches_[patch].centre);
+    const double residual = std::abs(offset.distance) / donor.sigma;
+    if (residual > max_takeover_residual ||
+        offset.in_plane > options_.takeover_radius * donor.radius)
+      continue;
+    const double rank = offset.in_plane / donor.radius + 0.2 * residual;
+    if (rank < best_rank) {
+      best_rank = rank;
+      best = index;
+    }
+  }
+  return best;
+}
+
+Matrix3Xf
+SurfaceBuilder::projectedPoints() const
+{
+  Matrix3Xf projected(3, static_cast<Index>(patches_.size()));
+  for (std::size_t j = 0; j < patches_.size(); ++j) {
+    const SurfaceOffset offset = offsetFrom(patches_[j], patches_[j].centre);
+    projected.col(static_cast<Index>(j)) =
+        (patches_[j].centre - offset.distance * offset.normal).cast<float>();
+  }
+  return projected;
+}
+
+std::vector<SurfacePatch>
+SurfaceBuilder::takePatches()
+{
+  return std::move(patches_);
+}
+
+double
+SurfaceBuilder::spacing() const
+{
+  return medianOf(spacings_);
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,96 @@
+/** \file
+ * \brief Internal: the stages of building a SurfaceModel.
+ */
+#pragma once
+
+#include "calibrated/surface/surface_model.h"
+#include "search/point_neighbors.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief Fits a patch to every chosen point of a target, and corrects the patches by
+ * their neighbours. Stages are for one call each, in the order below; all are parallel
+ * and give the same bits for every number of threads. */
+class SurfaceBuilder {
+public:
+  /** \param[in] points 3 x n, finite, relative to the model's origin [m]
+   * \param[in] options of the patches; must, as \p points, outlive this object
+   * \param[in] num_threads 0: as OpenMP would */
+  SurfaceBuilder(const Eigen::Matrix3Xf& points,
+                 const SurfaceModelOptions& options,
+                 int num_threads);
+
+  void
+  fitPatches();
+
+  /** \brief Noise of every quadric from those around it. */
+  void
+  poolNoise();
+
+  /** \brief Points without a quadric take over that of a neighbour on which they lie.
+   */
+  void
+  takeOver();
+
+  /** \brief The patches' points, on their surface. */
+  Eigen::Matrix3Xf
+  projectedPoints() const;
+
+  std::vector<SurfacePatch>
+  takePatches();
+
+  /** \brief Of the pooled noise [m]. */
+  double
+  medianSigma() const
+  {
+    return median_sigma_;
+  }
+
+  /** \brief Median distance of a point to its nearest other one [m]. */
+  double
+  spacing() const;
+
+private:
+  /** Neighbours among which a point at an edge looks for a patch to take over. */
+  static constexpr std::size_t num_donors = 32;
+
+  /** The nearest patches of a patch, itself the first. */
+  struct NearestPatches {
+    std::array<std::uint32_t, num_donors> patches;
+    std::uint32_t count = 0;
+  };
+
+  void
+  noteNeighbors(const std::vector<std::uint32_t>& points,
+                NearestPatches& nearest) const;
+
+  void
+  completeNeighbors();
+
+  bool
+  lacksNeighbors(std::size_t patch) const;
+
+  double
+  pooledNoise(std::size_t patch) const;
+
+  std::uint32_t
+  donorOf(std::size_t patch) const;
+
+  const SurfaceModelOptions& options_;
+  int num_threads_;
+  const Eigen::Matrix3Xf& points_;
+  /** The point of each patch. */
+  std::vector<Eigen::Index> columns_;
+  /** The patch of each point, or KdTree::none. */
+  std::vector<std::uint32_t> patch_of_;
+  std::vector<SurfacePatch> patches_;
+  std::vector<NearestPatches> neighbors_;
+  std::vector<double> spacings_;
+  double median_sigma_ = 0.0;
+};
+
+} // namespace bayesian_icp

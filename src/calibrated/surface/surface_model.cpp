@@ -1,0 +1,85 @@
+#include "calibrated/surface/surface_model.h"
+
+#include "calibrated/surface/even_choice.h"
+#include "calibrated/surface/surface_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Matrix3Xf;
+using Eigen::Vector3d;
+
+namespace {
+
+/** Points of neighbourhoods, for each patch. */
+constexpr Index points_to_patches = 4;
+
+Matrix3Xd
+finiteColumns(const Matrix3Xd& points)
+{
+  Matrix3Xd finite(3, points.cols());
+  Index count = 0;
+  for (Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite())
+      finite.col(count++) = points.col(i);
+  finite.conservativeResize(3, count);
+  return finite;
+}
+
+} // namespace
+
+SurfaceOffset
+offsetFrom(const SurfacePatch& patch, const Vector3d& point)
+{
+  const auto& a = patch.quadric;
+  const Vector3d local = patch.axes.transpose() * (point - patch.origin);
+  const double x = local.x(), y = local.y();
+  const double height =
+      a[0] + a[1] * x + a[2] * y + a[3] * x * x + a[4] * x * y + a[5] * y * y;
+  const double slope_x = a[1] + 2.0 * a[3] * x + a[4] * y;
+  const double slope_y = a[2] + a[4] * x + 2.0 * a[5] * y;
+  const double length = std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
+  SurfaceOffset offset;
+  offset.distance = (local.z() - height) / length;
+  offset.normal = patch.axes * Vector3d(-slope_x, -slope_y, 1.0) / length;
+  const Vector3d from_centre = patch.axes.transpose() * (point - patch.centre);
+  offset.in_plane = std::max(local.head<2>().norm(), from_centre.head<2>().norm());
+  return offset;
+}
+
+SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
+                           const SurfaceModelOptions& options,
+                           int num_threads)
+: origin_(Vector3d::Zero())
+, tree_(Matrix3Xf(3, 0))
+{
+  Matrix3Xd finite = finiteColumns(target_points);
+  if (finite.cols() == 0)
+    return;
+  origin_ = finite.rowwise().mean();
+  finite.colwise() -= origin_;
+  const Matrix3Xf all = finite.cast<float>();
+  const Matrix3Xf points = all(
+      Eigen::all, evenlyThinned(all, points_to_patches * Index(options.max_patches)));
+  SurfaceBuilder builder(points, options, num_threads);
+  builder.fitPatches();
+  builder.poolNoise();
+  if (options.takeover_radius > 0.0)
+    builder.takeOver();
+  tree_ = KdTree(builder.projectedPoints(), num_threads);
+  median_sigma_ = builder.medianSigma();
+  spacing_ = builder.spacing();
+  patches_ = builder.takePatches();
+  const auto num_usable =
+      std::count_if(patches_.begin(), patches_.end(), [](const SurfacePatch& p) {
+        return p.isUsable();
+      });
+  usable_fraction_ =
+      static_cast<double>(num_usable) / static_cast<double>(patches_.size());
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,157 @@
+/** \file
+ * \brief The target as a surface: patches that cover it evenly, each with its noise.
+ */
+#pragma once
+
+#include <bayesian_icp/kd_tree.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief What is known of the surface around a point. */
+enum class PatchKind {
+  /** Nothing: too few points, a line, or a tangle. */
+  None,
+  /** A plane, and how rough it is: no quadric fits, or the point is at an edge. */
+  Plane,
+  /** A quadric to within the noise. */
+  Quadric
+};
+
+/** \brief A piece of surface z = a0 + a1 x + a2 y + a3 x^2 + a4 x y + a5 y^2 in its own
+ * frame; a3 to a5 of a plane are zero. */
+struct SurfacePatch {
+  /** Origin of the frame [m]. */
+  Eigen::Vector3d origin;
+  /** Columns: the frame's x, y and z; z is across the surface. */
+  Eigen::Matrix3d axes;
+  /** a0 ... a5 [m, 1, 1, 1/m, 1/m, 1/m]. */
+  std::array<double, 6> quadric;
+  /** The target point that the patch stands for [m]; the origin, unless the patch was
+   * taken over from a neighbour. */
+  Eigen::Vector3d centre;
+  /** Radius of the neighbourhood that was fitted, in the plane of x and y [m]. */
+  double radius;
+  /** Standard deviation of target points across the surface [m]: of a quadric their
+   * noise, pooled over neighbouring quadrics; of a plane its own roughness. */
+  double sigma;
+  PatchKind kind;
+
+  /** \brief Whether distances to it mean something. */
+  bool
+  isUsable() const
+  {
+    return kind != PatchKind::None;
+  }
+};
+
+/** \brief Where a point is with respect to a patch. */
+struct SurfaceOffset {
+  /** Signed, across the surface, to first order in the surface's slope [m]. */
+  double distance;
+  /** In the plane of x and y, from the patch's origin or from its centre, whichever is
+   * further: the quadric is known about the one, the surface is there about the other
+   * [m]. */
+  double in_plane;
+  /** Unit normal of the surface under the point. */
+  Eigen::Vector3d normal;
+};
+
+/** \brief \p point relative to \p patch, both in the frame of the model [m]. */
+SurfaceOffset
+offsetFrom(const SurfacePatch& patch, const Eigen::Vector3d& point);
+
+/** \brief How patches are fitted. The defaults are those of docs/calibration.md. */
+struct SurfaceModelOptions {
+  /** Points of a neighbourhood; doubled where the noise or a scan line makes it thin.
+   */
+  int num_neighbors = 30;
+  /** Smallest ratio of radius to noise of a quadric. */
+  double min_radius_to_noise = 3.0;
+  /** Largest F statistic of a quartic against the quadric, where this misses its points
+   * by more than a thousandth of the radius. */
+  double max_misfit = 2.2;
+  /** Largest distance of the neighbours' centroid from the point, in radii: beyond, the
+   * point is at an edge and has no quadric. */
+  double max_centroid_offset = 0.28;
+  /** In-plane distance, in radii of the donor, within which a point that has no quadric
+   * takes over its neighbour's; 0 for never. */
+  double takeover_radius = 0.5;
+  /** Largest number of patches. In a larger target, this number of points get one; they
+   * cover it evenly. Neighbourhoods consist of four times as many points, so patches
+   * are about as wide as they are apart, whatever the density of the target. */
+  int max_patches = 20000;
+};
+
+/** \brief Patches that cover a target cloud evenly and the tree to find them.
+ *
+ * Coordinates inside are relative to origin(), so that scans far from the origin of
+ * their frame (UTM) lose nothing. Building is parallel and gives the same bits for
+ * every number of threads. */
+class SurfaceModel {
+public:
+  /** \param[in] target_points 3 x n [m]; points that are not finite are left out
+   * \param[in] options of the patches
+   * \param[in] num_threads 0: as OpenMP would */
+  explicit SurfaceModel(const Eigen::Matrix3Xd& target_points,
+                        const SurfaceModelOptions& options = SurfaceModelOptions(),
+                        int num_threads = 0);
+
+  /** \brief Origin of the model's frame, in the target frame [m]. */
+  const Eigen::Vector3d&
+  origin() const
+  {
+    return origin_;
+  }
+
+  const std::vector<SurfacePatch>&
+  patches() const
+  {
+    return patches_;
+  }
+
+  /** \brief Over the points of patches(), projected to them, in this order and in the
+   * model's frame. */
+  const KdTree&
+  tree() const
+  {
+    return tree_;
+  }
+
+  /** \brief Median noise of the quadrics, or of all patches if there is none [m]; 0
+   * without points. */
+  double
+  medianSigma() const
+  {
+    return median_sigma_;
+  }
+
+  /** \brief Median distance of a patch's point to the nearest other one of those that
+   * neighbourhoods are of [m]. */
+  double
+  spacing() const
+  {
+    return spacing_;
+  }
+
+  /** \brief Share of patches that are usable, in [0, 1]. */
+  double
+  usableFraction() const
+  {
+    return usable_fraction_;
+  }
+
+private:
+  Eigen::Vector3d origin_;
+  std::vector<SurfacePatch> patches_;
+  KdTree tree_;
+  double median_sigma_ = 0.0;
+  double spacing_ = 0.0;
+  double usable_fraction_ = 0.0;
+};
+
+} // namespace bayesian_icp

@@ -1,0 +1,250 @@
+#include "exact/pose_energy.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numeric>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** Rows: the axes about which roll, pitch and yaw turn the moved points. */
+Eigen::Matrix3d
+rotationAxes(const Vector6d& pose)
+{
+  const double sp = std::sin(pose[4]), cp = std::cos(pose[4]);
+  const double sy = std::sin(pose[5]), cy = std::cos(pose[5]);
+  Eigen::Matrix3d axes;
+  axes << cy * cp, sy * cp, -sp, // roll
+      -sy, cy, 0.0,              // pitch
+      0.0, 0.0, 1.0;             // yaw
+  return axes;
+}
+
+/** Derivatives by a rotation vector to derivatives by roll, pitch, yaw. */
+Matrix6d
+toAngles(const Eigen::Matrix3d& axes)
+{
+  Matrix6d map = Matrix6d::Identity();
+  map.bottomRightCorner<3, 3>() = axes;
+  return map;
+}
+
+Matrix6d
+congruence(const Matrix6d& map, const Matrix6d& inner)
+{
+  return map * inner * map.transpose();
+}
+
+/** Force f at the lever arm a: translation and rotation vector. */
+Vector6d
+wrench(const Eigen::Vector3f& arm, const Eigen::Vector3f& force)
+{
+  Vector6d w;
+  w << force.cast<double>(), arm.cross(force).cast<double>();
+  return w;
+}
+
+/** Energy and gradient of one match, in rotation vectors. */
+void
+addResidual(const ResidualOptions& residual,
+            const Eigen::Vector3f& arm,
+            const Eigen::Vector3f& r,
+            BatchTerms::Extras extras,
+            BatchTerms& terms)
+{
+  const double squared = static_cast<double>(r.squaredNorm());
+  terms.energy += robustEnergy(residual, squared);
+  const Vector6d gradient = robustWeight(residual, squared) * wrench(arm, r);
+  terms.gradient += gradient;
+  if (extras == BatchTerms::SecondMoment)
+    terms.second_moment.noalias() += gradient * gradient.transpose();
+}
+
+/** Gauss-Newton matrices of one match without its robust weight. */
+void
+addCurvature(const Eigen::Vector3f& arm,
+             const Eigen::Vector3f& normal,
+             BatchTerms& terms)
+{
+  for (int k = 0; k < 3; ++k) {
+    const Vector6d row = wrench(arm, Eigen::Vector3f::Unit(k));
+    terms.point_curvature.noalias() += row * row.transpose();
+  }
+  const Vector6d row = wrench(arm, normal);
+  terms.plane_curvature.noalias() += row * row.transpose();
+}
+
+std::vector<std::size_t>
+allPoints(std::size_t num_points)
+{
+  std::vector<std::size_t> all(num_points);
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  return all;
+}
+
+} // namespace
+
+PoseEnergy::PoseEnergy(const Eigen::Matrix3Xd& source_points,
+                       const Target& target,
+                       const Prior& prior,
+                       double weight,
+                       const ResidualOptions& residual)
+: target_(target)
+, prior_(prior)
+, weight_(weight)
+, residual_(residual)
+, centroid_(source_points.rowwise().mean())
+, arms_((source_points.colwise() - centroid_).cast<float>())
+, normals_(patchNormals(arms_))
+{}
+
+double
+PoseEnergy::energy(const Vector6d& theta) const
+{
+  EnergyWorkspace workspace = makeWorkspace();
+  return energy(theta, workspace);
+}
+
+double
+PoseEnergy::energy(const Vector6d& theta, EnergyWorkspace& workspace) const
+{
+  const auto terms = batchTerms(
+      toPhi(theta), allPoints(numPoints()), BatchTerms::Nothing, residual_, workspace);
+  return weight_ * terms.energy + prior_.energy(theta);
+}
+
+Vector6d
+PoseEnergy::energyGradient(const Vector6d& theta) const
+{
+  EnergyWorkspace workspace = makeWorkspace();
+  const Vector6d phi = toPhi(theta);
+  Vector6d gradient =
+      batchTerms(phi, allPoints(numPoints()), BatchTerms::Nothing, residual_, workspace)
+          .gradient;
+  // phi's translation is theta's plus R c - c.
+  const Eigen::Vector3d Rc = rotationOf(theta) * centroid_;
+  gradient.tail<3>() += rotationAxes(theta) * Rc.cross(gradient.head<3>());
+  return weight_ * gradient + prior_.energyGradient(theta);
+}
+
+Vector6d
+PoseEnergy::toTheta(const Vector6d& phi) const
+{
+  Vector6d theta = phi;
+  theta.head<3>() += centroid_ - rotationOf(phi) * centroid_;
+  return theta;
+}
+
+Vector6d
+PoseEnergy::toPhi(const Vector6d& theta) const
+{
+  Vector6d phi = theta;
+  phi.head<3>() += rotationOf(theta) * centroid_ - centroid_;
+  return phi;
+}
+
+void
+PoseEnergy::moveBatch(const Vector6d& phi,
+                      const std::vector<std::size_t>& indices,
+                      EnergyWorkspace& workspace) const
+{
+  const Eigen::Matrix3f R = rotationOf(phi).cast<float>();
+  const Eigen::Vector3f centre = (centroid_ + phi.head<3>()).cast<float>();
+  const auto size = static_cast<Eigen::Index>(indices.size());
+  workspace.arms.resize(3, size);
+  workspace.moved.resize(3, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const auto index = indices[static_cast<std::size_t>(i)];
+    workspace.arms.col(i).noalias() = R * arms_.col(static_cast<Eigen::Index>(index));
+    workspace.moved.col(i) = workspace.arms.col(i) + centre;
+  }
+}
+
+BatchTerms
+PoseEnergy::batchTerms(const Vector6d& phi,
+                       const std::vector<std::size_t>& indices,
+                       BatchTerms::Extras extras,
+                       const ResidualOptions& residual,
+                       EnergyWorkspace& workspace) const
+{
+  moveBatch(phi, indices, workspace);
+  target_.match(
+      toTheta(phi), indices, workspace.moved, workspace.hints, workspace.matches);
+  const Eigen::Matrix3f R = rotationOf(phi).cast<float>();
+  const bool is_plane = residual.residual == Residual::PointToPlane;
+  const double size = static_cast<double>(indices.size());
+
+  BatchTerms terms;
+  terms.energy = (size - static_cast<double>(workspace.matches.size())) *
+                 unmatchedEnergy(residual);
+  for (const auto& match : workspace.matches) {
+    const auto column = static_cast<Eigen::Index>(match.column);
+    const Eigen::Vector3f arm = workspace.arms.col(column);
+    const Eigen::Vector3f r = workspace.moved.col(column) - match.point;
+    terms.squared_distance += static_cast<double>(r.squaredNorm());
+    addResidual(residual,
+                arm,
+                is_plane ? match.normal.dot(r) * match.normal : r,
+                extras,
+                terms);
+    if (extras != BatchTerms::Curvature)
+      continue;
+    const auto source = static_cast<Eigen::Index>(indices[match.column]);
+    addCurvature(arm, is_plane ? match.normal : R * normals_.col(source), terms);
+  }
+
+  const Matrix6d map = toAngles(rotationAxes(phi));
+  terms.energy /= size;
+  terms.squared_distance /=
+      std::max(1.0, static_cast<double>(workspace.matches.size()));
+  terms.gradient = map * terms.gradient / size;
+  if (extras == BatchTerms::SecondMoment)
+    terms.second_moment = congruence(map, terms.second_moment / size);
+  if (extras == BatchTerms::Curvature) {
+    terms.point_curvature = congruence(map, terms.point_curvature / size);
+    terms.plane_curvature = congruence(map, terms.plane_curvature / size);
+  }
+  return terms;
+}
+
+double
+PoseEnergy::priorEnergy(const Vector6d& phi) const
+{
+  return prior_.energy(toTheta(phi));
+}
+
+Vector6d
+PoseEnergy::priorGradient(const Vector6d& phi) const
+{
+  Vector6d gradient = prior_.energyGradient(toTheta(phi));
+  const Eigen::Vector3d Rc = rotationOf(phi) * centroid_;
+  gradient.tail<3>() -= rotationAxes(phi) * Rc.cross(gradient.head<3>());
+  return gradient;
+}
+
+Matrix6d
+PoseEnergy::priorPrecision() const
+{
+  // The prior's deviation has the translation of its reference point, R (ref - c) +
+  // c + t' up to a constant.
+  const Vector6d& mean = prior_.mean();
+  const Eigen::Vector3d arm = rotationOf(mean) * (prior_.referencePoint() - centroid_);
+  const Eigen::Matrix3d axes = rotationAxes(mean);
+  Matrix6d jacobian = Matrix6d::Identity();
+  for (int k = 0; k < 3; ++k)
+    jacobian.block<3, 1>(0, 3 + k) = axes.row(k).transpose().cross(arm);
+  return jacobian.transpose() * prior_.variance().cwiseInverse().asDiagonal() *
+         jacobian;
+}
+
+EnergyWorkspace
+PoseEnergy::makeWorkspace() const
+{
+  EnergyWorkspace workspace;
+  workspace.hints.assign(numPoints(), KdTree::none);
+  return workspace;
+}
+
+} // namespace bayesian_icp

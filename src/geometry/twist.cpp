@@ -1,0 +1,82 @@
+#include "geometry/twist.h"
+
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace bayesian_icp {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Translation3d;
+using Eigen::Vector3d;
+
+namespace {
+
+/** d(roll, pitch, yaw) / dw for a small rotation w about the target's fixed axes. At
+ * gimbal lock it is that of a pitch a little off. */
+Matrix3d
+angleRates(const Vector6d& pose)
+{
+  constexpr double min_cos_pitch = 1e-6;
+  const double cos_pitch = std::copysign(
+      std::max(std::abs(std::cos(pose[4])), min_cos_pitch), std::cos(pose[4]));
+  const double tan_pitch = std::sin(pose[4]) / cos_pitch;
+  const double cos_yaw = std::cos(pose[5]), sin_yaw = std::sin(pose[5]);
+  Matrix3d rates;
+  rates << cos_yaw / cos_pitch, sin_yaw / cos_pitch, 0.0, // roll
+      -sin_yaw, cos_yaw, 0.0,                             // pitch
+      cos_yaw * tan_pitch, sin_yaw * tan_pitch, 1.0;      // yaw
+  return rates;
+}
+
+} // namespace
+
+Isometry3d
+movedBy(const Vector6d& xi, const Vector3d& centre, const Isometry3d& T_target_source)
+{
+  return Translation3d(centre) * Isometry3d(expSE3(xi)) * Translation3d(-centre) *
+         T_target_source;
+}
+
+Vector6d
+twistBetween(const Isometry3d& from, const Isometry3d& to, const Vector3d& centre)
+{
+  const Isometry3d motion =
+      Translation3d(-centre) * to * from.inverse() * Translation3d(centre);
+  return logSE3(motion.matrix());
+}
+
+Isometry3d
+isometryOf(const Vector6d& pose)
+{
+  return Isometry3d(matrixOf(pose));
+}
+
+TwistPrior
+twistPrior(const Prior& prior,
+           const Isometry3d& T_target_source,
+           const Vector3d& centre)
+{
+  const Vector6d pose = poseOf(T_target_source.matrix());
+  const Vector6d deviation = prior.deviation(pose);
+  // The prior speaks of the place of its reference point and of the angles.
+  Matrix6d rates = Matrix6d::Identity();
+  rates.topRightCorner<3, 3>() =
+      -crossMatrix(T_target_source * prior.referencePoint() - centre);
+  rates.bottomRightCorner<3, 3>() = angleRates(pose);
+  Vector6d slope = deviation.cwiseQuotient(prior.variance());
+  for (int k = 3; k < 6; ++k)
+    slope[k] = std::sin(deviation[k]) / prior.variance()[k];
+  TwistPrior result;
+  result.precision =
+      rates.transpose() * prior.variance().cwiseInverse().asDiagonal() * rates;
+  result.gradient = rates.transpose() * slope;
+  Vector6d wrapped = deviation;
+  for (int k = 3; k < 6; ++k)
+    wrapped[k] = wrapAngle(deviation[k]);
+  result.deviation = rates.partialPivLu().solve(wrapped);
+  return result;
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,60 @@
+#include "sampler/sampling.h"
+
+#include <bayesian_icp/chains.h>
+
+namespace bayesian_icp {
+
+namespace {
+
+/** Algorithm 1 for one chain. */
+Chain
+runChain(const Vector6d& guess,
+         const SamplerTarget& target,
+         const PaperOptions& options,
+         const ChainOptions& chains,
+         int chain_index,
+         RunState& run)
+{
+  Random random(chains.seed, static_cast<std::uint64_t>(chain_index));
+  const Schedule schedule = {
+      options.num_burn_in, options.thinning, chains.numDrawsOf(chain_index)};
+  Vector6d start = guess;
+  if (!options.initial_spread.isZero(0.0))
+    start += options.initial_spread.cwiseProduct(random.normal6());
+  SgldChain sgld_chain(options.sgld,
+                       schedule.numSteps(),
+                       start,
+                       target.make_gradient(chain_index),
+                       target.has_diverged,
+                       random);
+  const auto to_pose = [](const Vector6d& pose) { return pose; };
+  Path path;
+  advance(sgld_chain, schedule, to_pose, chain_index, run, path);
+  path.has_diverged = path.has_diverged || sgld_chain.isWhiteNoise();
+  return chainOf(path, to_pose);
+}
+
+} // namespace
+
+ChainSet
+runChains(const Vector6d& start,
+          const SamplerTarget& target,
+          const PaperOptions& options,
+          const ChainOptions& chains,
+          const ProgressCallback& progress)
+{
+  ChainSet result;
+  result.chains.resize(static_cast<std::size_t>(chains.num_chains));
+  RunState run(progress, numStepsOf(chains, options.num_burn_in, options.thinning));
+  forEachChain(chains.num_chains,
+               target.is_thread_safe ? chains.num_threads : 1,
+               run,
+               [&](int i) {
+                 result.chains[static_cast<std::size_t>(i)] =
+                     runChain(start, target, options, chains, i, run);
+               });
+  result.cancelled = run.cancelled();
+  return result;
+}
+
+} // namespace bayesian_icp

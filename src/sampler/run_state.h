@@ -1,0 +1,113 @@
+/** \file
+ * \brief What the chains of one run share: threads, progress, cancellation and the
+ * first exception.
+ */
+#pragma once
+
+#include "threads/first_exception.h"
+#include "threads/num_threads.h"
+
+#include <bayesian_icp/draws.h>
+
+#include <atomic>
+#include <mutex>
+
+namespace bayesian_icp {
+
+/** \brief Progress and end of a run, for all its threads. */
+class RunState {
+public:
+  explicit RunState(const ProgressCallback& progress, long total_steps = 0)
+  : progress_(progress)
+  , total_steps_(total_steps)
+  {}
+
+  /** \brief Makes the run longer; while no chain is sampling. */
+  void
+  addSteps(long more_steps)
+  {
+    total_steps_ += more_steps;
+  }
+
+  bool
+  stopped() const
+  {
+    return stopped_;
+  }
+
+  bool
+  cancelled() const
+  {
+    return cancelled_;
+  }
+
+  /** \brief Runs \p work, keeping its exception for the thread that started the run:
+   * none may leave a parallel region. */
+  template <typename Work>
+  void
+  guard(const Work& work)
+  {
+    if (!first_exception_.guard(work))
+      stopped_ = true;
+  }
+
+  void
+  rethrow() const
+  {
+    first_exception_.rethrow();
+  }
+
+  /** \brief Counts a step of \p chain and tells the callback. While the run has
+   * no length, the chain warms up, and the step is not counted.
+   * \param[in] poseNow returns the pose at which the chain is; asked only if there is a
+   *            callback */
+  template <typename PoseFunction>
+  void
+  reportStep(int chain, long chain_steps, const PoseFunction& poseNow)
+  {
+    if (!progress_)
+      return;
+    if (total_steps_ == 0)
+      return reportWarmUp(chain);
+    const Vector6d pose = canonicalPose(poseNow());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!stopped_ && !progress_({chain, chain_steps, ++steps_, total_steps_, pose}))
+      cancelled_ = stopped_ = true;
+  }
+
+  /** \brief Tells the callback that \p chain still warms up. No step is counted. */
+  void
+  reportWarmUp(int chain)
+  {
+    if (!progress_)
+      return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!stopped_ && !progress_({chain, 0, 0, 0}))
+      cancelled_ = stopped_ = true;
+  }
+
+private:
+  const ProgressCallback& progress_;
+  long total_steps_;
+  long steps_ = 0;
+  std::atomic<bool> stopped_{false};
+  std::atomic<bool> cancelled_{false};
+  FirstException first_exception_;
+  std::mutex mutex_;
+};
+
+/** \brief work(chain) for every chain; a thread owns whole chains. Rethrows the first
+ * exception.
+ * \param[in] num_threads as asked for, 0: as OpenMP would */
+template <typename Work>
+void
+forEachChain(int num_chains, int num_threads, RunState& run, const Work& work)
+{
+#pragma omp parallel for schedule(dynamic, 1)                                          \
+    num_threads(numThreadsFor(num_threads, num_chains))
+  for (int i = 0; i < num_chains; ++i)
+    run.guard([&] { work(i); });
+  run.rethrow();
+}
+
+} // namespace bayesian_icp

@@ -1,0 +1,111 @@
+#include "search/kd_tree_build.h"
+#include "search/kd_tree_kernels.h"
+
+#include <bayesian_icp/kd_tree.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace bayesian_icp {
+namespace {
+
+using kd_tree::Search;
+
+Search
+searchOf(InstructionSet instruction_set)
+{
+  switch (instruction_set) {
+#if defined(BAYESIAN_ICP_X86_KERNELS)
+  case InstructionSet::Sse2:
+    return kd_tree::searchSse2;
+  case InstructionSet::Avx2:
+    return kd_tree::searchAvx2;
+#endif
+  default:
+    return kd_tree::searchPlain;
+  }
+}
+
+Search
+supportedSearchOf(InstructionSet instruction_set)
+{
+  const auto supported = supportedInstructionSets();
+  if (std::find(supported.begin(), supported.end(), instruction_set) == supported.end())
+    throw std::invalid_argument("KdTree: instruction set not supported");
+  return searchOf(instruction_set);
+}
+
+} // namespace
+
+// For users who compile as C++14, where a static member is no inline variable.
+constexpr std::uint32_t KdTree::none;
+
+struct KdTree::Tree {
+  kd_tree::Storage storage;
+  kd_tree::View view;
+  Search search;
+};
+
+KdTree::KdTree(Eigen::Matrix3Xf points, int num_threads)
+: KdTree(std::move(points), num_threads, supportedInstructionSets().back())
+{}
+
+KdTree::KdTree(Eigen::Matrix3Xf points, int num_threads, InstructionSet instruction_set)
+: points_(std::move(points))
+{
+  const auto num_points = static_cast<std::size_t>(points_.cols());
+  if (num_points >= none)
+    throw std::invalid_argument("KdTree: too many points");
+  auto tree = std::make_unique<Tree>();
+  tree->search = supportedSearchOf(instruction_set);
+  tree->storage = kd_tree::build(points_.data(), num_points, num_threads);
+  const kd_tree::Storage& storage = tree->storage;
+  tree->view = {storage.nodes.data(),
+                storage.cells.data(),
+                storage.leaves.data(),
+                storage.first_leaf,
+                storage.leaf_of.data(),
+                num_points};
+  tree_ = std::move(tree);
+}
+
+KdTree::~KdTree() = default;
+KdTree::KdTree(KdTree&&) noexcept = default;
+KdTree&
+KdTree::operator=(KdTree&&) noexcept = default;
+
+KdTree::Neighbor
+KdTree::nearest(const Eigen::Vector3f& query,
+                float max_squared_distance,
+                std::uint32_t hint) const
+{
+  // Places without a point are infinitely far: a finite gate keeps them out.
+  constexpr float max_float = std::numeric_limits<float>::max();
+  kd_tree::Best best{
+      std::min(max_squared_distance, max_float), kd_tree::no_point, false};
+  if (query.allFinite())
+    tree_->search(tree_->view, query.data(), hint, best);
+  if (best.index == kd_tree::no_point)
+    return {none, std::numeric_limits<float>::infinity(), false};
+  return {best.index, best.squared_distance, best.is_tied};
+}
+
+std::size_t
+KdTree::size() const
+{
+  return tree_->storage.num_points;
+}
+
+std::size_t
+KdTree::numBytes() const
+{
+  const kd_tree::Storage& storage = tree_->storage;
+  return sizeof(Tree) + storage.nodes.size() * sizeof(kd_tree::Node) +
+         storage.cells.size() * sizeof(kd_tree::Cell) +
+         storage.leaves.size() * sizeof(kd_tree::Leaf) +
+         storage.leaf_of.size() * sizeof(std::uint32_t);
+}
+
+} // namespace bayesian_icp

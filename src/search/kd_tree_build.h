@@ -1,0 +1,39 @@
+/** \file
+ * \brief Internal: building the tree of KdTree.
+ */
+#pragma once
+
+#include "search/kd_tree_kernels.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace bayesian_icp {
+namespace kd_tree {
+
+/** What View points to. */
+struct Storage {
+  std::vector<Node> nodes;
+  std::vector<Cell> cells;
+  std::vector<Leaf> leaves;
+  std::vector<std::uint32_t> leaf_of;
+  std::uint32_t first_leaf = 0;
+  /** Points in the tree. */
+  std::size_t num_points = 0;
+};
+
+/** Whether a search finds all points that are equal to each other, or only the one with
+ * the smallest index and the fact that there are more. */
+enum class RepeatedPoints { Kept, LeftOut };
+
+/** Build the tree over the finite points among \p num_points points x, y, z, x, y, z,
+ * ... The result does not depend on \p num_threads, 0: as OpenMP would. */
+Storage
+build(const float* points,
+      std::size_t num_points,
+      int num_threads,
+      RepeatedPoints repeated = RepeatedPoints::LeftOut);
+
+} // namespace kd_tree
+} // namespace bayesian_icp

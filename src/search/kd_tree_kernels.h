@@ -1,0 +1,85 @@
+/** \file
+ * \brief Internal: the tree of KdTree in memory and the searches in it, one for each
+ * instruction set.
+ *
+ * The searches are compiled with more instructions than the rest of the library. So
+ * this file must not include anything that defines functions: a copy made of, say,
+ * std::vector's in such a file could end up in any program that uses it.
+ */
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace bayesian_icp {
+namespace kd_tree {
+
+constexpr std::size_t fan_out = 8;
+constexpr std::size_t leaf_size = 16;
+
+constexpr std::uint32_t no_leaf = 0xffffffff;
+/** Greater than the index of any point. */
+constexpr std::uint32_t no_point = 0xffffffff;
+
+/** The bounding boxes of a node's children; boxes of no child are at infinity. */
+struct alignas(64) Node {
+  float lower[3][fan_out];
+  float upper[3][fan_out];
+};
+
+/** Points by ascending index; the places of a leaf that is not full are at infinity. */
+struct alignas(64) Leaf {
+  float coordinates[3][leaf_size];
+  std::uint32_t index[leaf_size];
+};
+
+/** The part of space that belongs to a node: every point with all coordinates strictly
+ * inside is in the node. */
+struct Cell {
+  float lower[3];
+  float upper[3];
+};
+
+/** What a search sees. Nodes and leaves are numbered together as in a heap: the root is
+ * 0, the children of k are 8 * k + 1 to 8 * k + 8, numbers from first_leaf on are
+ * leaves. */
+struct View {
+  const Node* nodes;
+  /** Of the nodes. */
+  const Cell* cells;
+  const Leaf* leaves;
+  std::uint32_t first_leaf;
+  /** For each index the leaf that its point is in, counted from 0, or no_leaf. */
+  const std::uint32_t* leaf_of;
+  std::size_t num_indices;
+};
+
+/** The best point so far. Before any has been found: the largest squared distance
+ * allowed, and no_point. */
+struct Best {
+  float squared_distance;
+  std::uint32_t index;
+  /** Whether another point is as near. */
+  bool is_tied;
+};
+
+/** Improve \p best to the point nearest to the finite \p query, among equally near ones
+ * that of the smallest index. The search begins around the point with index \p hint, if
+ * there is one. */
+using Search = void (*)(const View& tree,
+                        const float* query,
+                        std::uint32_t hint,
+                        Best& best);
+
+void
+searchPlain(const View& tree, const float* query, std::uint32_t hint, Best& best);
+
+#if defined(BAYESIAN_ICP_X86_KERNELS)
+void
+searchSse2(const View& tree, const float* query, std::uint32_t hint, Best& best);
+void
+searchAvx2(const View& tree, const float* query, std::uint32_t hint, Best& best);
+#endif
+
+} // namespace kd_tree
+} // namespace bayesian_icp

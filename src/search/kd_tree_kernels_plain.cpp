@@ -1,0 +1,36 @@
+// The search for any processor.
+#include "search/kd_tree_search.h"
+
+namespace bayesian_icp {
+namespace kd_tree {
+namespace {
+
+struct OneFloat {
+  using Vector = float;
+  static constexpr std::size_t width = 1;
+
+  // clang-format off
+  static Vector load(const float* from) { return *from; }
+  static void store(float* to, Vector a) { *to = a; }
+  static Vector fill(float a) { return a; }
+  static Vector add(Vector a, Vector b) { return a + b; }
+  static Vector sub(Vector a, Vector b) { return a - b; }
+  static Vector mul(Vector a, Vector b) { return a * b; }
+  static Vector min(Vector a, Vector b) { return b < a ? b : a; }
+  static Vector max(Vector a, Vector b) { return a < b ? b : a; }
+  static float smallest(Vector a) { return a; }
+  static unsigned lessEqual(Vector a, Vector b) { return a <= b; }
+  static unsigned equal(Vector a, Vector b) { return a == b; }
+  // clang-format on
+};
+
+} // namespace
+
+void
+searchPlain(const View& tree, const float* query, std::uint32_t hint, Best& best)
+{
+  search<OneFloat>(tree, query, hint, best);
+}
+
+} // namespace kd_tree
+} // namespace bayesian_icp

@@ -1,0 +1,208 @@
+/** \file
+ * \brief Internal: the search in a tree of boxes, written once for all instruction
+ * sets.
+ *
+ * Included by the kernels only. A kernel says what its vectors can do: a Pack is
+ * `width` floats with load(), fill(), sub(), add(), mul(), min(), max(), lessEqual()
+ * and equal() (a bit for each float), smallest() and store(). Everything here is in an
+ * unnamed namespace, so that no kernel's code is ever taken for another's.
+ *
+ * The kernels agree to the last bit: the same operations in the same order, none fused.
+ * A rounded difference, square and sum are monotonous, so that the bound of a box,
+ * taken like the distance of a point, is never above the distance of a point in it: the
+ * search is exact in single precision, ties included.
+ */
+#pragma once
+
+#include "search/kd_tree_kernels.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace bayesian_icp {
+namespace kd_tree {
+namespace {
+
+/** A subtree still to be searched, and the squared distance of its box. */
+struct Pending {
+  float bound;
+  std::uint32_t number;
+};
+
+/** A level leaves at most seven of its children behind, and 2^32 points have less than
+ * eleven levels. */
+constexpr std::size_t max_pending = 11 * (fan_out - 1);
+
+inline bool
+isBetter(float squared_distance, std::uint32_t index, const Best& best)
+{
+  return squared_distance < best.squared_distance ||
+         (squared_distance == best.squared_distance && index < best.index);
+}
+
+/** Whether all that is as near as \p best is strictly inside the cell. */
+inline bool
+isDecidedIn(const Cell& cell, const float* query, const Best& best)
+{
+  float margin = query[0] - cell.lower[0];
+  for (int axis = 0; axis < 3; ++axis) {
+    const float below = query[axis] - cell.lower[axis];
+    const float above = cell.upper[axis] - query[axis];
+    margin = below < margin ? below : margin;
+    margin = above < margin ? above : margin;
+  }
+  return margin > 0.f && margin * margin > best.squared_distance;
+}
+
+/** The lowest node above a leaf that has all points as near as \p best; or the leaf
+ * itself, if it is the root. */
+inline std::uint32_t
+climb(const View& tree, std::uint32_t leaf, const float* query, const Best& best)
+{
+  std::uint32_t number = tree.first_leaf + leaf;
+  while (number > 0) {
+    number = (number - 1) / fan_out;
+    if (number == 0 || isDecidedIn(tree.cells[number], query, best))
+      break;
+  }
+  return number;
+}
+
+template <typename Pack>
+inline typename Pack::Vector
+squaredNorm(typename Pack::Vector x, typename Pack::Vector y, typename Pack::Vector z)
+{
+  return Pack::add(Pack::add(Pack::mul(x, x), Pack::mul(y, y)), Pack::mul(z, z));
+}
+
+template <typename Pack>
+inline typename Pack::Vector
+pointOffset(const Leaf& leaf, std::size_t axis, std::size_t place, const float* query)
+{
+  return Pack::sub(Pack::load(leaf.coordinates[axis] + place), Pack::fill(query[axis]));
+}
+
+/** Distance to an interval along one axis, 0 inside. */
+template <typename Pack>
+inline typename Pack::Vector
+boxOffset(const Node& node, std::size_t axis, std::size_t child, const float* query)
+{
+  const auto coordinate = Pack::fill(query[axis]);
+  const auto below = Pack::sub(Pack::load(node.lower[axis] + child), coordinate);
+  const auto above = Pack::sub(coordinate, Pack::load(node.upper[axis] + child));
+  return Pack::max(Pack::max(below, above), Pack::fill(0.f));
+}
+
+template <typename Pack>
+inline void
+searchLeaf(const Leaf& leaf, const float* query, Best& best)
+{
+  constexpr std::size_t num_packs = leaf_size / Pack::width;
+  typename Pack::Vector distances[num_packs];
+  for (std::size_t i = 0; i < num_packs; ++i)
+    distances[i] =
+        squaredNorm<Pack>(pointOffset<Pack>(leaf, 0, i * Pack::width, query),
+                          pointOffset<Pack>(leaf, 1, i * Pack::width, query),
+                          pointOffset<Pack>(leaf, 2, i * Pack::width, query));
+  auto nearest = distances[0];
+  for (std::size_t i = 1; i < num_packs; ++i)
+    nearest = Pack::min(nearest, distances[i]);
+  if (!Pack::lessEqual(nearest, Pack::fill(best.squared_distance)))
+    return;
+  const float smallest = Pack::smallest(nearest);
+  unsigned equal = 0;
+  for (std::size_t i = 0; i < num_packs; ++i)
+    equal |= Pack::equal(distances[i], Pack::fill(smallest)) << (i * Pack::width);
+  const std::uint32_t index = leaf.index[__builtin_ctz(equal)];
+  const bool has_found_one = best.index != no_point;
+  const bool is_tied = (equal & (equal - 1)) != 0 ||
+                       (has_found_one && smallest == best.squared_distance);
+  if (isBetter(smallest, index, best))
+    best = {smallest, index, is_tied};
+  else
+    best.is_tied = is_tied;
+}
+
+/** Squared distances of the children's boxes; a bit for each child that may hold
+ * something better than \p best. */
+template <typename Pack>
+inline unsigned
+boundChildren(const Node& node, const float* query, const Best& best, float* bounds)
+{
+  unsigned promising = 0;
+  for (std::size_t child = 0; child < fan_out; child += Pack::width) {
+    const auto bound = squaredNorm<Pack>(boxOffset<Pack>(node, 0, child, query),
+                                         boxOffset<Pack>(node, 1, child, query),
+                                         boxOffset<Pack>(node, 2, child, query));
+    promising |= Pack::lessEqual(bound, Pack::fill(best.squared_distance)) << child;
+    Pack::store(bounds + child, bound);
+  }
+  return promising;
+}
+
+/** Choose the nearest of the promising children, leave the others for later. */
+inline Pending
+descend(std::uint32_t number, const float* bounds, unsigned promising, Pending*& end)
+{
+  const std::uint32_t first_child = static_cast<std::uint32_t>(fan_out) * number + 1;
+  auto child = static_cast<unsigned>(__builtin_ctz(promising));
+  Pending nearest{bounds[child], first_child + child};
+  while (promising &= promising - 1) {
+    child = static_cast<unsigned>(__builtin_ctz(promising));
+    const Pending other{bounds[child], first_child + child};
+    const bool is_nearer = other.bound < nearest.bound;
+    *end++ = is_nearer ? nearest : other;
+    nearest = is_nearer ? other : nearest;
+  }
+  return nearest;
+}
+
+/** Search a subtree completely, but for the leaf that has been searched. */
+template <typename Pack>
+inline void
+searchBelow(const View& tree,
+            Pending current,
+            std::uint32_t searched_leaf,
+            const float* query,
+            Best& best)
+{
+  Pending pending[max_pending];
+  Pending* end = pending;
+  for (;;) {
+    unsigned promising = 0;
+    if (current.number < tree.first_leaf) {
+      alignas(64) float bounds[fan_out];
+      promising = boundChildren<Pack>(tree.nodes[current.number], query, best, bounds);
+      if (promising)
+        current = descend(current.number, bounds, promising, end);
+    }
+    else if (current.number - tree.first_leaf != searched_leaf) {
+      searchLeaf<Pack>(tree.leaves[current.number - tree.first_leaf], query, best);
+    }
+    if (promising)
+      continue;
+    do {
+      if (end == pending)
+        return;
+      current = *--end;
+    }
+    while (current.bound > best.squared_distance);
+  }
+}
+
+template <typename Pack>
+inline void
+search(const View& tree, const float* query, std::uint32_t hint, Best& best)
+{
+  const std::uint32_t leaf = hint < tree.num_indices ? tree.leaf_of[hint] : no_leaf;
+  Pending top{0.f, 0};
+  if (leaf != no_leaf) {
+    searchLeaf<Pack>(tree.leaves[leaf], query, best);
+    top.number = climb(tree, leaf, query, best);
+  }
+  searchBelow<Pack>(tree, top, leaf, query, best);
+}
+
+} // namespace
+} // namespace kd_tree
+} // namespace bayesian_icp

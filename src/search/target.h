@@ -1,0 +1,115 @@
+/** \file
+ * \brief The target of preset `exact`: it finds the matches of moved points.
+ */
+#pragma once
+
+#include <bayesian_icp/correspondence.h>
+#include <bayesian_icp/kd_tree.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief The target point with which a moved source point is compared. */
+struct TargetMatch {
+  /** Column of the moved points. */
+  std::size_t column;
+  /** Target frame [m]. */
+  Eigen::Vector3f point;
+  /** Unit normal at that point; zero if the target has none. */
+  Eigen::Vector3f normal;
+};
+
+/** \brief Last neighbour of each source point; KdTree::none if unknown. Hints change
+ * the speed of the search, but not its matches. Each thread has its own vector. */
+using NeighborHints = std::vector<std::uint32_t>;
+
+/** \brief Interface: finds matches within the gate. */
+class Target {
+public:
+  virtual ~Target();
+
+  /** \brief Match moved source points.
+   * \param[in] pose source-to-target pose that moved the points [m, rad]
+   * \param[in] indices index in the source of each column of \p moved
+   * \param[in] moved 3 x m, target frame [m]
+   * \param[in,out] hints one for each source point
+   * \param[out] matches at most one for each column, in the order of the columns */
+  virtual void
+  match(const Vector6d& pose,
+        const std::vector<std::size_t>& indices,
+        const Eigen::Matrix3Xf& moved,
+        NeighborHints& hints,
+        std::vector<TargetMatch>& matches) const = 0;
+
+  /** \brief Whether match() returns normals. */
+  virtual bool
+  hasNormals() const = 0;
+
+  /** \brief Whether several threads may call match() at the same time. */
+  virtual bool
+  isThreadSafe() const = 0;
+};
+
+/** \brief Exact nearest neighbours in a KdTree, for any number of threads. */
+class TreeTarget : public Target {
+public:
+  /** \param[in] tree must outlive this object
+   * \param[in] max_distance gate [m]; infinity means no gate
+   * \param[in] normals 3 x (number of the tree's points), unit or zero; may be empty */
+  TreeTarget(const KdTree& tree,
+             double max_distance,
+             Eigen::Matrix3Xf normals = Eigen::Matrix3Xf());
+
+  void
+  match(const Vector6d& pose,
+        const std::vector<std::size_t>& indices,
+        const Eigen::Matrix3Xf& moved,
+        NeighborHints& hints,
+        std::vector<TargetMatch>& matches) const override;
+
+  bool
+  hasNormals() const override;
+
+  bool
+  isThreadSafe() const override;
+
+private:
+  const KdTree& tree_;
+  float max_squared_distance_;
+  Eigen::Matrix3Xf normals_;
+};
+
+/** \brief Matches of a user's CorrespondenceSearch, without hints and normals. */
+class SearchTarget : public Target {
+public:
+  /** \param[in] search must outlive this object */
+  explicit SearchTarget(const CorrespondenceSearch& search);
+
+  void
+  match(const Vector6d& pose,
+        const std::vector<std::size_t>& indices,
+        const Eigen::Matrix3Xf& moved,
+        NeighborHints& hints,
+        std::vector<TargetMatch>& matches) const override;
+
+  bool
+  hasNormals() const override;
+
+  bool
+  isThreadSafe() const override;
+
+private:
+  const CorrespondenceSearch& search_;
+};
+
+/** \brief Unit normals of patches of about 16 neighbouring points. Patches are leaves
+ * of a balanced kd-split; the normal is the direction of least variance with an
+ * arbitrary sign.
+ * \param[in] points 3 x n. The normal of a non-finite point is zero, and so are all
+ *            normals if there are fewer than 3 points. */
+Eigen::Matrix3Xf
+patchNormals(const Eigen::Matrix3Xf& points);
+
+} // namespace bayesian_icp

@@ -1,0 +1,34 @@
+/** \file
+ * \brief Results of a run, with and without draws: what all presets share.
+ */
+#pragma once
+
+#include <bayesian_icp/chains.h>
+#include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/prior.h>
+
+#include <string>
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief An estimate without draws, whose status says why. */
+PosteriorEstimate
+failure(Status status, const std::string& message);
+
+/** \brief The draws of a run and their summary. */
+PosteriorEstimate
+estimateOf(ChainSet chain_set);
+
+/** \brief If there are any, change an Ok to Doubtful, and add them to the message. */
+void
+addDoubts(const std::vector<std::string>& doubts, Summary& summary);
+
+/** \brief What is wrong with the options, the guess or the source; the status is NotRun
+ * if nothing is. */
+PosteriorEstimate
+checkArguments(const Eigen::Matrix3Xd& source_points,
+               const Vector6d& initial_pose,
+               const Options& options);
+
+} // namespace bayesian_icp

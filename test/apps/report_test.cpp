@@ -1,0 +1,283 @@
+// The report's verdict in words, its escaping, and what its charts are given.
+#include "html/escape.h"
+#include "html/inline_svg.h"
+#include "report/draw_set.h"
+#include "report/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace bayesian_icp::app {
+namespace {
+
+const double pi = std::acos(-1.0);
+const double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/** With blanks in place of no-break spaces. */
+std::string
+plain(std::string text)
+{
+  const std::string no_break_space = "\u00A0";
+  for (auto at = text.find(no_break_space); at != std::string::npos;
+       at = text.find(no_break_space, at))
+    text.replace(at, no_break_space.size(), " ");
+  return text;
+}
+
+/** Four chains' posterior with 0.4 mm and 0.1 degrees. */
+Summary
+summaryWith(Status status)
+{
+  Summary summary;
+  summary.status = status;
+  summary.message = "so it is";
+  summary.num_chains = 4;
+  summary.num_draws = 2000;
+  for (std::size_t k = 0; k < 6; ++k) {
+    summary.coordinates[k].mean = k < 3 ? 0.0213 : 0.5;
+    summary.coordinates[k].standard_deviation = k < 3 ? 0.0004 : 0.1 * pi / 180.0;
+  }
+  return summary;
+}
+
+const char* const pose_text = "x 0.02130 m ± 0.40 mm, y 0.02130 m ± 0.40 mm, "
+                              "z 0.02130 m ± 0.40 mm, roll 28.65° ± 0.10°, "
+                              "pitch 28.65° ± 0.10°, yaw 28.65° ± 0.10°";
+
+DataDirection
+direction(Observability observability, const std::string& description)
+{
+  DataDirection result;
+  result.observability = observability;
+  result.description = description;
+  return result;
+}
+
+TEST(UncertainText, HasTwoDigitsOfTheDeviationAndTheMeanToMatch)
+{
+  EXPECT_EQ(plain(uncertainText(0, 1.23456789, 0.00042)), "x 1.23457 m ± 0.42 mm");
+  EXPECT_EQ(plain(uncertainText(1, -12.3456, 0.37)), "y -12.35 m ± 0.37 m");
+  EXPECT_EQ(plain(uncertainText(2, -1e-9, 0.02)), "z 0.000 m ± 20 mm");
+  EXPECT_EQ(plain(uncertainText(5, pi / 2, 10 * pi / 180)), "yaw 90° ± 10°");
+}
+
+TEST(UncertainText, SaysWhatIsNotKnown)
+{
+  EXPECT_EQ(plain(uncertainText(0, 1.5, unknown)), "x 1.5000 m ± unknown");
+  EXPECT_EQ(plain(uncertainText(3, unknown, unknown)), "roll unknown");
+  EXPECT_EQ(plain(uncertainText(0, 1.5, 0.0)), "x 1.5000 m ± 0 mm");
+}
+
+TEST(Verdict, GoodPoseIsTold)
+{
+  const Verdict verdict = verdictOf(summaryWith(Status::Ok), Preset::Calibrated);
+  EXPECT_EQ(verdict.tone, html::Tone::Good);
+  EXPECT_EQ(plain(verdict.sentence), std::string(pose_text) + '.');
+  EXPECT_EQ(verdict.scale_note, "");
+}
+
+TEST(Verdict, MotionsThatCannotBeObservedAreNamedAndTakeAwayTheGoodTone)
+{
+  Summary summary = summaryWith(Status::Ok);
+  summary.data.is_available = true;
+  summary.data.directions = {direction(Observability::Observed, "translation along x"),
+                             direction(Observability::Weak, "rotation about y"),
+                             direction(Observability::PriorOnly, "rotation about z")};
+  const Verdict verdict = verdictOf(summary, Preset::Calibrated);
+  EXPECT_EQ(verdict.tone, html::Tone::Caution);
+  EXPECT_EQ(verdict.heading, "Reliable, but 1 of 6 motions cannot be observed");
+  EXPECT_EQ(plain(verdict.sentence),
+            std::string(pose_text) +
+                "; not observable in these clouds, held by the prior alone: rotation "
+                "about z; hardly observable: rotation about y.");
+}
+
+TEST(Verdict, FlagsAreNamed)
+{
+  Summary summary = summaryWith(Status::Doubtful);
+  summary.data.is_available = true;
+  summary.data.flags.misfit = true;
+  summary.data.flags.few_patches = true;
+  const Verdict verdict = verdictOf(summary, Preset::Calibrated);
+  EXPECT_EQ(verdict.tone, html::Tone::Caution);
+  EXPECT_EQ(plain(verdict.sentence),
+            std::string(pose_text) + "; flags: few patches, misfit.");
+}
+
+TEST(Verdict, WhatNotToTrustComesFirst)
+{
+  Summary summary = summaryWith(Status::NotMixed);
+  Verdict verdict = verdictOf(summary, Preset::Paper);
+  EXPECT_EQ(verdict.tone, html::Tone::Bad);
+  EXPECT_EQ(verdict.heading, "Do not trust the ±: the chains have not mixed");
+  EXPECT_NE(verdict.scale_note.find("not found from the clouds"), std::string::npos);
+
+  summary.status = Status::Diverged;
+  summary.num_diverged_chains = 3;
+  verdict = verdictOf(summary, Preset::Exact);
+  EXPECT_EQ(verdict.heading, "Do not trust this posterior: 3 of 4 chains diverged");
+  EXPECT_EQ(plain(verdict.sentence),
+            std::string("Draws of the others: ") + pose_text + '.');
+
+  summary.status = Status::Cancelled;
+  verdict = verdictOf(summary, Preset::Calibrated);
+  EXPECT_EQ(verdict.heading, "Interrupted: do not trust the ±");
+  EXPECT_NE(verdict.sentence.find("until then, 2000 draws"), std::string::npos);
+}
+
+TEST(Verdict, SeveralModesHaveAPoseEach)
+{
+  Summary summary = summaryWith(Status::SeveralModes);
+  Mode mode;
+  mode.weight = 0.7;
+  mode.mean = Vector6d::Zero();
+  mode.covariance = 1e-6 * Matrix6d::Identity();
+  summary.modes = {mode, mode};
+  summary.modes[1].weight = 0.001;
+  summary.modes[1].mean[0] = 0.1;
+  const Verdict verdict = verdictOf(summary, Preset::Exact);
+  EXPECT_EQ(verdict.heading, "Do not use one mean: 2 different poses fit");
+  const std::string sentence = plain(verdict.sentence);
+  EXPECT_EQ(sentence.rfind("pose 1 (weight about 0.70): x 0.0000 m ± 1.0 mm", 0), 0u)
+      << sentence;
+  EXPECT_NE(sentence.find("; or pose 2 (weight below 0.01): x 0.1000 m ± 1.0 mm"),
+            std::string::npos)
+      << sentence;
+}
+
+TEST(Verdict, WithoutDrawsThereIsTheReason)
+{
+  Summary summary;
+  summary.status = Status::InvalidInput;
+  summary.message = "a cloud is empty";
+  const Verdict verdict = verdictOf(summary, Preset::Paper);
+  EXPECT_EQ(verdict.heading, "There is no posterior");
+  EXPECT_EQ(verdict.sentence, "a cloud is empty.");
+}
+
+TEST(Escape, LeavesNoMarkup)
+{
+  EXPECT_EQ(html::escaped("<b a=\"1\" c='2'>&amp;"),
+            "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;amp;");
+  EXPECT_EQ(html::escaped("tab\tline\n"), "tab\tline\n");
+}
+
+TEST(Escape, KeepsUtf8AndReplacesAllElse)
+{
+  EXPECT_EQ(html::escaped("± \u20AC \U0001F600"), "± \u20AC \U0001F600");
+  const std::string bad = "\uFFFD";
+  EXPECT_EQ(html::escaped("a\xFFz"), "a" + bad + "z");
+  EXPECT_EQ(html::escaped("\xC0\xAF"), bad + bad);           // longer than needed
+  EXPECT_EQ(html::escaped("\xED\xA0\x80"), bad + bad + bad); // half of a surrogate pair
+  EXPECT_EQ(html::escaped("\xF4\x90\x80\x80"), bad + bad + bad + bad); // past U+10FFFF
+  EXPECT_EQ(html::escaped("\xE2\x82"), bad + bad);                     // cut short
+  EXPECT_EQ(html::escaped(std::string("\0\x1B\x7F", 3)), bad + bad + bad);
+}
+
+const char* const gnuplot_svg =
+    "<?xml version=\"1.0\"?>\n<svg \n width=\"9\" viewBox=\"0 0 9 9\"\n>\n"
+    "<title>Gnuplot</title><desc>x</desc><g id=\"gnuplot_canvas\">"
+    "<defs><circle id='gpDot'/><path id='gpPt5'/>"
+    "<use xlink:href='#gpPt5' id='gpPt6'/></defs>"
+    "<text fill=\"black\">1</text><path stroke='black'/>%s</g></svg>\n";
+
+std::string
+svgWith(const std::string& content)
+{
+  std::string svg = gnuplot_svg;
+  return svg.replace(svg.find("%s"), 2, content);
+}
+
+TEST(InlineSvg, HasIdsOfItsOwnATitleAndThePagesColour)
+{
+  const std::string svg = html::inlineSvg(
+      svgWith("<use xlink:href='#gpPt6'/>"), "figure", "Title <1>", "What & why");
+  EXPECT_EQ(svg,
+            "<svg id=\"figure\" viewBox=\"0 0 9 9\" role=\"img\" "
+            "aria-labelledby=\"figure-title figure-description\">"
+            "<title id=\"figure-title\">Title &lt;1&gt;</title>"
+            "<desc id=\"figure-description\">What &amp; why</desc>\n<g>"
+            "<defs><circle id='figure-gpDot'/><path id='figure-gpPt5'/>"
+            "<use xlink:href='#figure-gpPt5' id='figure-gpPt6'/></defs>"
+            "<text fill=\"currentColor\">1</text><path stroke='currentColor'/>"
+            "<use xlink:href='#figure-gpPt6'/></g></svg>");
+}
+
+TEST(InlineSvg, LeavesOutMarkersThatNobodyUses)
+{
+  const std::string svg = html::inlineSvg(svgWith(""), "figure", "a", "b");
+  EXPECT_EQ(svg.find("defs"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("<text"), std::string::npos) << svg;
+}
+
+/** Two chains of so many draws about yaw = pi; yaw takes the values one after the
+ * other. */
+RegistrationResult
+resultWith(const std::vector<std::vector<double>>& yaws)
+{
+  ChainSet set;
+  for (const auto& of_chain : yaws) {
+    Chain chain;
+    chain.draws = PoseMatrix::Zero(static_cast<Eigen::Index>(of_chain.size()), 6);
+    for (std::size_t i = 0; i < of_chain.size(); ++i)
+      chain.draws(static_cast<Eigen::Index>(i), 5) = wrapAngle(of_chain[i]);
+    set.chains.push_back(chain);
+  }
+  RegistrationResult result;
+  result.summary = summarize(set);
+  result.chains = set.chains;
+  return result;
+}
+
+TEST(DrawSet, AnglesAboutHalfATurnAreDifferencesFromTheMean)
+{
+  const DrawSet draws =
+      drawSetOf(resultWith({{pi - 0.02, pi + 0.02}, {pi - 0.01, pi + 0.01}}));
+  ASSERT_EQ(draws.chains.size(), 2u);
+  const double degrees = 180.0 / pi;
+  EXPECT_NEAR(draws.chains[0].errors(0, 5), -0.02 * degrees, 1e-9);
+  EXPECT_NEAR(draws.chains[0].errors(1, 5), 0.02 * degrees, 1e-9);
+  EXPECT_NEAR(draws.axes[5].quantile_97_5 + draws.axes[5].quantile_2_5, 0.0, 1e-9);
+  EXPECT_EQ(draws.axes[5].unit, "°");
+  EXPECT_EQ(draws.axes[0].unit, "mm");
+}
+
+TEST(DrawSet, ChainsWithoutDrawsAndDivergedOnesAreLeftOut)
+{
+  RegistrationResult result = resultWith({{0.1, 0.2}, {}, {0.3}});
+  result.chains[0].diverged = true;
+  const DrawSet draws = drawSetOf(result);
+  ASSERT_EQ(draws.chains.size(), 1u);
+  EXPECT_EQ(draws.chains[0].chain, 2);
+}
+
+TEST(DrawSet, RanksCountAllChainsAndShareTies)
+{
+  const DrawSet draws = drawSetOf(resultWith({{0.1, 0.4}, {0.2, 0.4, 0.0}}));
+  const auto ranks = ranksOf(draws, 5);
+  EXPECT_EQ(ranks[0], Eigen::Vector2d(1.0, 3.5));
+  EXPECT_EQ(ranks[1], Eigen::Vector3d(2.0, 3.5, 0.0));
+  // Coordinates in which nothing moves are one tie.
+  EXPECT_EQ(ranksOf(draws, 0)[0], Eigen::Vector2d(2.0, 2.0));
+}
+
+TEST(DrawSet, KernelIsAsNarrowAsTheChainsAreNotAsTheirDistance)
+{
+  const DrawSet near = drawSetOf(resultWith({{0.0, 0.1}, {0.0, 0.1}}));
+  const DrawSet far = drawSetOf(resultWith({{0.0, 0.1}, {1.0, 1.1}}));
+  EXPECT_NEAR(kernelWidth(near, 5), kernelWidth(far, 5), 1e-9);
+  EXPECT_GT(kernelWidth(near, 5), 0.0);
+  EXPECT_EQ(kernelWidth(near, 0), 0.0);
+}
+
+TEST(EvenlySpaced, CoversAllAndStaysWithin)
+{
+  EXPECT_EQ(evenlySpaced(3, 10), (std::vector<Eigen::Index>{0, 1, 2}));
+  EXPECT_EQ(evenlySpaced(10, 4), (std::vector<Eigen::Index>{0, 2, 5, 7}));
+  EXPECT_EQ(evenlySpaced(10, 0), (std::vector<Eigen::Index>{0}));
+  EXPECT_TRUE(evenlySpaced(0, 4).empty());
+}
+
+} // namespace
+} // namespace bayesian_icp::app

@@ -1,0 +1,146 @@
+// ICP from random starts: reproducible, divisible, stoppable.
+#include "baselines/monte_carlo_icp.h"
+#include "geometry/twist.h"
+#include "support/test_support.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace bayesian_icp {
+namespace {
+
+class MonteCarloIcp : public testing::Test {
+protected:
+  MonteCarloIcp()
+  {
+    Random random(8, 0);
+    target_ = test::randomPoints(random, 300);
+    source_ = target_.leftCols(120);
+    options_.num_runs = 24;
+    options_.half_range.setConstant(0.3);
+  }
+
+  std::vector<MonteCarloIcpRun>
+  run(const MonteCarloIcpOptions& options,
+      const MonteCarloIcpProgress& progress = MonteCarloIcpProgress()) const
+  {
+    return monteCarloIcp(source_, KdTree(target_.cast<float>()), options, progress);
+  }
+
+  static void
+  expectSame(const MonteCarloIcpRun& a, const MonteCarloIcpRun& b)
+  {
+    EXPECT_EQ(a.index, b.index);
+    EXPECT_EQ(a.start, b.start);
+    EXPECT_EQ(a.end, b.end);
+    EXPECT_EQ(a.stop, b.stop);
+    EXPECT_EQ(a.has_converged, b.has_converged);
+    EXPECT_EQ(a.num_iterations, b.num_iterations);
+    EXPECT_EQ(a.mean_squared_distance, b.mean_squared_distance);
+  }
+
+  Eigen::Matrix3Xd target_, source_;
+  MonteCarloIcpOptions options_;
+};
+
+} // namespace
+
+TEST_F(MonteCarloIcp, TheNumberOfThreadsChangesNoBit)
+{
+  options_.num_threads = 1;
+  const auto expected = run(options_);
+  ASSERT_EQ(expected.size(), 24u);
+  for (const int num_threads : {2, 5}) {
+    options_.num_threads = num_threads;
+    const auto runs = run(options_);
+    ASSERT_EQ(runs.size(), expected.size());
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      expectSame(runs[i], expected[i]);
+  }
+}
+
+TEST_F(MonteCarloIcp, APartIsAPartOfTheWhole)
+{
+  const auto whole = run(options_);
+  options_.first_run = 7;
+  options_.num_runs = 5;
+  const auto part = run(options_);
+  ASSERT_EQ(part.size(), 5u);
+  for (std::size_t i = 0; i < part.size(); ++i)
+    expectSame(part[i], whole[i + 7]);
+}
+
+TEST_F(MonteCarloIcp, RunsHaveAnIndexThatAnIntCanHold)
+{
+  options_.first_run = std::numeric_limits<int>::max() - 2;
+  const auto runs = run(options_);
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[1].index, std::numeric_limits<int>::max() - 1);
+}
+
+TEST_F(MonteCarloIcp, APointBeyondFloatHasNoNeighbourAndDoesNoHarm)
+{
+  source_(0, 0) = std::numeric_limits<double>::max();
+  for (const MonteCarloIcpRun& made : run(options_)) {
+    EXPECT_TRUE(made.has_converged);
+    EXPECT_TRUE(made.end.allFinite());
+  }
+}
+
+TEST_F(MonteCarloIcp, RunsAreIcpFromTheirStarts)
+{
+  options_.icp.max_distance = 0.2;
+  const KdTree target(target_.cast<float>());
+  for (const MonteCarloIcpRun& made : run(options_)) {
+    const IcpResult alone =
+        iterativeClosestPoint(source_, target, isometryOf(made.start), options_.icp);
+    EXPECT_EQ(made.end, poseOf(alone.T_target_source.matrix()));
+    EXPECT_EQ(made.num_iterations, alone.num_iterations);
+    EXPECT_EQ(made.stop, alone.stop);
+    EXPECT_EQ(made.mean_squared_distance, alone.mean_squared_distance);
+  }
+}
+
+TEST_F(MonteCarloIcp, StartsAreUniformInTheirRange)
+{
+  options_.num_runs = 600;
+  options_.icp.max_iterations = 1;
+  options_.mean << 1.0, -2.0, 3.0, 0.1, -0.2, 0.3;
+  options_.half_range << 1.0, 0.5, 0.25, 0.3, 0.2, 0.1;
+  const auto runs = run(options_);
+  for (int k = 0; k < 6; ++k) {
+    double sum = 0.0, sum_of_squares = 0.0;
+    for (const MonteCarloIcpRun& made : runs) {
+      const double u = (made.start[k] - options_.mean[k]) / options_.half_range[k];
+      EXPECT_LE(std::abs(u), 1.0);
+      sum += u / 600.0;
+      sum_of_squares += u * u / 600.0;
+    }
+    // Variance 1/3, of the square 1/5 - 1/9; five standard errors.
+    EXPECT_NEAR(sum, 0.0, 5.0 * std::sqrt(1.0 / 3.0 / 600.0)) << k;
+    EXPECT_NEAR(sum_of_squares, 1.0 / 3.0, 5.0 * std::sqrt(4.0 / 45.0 / 600.0)) << k;
+  }
+  options_.seed = 2;
+  EXPECT_NE(run(options_).front().start, runs.front().start);
+}
+
+TEST_F(MonteCarloIcp, StopsWhenAsked)
+{
+  options_.num_threads = 2;
+  const auto whole = run(options_);
+  const auto part = run(options_, [](int num_done) { return num_done < 6; });
+  // The other thread may be on its way through one more.
+  EXPECT_GE(part.size(), 6u);
+  EXPECT_LE(part.size(), 7u);
+  for (const MonteCarloIcpRun& made : part)
+    expectSame(made, whole[static_cast<std::size_t>(made.index)]);
+  EXPECT_THROW(run(options_, [](int) -> bool { throw std::runtime_error("no"); }),
+               std::runtime_error);
+  options_.num_runs = 0;
+  EXPECT_TRUE(run(options_).empty());
+}
+
+} // namespace bayesian_icp

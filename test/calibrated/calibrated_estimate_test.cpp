@@ -1,0 +1,189 @@
+#include "calibrated/calibrated_estimate.h"
+#include "calibrated/calibration_test_support.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <memory>
+
+namespace bayesian_icp {
+namespace {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr double sigma = 0.001;
+
+/** 0.02 m and 0.05 rad. */
+Vector6d
+priorDeviations()
+{
+  Vector6d sd;
+  sd << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
+  return sd;
+}
+
+/** A ball beside a box, seen from everywhere. */
+test::Sheet
+ballAndBox(Random& random, Index num_points)
+{
+  const test::Sheet ball = test::sphere(random, num_points / 3, 0.06);
+  const test::Sheet box =
+      test::box(random, num_points - num_points / 3, {0.12, 0.09, 0.07});
+  test::Sheet both(num_points);
+  both.points << ball.points.colwise() + Vector3d(0.0, 0.2, 0.05), box.points;
+  both.normals << ball.normals, box.normals;
+  return both;
+}
+
+/** Two scans, and a true pose from the prior. */
+struct Case {
+  explicit Case(std::uint64_t stream)
+  {
+    Random random(101, stream);
+    model = std::make_unique<SurfaceModel>(
+        test::noisy(ballAndBox(random, 2000), sigma, random));
+    const Matrix3Xd seen = test::noisy(ballAndBox(random, 500), sigma, random);
+    truth = isometryOf(random.normal6().cwiseProduct(priorDeviations()));
+    const Vector3d centre = seen.rowwise().mean();
+    truth = Eigen::Translation3d(centre) * truth * Eigen::Translation3d(-centre);
+    scorer = std::make_unique<SurfaceScorer>(truth.inverse() * seen, *model);
+    prior = std::make_unique<Prior>(
+        Vector6d::Zero(), priorDeviations().cwiseAbs2(), scorer->centroid());
+  }
+
+  /** From the posterior mean to the true pose. */
+  Vector6d
+  error(const CalibratedEstimate& e) const
+  {
+    return twistBetween(movedBy(e.mean, e.centre, e.mode), truth, e.centre);
+  }
+
+  std::unique_ptr<SurfaceModel> model;
+  std::unique_ptr<SurfaceScorer> scorer;
+  std::unique_ptr<Prior> prior;
+  Isometry3d truth = Isometry3d::Identity();
+};
+
+TEST(CalibratedEstimate, ErrorsAreAsLargeAsItSays)
+{
+  constexpr int num_cases = 60;
+  double sum = 0.0;
+  int num_within = 0;
+  const boost::math::chi_squared six(6.0), all(6.0 * num_cases);
+  for (int k = 0; k < num_cases; ++k) {
+    const Case c(static_cast<std::uint64_t>(k));
+    const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior);
+    const Vector6d error = c.error(e);
+    const double nees = error.dot(e.covariance.ldlt().solve(error));
+    sum += nees;
+    num_within += nees < quantile(six, 0.95);
+  }
+  // 99.9 % of sums of 60 NEES, were the posterior exact.
+  EXPECT_GT(sum, quantile(all, 0.0005));
+  EXPECT_LT(sum, quantile(all, 0.9995));
+  // At least 53 of 60 are within, were it 95 %, with a probability of 99.6 %.
+  EXPECT_GE(num_within, 53);
+}
+
+TEST(CalibratedEstimate, PutsItsPartsTogether)
+{
+  const Case c(100);
+  const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior);
+  const Matrix6d J_inverse = e.score_covariance.inverse();
+  const Matrix6d HT = e.curvature * e.transfer;
+  EXPECT_LT((e.information - HT.transpose() * J_inverse * HT).norm(),
+            1e-6 * e.information.norm());
+  const Matrix6d precision = e.information + e.prior.precision;
+  EXPECT_LT((e.covariance * precision - Matrix6d::Identity()).norm(), 1e-6);
+  const Vector6d mean =
+      -e.covariance * (HT.transpose() * J_inverse * e.scores.total + e.prior.gradient);
+  EXPECT_LT((e.mean - mean).norm(), 1e-6 * e.mean.norm());
+  EXPECT_LT((e.centre - e.mode * c.scorer->centroid()).norm(), 1e-12);
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d direction = e.directions.col(k);
+    EXPECT_NEAR(direction.dot(e.displacement_metric * direction), 1.0, 1e-9);
+  }
+  EXPECT_GT(e.num_queries, 0);
+}
+
+TEST(CalibratedEstimate, DoesNotDependOnItsStartOnAnEasyScene)
+{
+  const Case c(101);
+  const CalibratedEstimate two = estimateCalibrated(*c.scorer, *c.prior);
+  const CalibratedEstimate one =
+      estimateCalibrated(*c.scorer, *c.prior, EstimateOptions(), &c.truth);
+  const auto distance = [&](const Vector6d& xi) {
+    return std::sqrt(xi.dot(two.covariance.ldlt().solve(xi)));
+  };
+  EXPECT_LT(distance(two.other_end), 1.0);
+  EXPECT_LT(distance(twistBetween(two.mode, one.mode, two.centre)), 1.0);
+  EXPECT_LT(one.other_end.norm(), 1e-12);
+  EXPECT_LT(one.num_queries, two.num_queries);
+}
+
+/** Waves along x: sliding by a wavelength changes nothing but the prior. */
+struct Waves {
+  static constexpr double wavelength = 0.04;
+
+  explicit Waves(double offset)
+  {
+    Random random(102, 0);
+    model = std::make_unique<SurfaceModel>(waves(random, 6000, 0.25));
+    Matrix3Xd source = waves(random, 800, 0.1);
+    source.row(0).array() += offset;
+    scorer = std::make_unique<SurfaceScorer>(source, *model);
+    Vector6d sd = priorDeviations();
+    sd[0] = 0.1;
+    prior =
+        std::make_unique<Prior>(Vector6d::Zero(), sd.cwiseAbs2(), scorer->centroid());
+  }
+
+  static Matrix3Xd
+  waves(Random& random, Index num_points, double half)
+  {
+    const double rate = 2.0 * std::acos(-1.0) / wavelength;
+    Matrix3Xd points = test::squarePlane(random, num_points, half).points;
+    for (Index i = 0; i < num_points; ++i)
+      points(2, i) = 0.006 * std::cos(rate * points(0, i)) + 0.0005 * random.normal();
+    return points;
+  }
+
+  std::unique_ptr<SurfaceModel> model;
+  std::unique_ptr<SurfaceScorer> scorer;
+  std::unique_ptr<Prior> prior;
+};
+
+TEST(CalibratedEstimate, ASingleStartIsFollowedAlone)
+{
+  const Waves waves(0.0);
+  for (const int shift : {-1, 0, 1, 2}) {
+    Isometry3d start = Isometry3d::Identity();
+    start.translation().x() = shift * Waves::wavelength + 0.003;
+    const CalibratedEstimate e =
+        estimateCalibrated(*waves.scorer, *waves.prior, EstimateOptions(), &start);
+    // In its valley; patches are half a wavelength wide.
+    EXPECT_NEAR(
+        e.mode.translation().x(), shift * Waves::wavelength, 0.1 * Waves::wavelength)
+        << shift;
+  }
+}
+
+TEST(CalibratedEstimate, StartsThatEndApartAreTold)
+{
+  // Half-way between two valleys, which the starts choose between.
+  const Waves waves(0.5 * Waves::wavelength);
+  const CalibratedEstimate e = estimateCalibrated(*waves.scorer, *waves.prior);
+  constexpr double tolerance = 0.1 * Waves::wavelength;
+  EXPECT_NEAR(std::abs(e.mode.translation().x()), 0.5 * Waves::wavelength, tolerance);
+  EXPECT_NEAR(std::abs(e.other_end[0]), Waves::wavelength, tolerance);
+}
+
+} // namespace
+} // namespace bayesian_icp

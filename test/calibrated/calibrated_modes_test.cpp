@@ -1,0 +1,243 @@
+// Further modes of preset `calibrated`: a cube, whose sides look alike, scanned from
+// all sides.
+#include "calibrated/modes/calibrated_modes.h"
+
+#include <bayesian_icp/pipeline.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+
+namespace bayesian_icp {
+namespace {
+
+constexpr double quarter_turn = 1.57079632679489662;
+
+/** Points all over a body that stands upright about the origin, in random order. */
+template <typename Surface>
+Eigen::Matrix3Xd
+sampled(const Surface& surface, Eigen::Index num_points, std::uint64_t seed)
+{
+  constexpr double noise = 0.0005;
+  Random random(seed, 0);
+  Eigen::Matrix3Xd points(3, num_points);
+  for (Eigen::Index i = 0; i < num_points; ++i) {
+    const Eigen::Vector3d point = surface(random);
+    points.col(i) = point + noise * random.normal6().head<3>();
+  }
+  return points;
+}
+
+/** Sides and top of a cube of 0.1 m. */
+Eigen::Vector3d
+onCube(Random& random)
+{
+  const double half = 0.05;
+  const double x = half * (2.0 * random.uniform() - 1.0),
+               y = half * (2.0 * random.uniform() - 1.0);
+  const std::size_t face = random.index(5);
+  if (face == 4)
+    return {x, y, half};
+  const Eigen::AngleAxisd turn(static_cast<double>(face) * quarter_turn,
+                               Eigen::Vector3d::UnitZ());
+  return turn * Eigen::Vector3d(half, x, y);
+}
+
+/** Side and top of a can of 0.1 m. */
+Eigen::Vector3d
+onCan(Random& random)
+{
+  const double radius = 0.035, half = 0.05, height = 2.0 * random.uniform() - 1.0;
+  const Eigen::AngleAxisd turn(4.0 * quarter_turn * random.uniform(),
+                               Eigen::Vector3d::UnitZ());
+  if (random.index(4) == 0)
+    return turn * Eigen::Vector3d(radius * std::sqrt(random.uniform()), 0.0, half);
+  return turn * Eigen::Vector3d(radius, 0.0, half * height);
+}
+
+/** A can with a handle: a plate that stands out from its side. */
+Eigen::Vector3d
+onMug(Random& random)
+{
+  if (random.index(20) > 0)
+    return onCan(random);
+  return {0.035 + 0.02 * random.uniform(), 0.0, 0.02 * (random.uniform() - 0.5)};
+}
+
+struct Clouds {
+  Eigen::Matrix3Xd source, target;
+  Eigen::Isometry3d truth;
+};
+
+template <typename Surface>
+Clouds
+cloudsOf(const Surface& surface, double true_yaw)
+{
+  Vector6d truth;
+  truth << 0.01, -0.02, 0.01, 0.03, -0.02, true_yaw;
+  Clouds clouds;
+  clouds.truth = isometryOf(truth);
+  clouds.target = sampled(surface, 12000, 1);
+  clouds.source = clouds.truth.inverse() * sampled(surface, 2000, 2);
+  return clouds;
+}
+
+Prior
+priorWith(double yaw_sd, const Eigen::Vector3d& centroid)
+{
+  Vector6d sd;
+  sd << 0.03, 0.03, 0.03, 0.06, 0.06, yaw_sd;
+  return Prior(Vector6d::Zero(), sd.cwiseAbs2(), centroid);
+}
+
+/** Mahalanobis^2 of the truth. */
+double
+distanceOfTruth(const CalibratedEstimate& e, const Eigen::Isometry3d& truth)
+{
+  const Vector6d error = twistBetween(e.mode, truth, e.centre) - e.mean;
+  return error.dot(e.covariance.ldlt().solve(error));
+}
+
+TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
+{
+  const Clouds clouds = cloudsOf(onCube, 1.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior = priorWith(1.0, scorer.centroid());
+  ASSERT_TRUE(mayHaveSeveralModes(scorer, prior));
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
+  const ModeSearch search = findModes(scorer, prior, first);
+  ASSERT_GE(search.modes.size(), 3u);
+  // 16 starts of 300 points and at most 21 evaluations, half of the points 20 more
+  // times, and an estimate for each mode.
+  long num_queries = 16 * 300 * (21 + 10) + 300 - first.num_queries;
+  double least_distance = 1e9, last_weight = 1e9;
+  for (const auto& mode : search.modes) {
+    EXPECT_LE(mode.log_weight, last_weight);
+    last_weight = mode.log_weight;
+    num_queries += mode.estimate.num_queries;
+    const Vector6d apart = twistBetween(first.mode, mode.estimate.mode, first.centre);
+    const double turns = apart.tail<3>().norm() / quarter_turn;
+    EXPECT_NEAR(turns, std::round(turns), 0.05);
+    least_distance =
+        std::min(least_distance, distanceOfTruth(mode.estimate, clouds.truth));
+  }
+  EXPECT_LE(search.num_queries, num_queries);
+  EXPECT_LT(least_distance, 22.5); // exceeded with a probability of 0.1 %
+
+  const ChainSet set = sampleCalibrated(
+      scoresOf(scorer), prior, search.modes, CalibratedOptions(), ChainOptions());
+  ASSERT_GE(set.modes.size(), 2u);
+  ASSERT_EQ(set.chains.size(), 4 * set.modes.size());
+  double sum = 0.0;
+  for (const auto& mode : search.modes)
+    sum += std::exp(mode.log_weight);
+  for (std::size_t m = 0; m < set.modes.size(); ++m) {
+    Eigen::Index num_draws = 0;
+    for (const int chain : set.modes[m].members)
+      num_draws += set.chains[static_cast<std::size_t>(chain)].draws.rows();
+    EXPECT_NEAR(static_cast<double>(num_draws),
+                2000.0 * std::exp(search.modes[m].log_weight) / sum,
+                0.51);
+  }
+}
+
+TEST(CalibratedModes, ThereIsOneOfACanHoweverItTurns)
+{
+  const Clouds clouds = cloudsOf(onCan, 1.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior = priorWith(1.0, scorer.centroid());
+  const ModeSearch search = findModes(scorer, prior, estimateCalibrated(scorer, prior));
+  EXPECT_EQ(search.modes.size(), 1u);
+  EXPECT_FALSE(mayHaveSeveralModes(scorer, priorWith(0.19, scorer.centroid())));
+}
+
+TEST(CalibratedModes, AHandleOutweighsAFreeYaw)
+{
+  const Clouds clouds = cloudsOf(onMug, 0.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior = priorWith(0.35, scorer.centroid());
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
+  std::size_t num_modes = 0;
+  ModeSearchOptions options;
+  for (options.seed = 1; options.seed <= 4; ++options.seed) {
+    const ModeSearch search = findModes(scorer, prior, first, options);
+    num_modes = std::max(num_modes, search.modes.size());
+    EXPECT_GT(search.modes.front().estimate.keep.minCoeff(), 0.0);
+    EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+  }
+  EXPECT_GT(num_modes, 1u);
+}
+
+TEST(CalibratedModes, ThereIsOneAlsoOfCloudsThatDoNotMeet)
+{
+  Clouds clouds = cloudsOf(onCube, 0.0);
+  clouds.source.row(0).array() += 50.0;
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  EXPECT_EQ(calibratedModes(scorer, priorWith(0.35, scorer.centroid())).size(), 1u);
+}
+
+PosteriorEstimate
+estimateFrom(const Clouds& clouds, double yaw_sd)
+{
+  Options options;
+  options.preset = Preset::Calibrated;
+  options.prior.variance = priorWith(yaw_sd, Eigen::Vector3d::Zero()).variance();
+  options.prior.frame = PriorFrame::SourceCentroid;
+  return estimatePosterior(clouds.source, clouds.target, Vector6d::Zero(), options);
+}
+
+TEST(CalibratedModes, OfACubeAreInTheSummary)
+{
+  const PosteriorEstimate estimate = estimateFrom(cloudsOf(onCube, 1.3), 1.0);
+  const Summary& summary = estimate.summary;
+  EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
+  EXPECT_NE(summary.message.find("is of the heaviest"), std::string::npos);
+  EXPECT_EQ(estimate.samples.rows(), summary.num_draws);
+  ASSERT_GE(summary.modes.size(), 2u);
+  double sum = 0.0, nearest_turn = 1e9;
+  for (const Mode& mode : summary.modes) {
+    EXPECT_GE(mode.weight, 0.02);
+    sum += mode.weight;
+    nearest_turn = std::min(nearest_turn, std::abs(wrapAngle(mode.mean[5] - 1.3)));
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-12);
+  EXPECT_LT(nearest_turn, 0.05 * quarter_turn);
+  // The report's centre is where the source's centroid is in the first mode.
+  const Eigen::Vector3d centroid = cloudsOf(onCube, 1.3).source.rowwise().mean();
+  EXPECT_LT((isometryOf(summary.modes[0].mean) * centroid - summary.data.centre).norm(),
+            0.001);
+}
+
+TEST(CalibratedModes, TheYawOfACanIsThatOfThePrior)
+{
+  const Summary summary = estimateFrom(cloudsOf(onCan, 0.7), 1.0).summary;
+  EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+  EXPECT_TRUE(summary.modes.empty());
+  int num_prior_only = 0;
+  for (const DataDirection& direction : summary.data.directions)
+    if (direction.observability == Observability::PriorOnly) {
+      ++num_prior_only;
+      EXPECT_GT(std::abs(direction.twist.tail<3>().normalized().z()), 0.99);
+    }
+  EXPECT_EQ(num_prior_only, 1);
+}
+
+TEST(CalibratedModes, DrawsOfACanAreAroundItsAxisAsThePriorSays)
+{
+  const PosteriorEstimate estimate = estimateFrom(cloudsOf(onCan, 0.7), 1.0);
+  // Of a von Mises variate with kappa = 1: E cos = I1(1) / I0(1), and E cos 2 =
+  // I2(1) / I0(1) gives its variance.
+  constexpr double mean = 0.446390, sd = 0.595;
+  const double ess = estimate.summary.coordinates[5].bulk_ess;
+  EXPECT_NEAR(
+      estimate.samples.col(5).array().cos().mean(), mean, 4.0 * sd / std::sqrt(ess));
+}
+
+} // namespace
+} // namespace bayesian_icp

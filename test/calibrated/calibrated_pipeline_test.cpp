@@ -1,0 +1,335 @@
+// Preset `calibrated` from end to end: what it finds, and what it says when it cannot.
+#include "support/test_support.h"
+
+#include <bayesian_icp/likelihood.h>
+#include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace bayesian_icp {
+namespace {
+
+constexpr double noise = 0.003;
+
+/** A wavy surface of 1 x 0.6 m scanned twice, with noise. */
+struct Scans {
+  Eigen::Matrix3Xd source = surface(91, 1500);
+  Eigen::Matrix3Xd target;
+  Vector6d truth;
+
+  Scans()
+  {
+    truth << 0.01, -0.02, 0.015, 0.02, -0.03, 0.025;
+    movePoints(truth, surface(92, 6000), target);
+  }
+
+  static Eigen::Matrix3Xd
+  surface(std::uint64_t seed, Eigen::Index num_points)
+  {
+    Random random(seed, 0);
+    Eigen::Matrix3Xd points = test::randomPoints(random, num_points);
+    for (Eigen::Index i = 0; i < num_points; ++i)
+      points(2, i) =
+          0.05 * std::sin(9.0 * points(0, i)) * std::cos(8.0 * points(1, i)) +
+          noise * random.normal();
+    return points;
+  }
+};
+
+Options
+calibratedOptions()
+{
+  Options options;
+  options.preset = Preset::Calibrated;
+  options.prior.variance << 0.01, 0.01, 0.01, 0.01, 0.01, 0.01;
+  options.prior.frame = PriorFrame::SourceCentroid;
+  return options;
+}
+
+PosteriorEstimate
+estimateFrom(const Scans& scans, const Options& options = calibratedOptions())
+{
+  return estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
+}
+
+TEST(Calibrated, FindsPoseNoiseAndSixObservedDirections)
+{
+  const Scans scans;
+  const PosteriorEstimate estimate = estimateFrom(scans);
+  const Summary& summary = estimate.summary;
+  ASSERT_EQ(summary.status, Status::Ok) << summary.message;
+  EXPECT_EQ(estimate.samples.rows(), 2000);
+  const Matrix6d& covariance = summary.covariance(CovarianceConvention::R3xSO3);
+  const Vector6d error =
+      poseError(scans.truth, summary.mean, CovarianceConvention::R3xSO3);
+  // chi^2_6 exceeds 27.9 once in 10 000.
+  EXPECT_LT(error.dot(covariance.inverse() * error), 27.9);
+  const DataReport& data = summary.data;
+  ASSERT_TRUE(data.is_available);
+  EXPECT_FALSE(data.flags.any());
+  // The scale of 1500 residuals has an error of 3 %, the surface adds to it.
+  EXPECT_NEAR(data.noise_scale, noise, 0.15 * noise);
+  ASSERT_EQ(data.directions.size(), 6u);
+  for (const DataDirection& direction : data.directions)
+    EXPECT_EQ(direction.observability, Observability::Observed);
+}
+
+TEST(Calibrated, TheSameDrawsForEveryNumberOfThreads)
+{
+  const Scans scans;
+  Options options = calibratedOptions();
+  options.chains.num_draws = 200;
+  options.chains.num_threads = 1;
+  const PoseMatrix draws = estimateFrom(scans, options).samples;
+  ASSERT_EQ(draws.rows(), 200);
+  options.chains.num_threads = 3;
+  EXPECT_EQ(estimateFrom(scans, options).samples, draws);
+  options.chains.num_threads = std::numeric_limits<int>::max();
+  EXPECT_EQ(estimateFrom(scans, options).samples, draws);
+  options.chains.seed = 2;
+  EXPECT_NE(estimateFrom(scans, options).samples, draws);
+}
+
+TEST(Calibrated, ThePriorIsAboutTheCentroidUnlessSet)
+{
+  Scans scans;
+  scans.source.row(0).array() += 2.0; // so that the frames differ
+  scans.target.row(0).array() += 2.0;
+  Options options = calibratedOptions();
+  const PosteriorEstimate centroid = estimateFrom(scans, options);
+  options.prior.frame = PriorFrame::Origin;
+  const PosteriorEstimate origin = estimateFrom(scans, options);
+  options.prior.frame = PriorFrame::Automatic;
+  const PosteriorEstimate automatic = estimateFrom(scans, options);
+  EXPECT_EQ(automatic.samples, centroid.samples);
+  EXPECT_NE(automatic.samples, origin.samples);
+}
+
+TEST(Calibrated, ATreeGivesItsPoints)
+{
+  Scans scans;
+  scans.target = scans.target.cast<float>().cast<double>();
+  const KdTree tree(scans.target.cast<float>());
+  Options options = calibratedOptions();
+  options.chains.num_draws = 200;
+  const auto estimate =
+      estimatePosterior(scans.source, tree, Vector6d::Zero(), options);
+  EXPECT_EQ(estimate.samples, estimateFrom(scans, options).samples);
+}
+
+TEST(Calibrated, FarCoordinatesLoseNothing)
+{
+  // A target far out (UTM) with a guess that is as far out: the same posterior, moved.
+  // Chains of rounded numbers part in time, so the means agree as those of other draws.
+  Scans scans;
+  const Summary here = estimateFrom(scans).summary;
+  Vector6d offset = Vector6d::Zero();
+  offset.head<3>() << 500000.0, 5400000.0, 300.0;
+  scans.target.colwise() += offset.head<3>();
+  const Summary there =
+      estimatePosterior(scans.source, scans.target, offset, calibratedOptions())
+          .summary;
+  ASSERT_EQ(there.status, Status::Ok) << there.message;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const auto &a = here.coordinates[k], &b = there.coordinates[k];
+    EXPECT_NEAR(b.mean - offset[static_cast<Eigen::Index>(k)],
+                a.mean,
+                5.0 * std::hypot(a.mcse, b.mcse))
+        << k;
+  }
+  EXPECT_NEAR(there.data.noise_scale, here.data.noise_scale, 1e-3 * noise);
+}
+
+/** Where draws put points and where their mean does: root mean squares over the points
+ * [m]. */
+struct Places {
+  /** Standard deviation over the draws. */
+  double spread;
+  /** From the mean place of a point to its place at the mean pose. */
+  double offset;
+};
+
+Places
+placesOf(const Eigen::Matrix3Xd& points, const PosteriorEstimate& estimate)
+{
+  Eigen::Matrix3Xd at_mean, place, sum = Eigen::Matrix3Xd::Zero(3, points.cols());
+  movePoints(estimate.summary.mean, points, at_mean);
+  double sum_of_squares = 0.0;
+  for (const auto& draw : estimate.samples.rowwise()) {
+    movePoints(draw.transpose(), points, place);
+    sum += place - at_mean;
+    sum_of_squares += (place - at_mean).squaredNorm();
+  }
+  const auto num_draws = static_cast<double>(estimate.samples.rows());
+  const auto num_points = static_cast<double>(points.cols());
+  const double squared_offset = (sum / num_draws).squaredNorm() / num_points;
+  return {std::sqrt(sum_of_squares / (num_draws * num_points) - squared_offset),
+          std::sqrt(squared_offset)};
+}
+
+/** Squared distance of the truth from the mean, in standard deviations. */
+double
+squaredErrorOf(const Vector6d& truth,
+               const Summary& summary,
+               CovarianceConvention convention)
+{
+  const Vector6d error = poseError(truth, summary.mean, convention);
+  return error.dot(summary.covariance(convention).ldlt().solve(error));
+}
+
+TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
+{
+  Scans scans;
+  const PosteriorEstimate here = estimateFrom(scans);
+  const Vector6d truth_here = scans.truth;
+  Eigen::Matrix4d shift = Eigen::Matrix4d::Identity();
+  shift.topRightCorner<3, 1>() << 7000.0, -7100.0, 300.0;
+  for (Eigen::Matrix3Xd* cloud : {&scans.source, &scans.target})
+    cloud->colwise() += shift.topRightCorner<3, 1>();
+  scans.truth = poseOf(shift * matrixOf(truth_here) * shift.inverse());
+  const PosteriorEstimate there = estimateFrom(scans);
+  ASSERT_EQ(there.summary.status, Status::Ok) << there.summary.message;
+  const Places places = placesOf(scans.source, there);
+  EXPECT_LT(places.offset, 0.01 * places.spread);
+  for (const auto convention :
+       {CovarianceConvention::LeftSE3, CovarianceConvention::RightSE3}) {
+    const double near_error = squaredErrorOf(truth_here, here.summary, convention);
+    // Four standard errors of a quadratic form of a mean and a covariance of at least
+    // 400 independent draws, twice.
+    EXPECT_NEAR(
+        squaredErrorOf(scans.truth, there.summary, convention),
+        near_error,
+        4.0 *
+            std::sqrt(2.0 * (2.0 * near_error * near_error + 4.0 * near_error) / 400.0))
+        << toString(convention);
+  }
+}
+
+TEST(Calibrated, PointsBesideTheSurfaceMakeItDoubtful)
+{
+  // Three quarters of the source's surface are where the target was not seen.
+  Scans scans;
+  const Eigen::Index num_points = scans.source.cols();
+  Eigen::Matrix3Xd source(3, 4 * num_points);
+  source.leftCols(num_points) = scans.source;
+  for (int k = 1; k < 4; ++k) {
+    source.middleCols(k * num_points, num_points) =
+        Scans::surface(93 + static_cast<std::uint64_t>(k), num_points);
+    source.row(0).segment(k * num_points, num_points).array() += 3.0 * k;
+  }
+  scans.source = source;
+  const Summary summary = estimateFrom(scans).summary;
+  EXPECT_EQ(summary.status, Status::Doubtful) << summary.message;
+  EXPECT_TRUE(summary.data.flags.low_support);
+  EXPECT_NE(summary.message.find("of the source points"), std::string::npos);
+  EXPECT_TRUE(hasUsableMean(summary.status));
+  // The 2000 points cover all of the source's surface alike.
+  EXPECT_NEAR(summary.data.active_fraction, 0.25, 0.04);
+}
+
+/** No draws, and a status with a word in its message. */
+void
+expectFailure(const PosteriorEstimate& estimate, Status status, const char* word)
+{
+  EXPECT_EQ(estimate.summary.status, status) << estimate.summary.message;
+  EXPECT_NE(estimate.summary.message.find(word), std::string::npos)
+      << estimate.summary.message;
+  EXPECT_EQ(estimate.samples.rows(), 0);
+  EXPECT_FALSE(estimate.summary.data.is_available);
+}
+
+TEST(Calibrated, BadOptionsAreAStatus)
+{
+  const Scans scans;
+  Options options = calibratedOptions();
+  options.prior.variance[2] = std::numeric_limits<double>::infinity();
+  expectFailure(
+      estimateFrom(scans, options), Status::InvalidOptions, "prior.variance[z] is inf");
+  options = calibratedOptions();
+  options.calibrated.max_source_points = 29;
+  expectFailure(estimateFrom(scans, options),
+                Status::InvalidOptions,
+                "calibrated.max_source_points is 29");
+  expectFailure(estimatePosterior(scans.source,
+                                  test::BruteForceSearch(scans.target),
+                                  Vector6d::Zero(),
+                                  calibratedOptions()),
+                Status::InvalidOptions,
+                "target's points");
+}
+
+TEST(Calibrated, CloudsThatCannotDoAreAStatus)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Scans scans;
+  Scans bad = scans;
+  bad.source = scans.source.leftCols(29).eval();
+  expectFailure(estimateFrom(bad), Status::InvalidInput, "source has 29");
+  bad.source.resize(3, 0);
+  expectFailure(estimateFrom(bad), Status::InvalidInput, "source has 0");
+  bad = scans;
+  bad.source(0, 0) = nan;
+  expectFailure(estimateFrom(bad), Status::InvalidInput, "non-finite");
+  bad = scans;
+  bad.target.row(1).tail(bad.target.cols() - 20).setConstant(nan);
+  expectFailure(estimateFrom(bad), Status::InvalidInput, "target has 20");
+  bad = scans;
+  bad.target.colwise() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  expectFailure(estimateFrom(bad), Status::TooFewCorrespondences, "surface");
+}
+
+TEST(Calibrated, NothingInReachIsAStatus)
+{
+  Scans scans;
+  scans.source.row(0).array() += 100.0; // against a prior of 0.1 m
+  expectFailure(estimateFrom(scans), Status::TooFewCorrespondences, "usable surface");
+}
+
+TEST(Calibrated, CanBeCancelledBeforeTheEstimateAndWhileDrawing)
+{
+  const Scans scans;
+  for (const int max_calls : {0, 10}) {
+    int num_calls = 0;
+    const auto estimate =
+        estimatePosterior(scans.source,
+                          scans.target,
+                          Vector6d::Zero(),
+                          calibratedOptions(),
+                          [&](const Progress&) { return num_calls++ < max_calls; });
+    EXPECT_EQ(estimate.summary.status, Status::Cancelled);
+    EXPECT_LT(estimate.samples.rows(), 20);
+  }
+}
+
+TEST(RandomChoice, IsWithoutRepetitionInRandomOrder)
+{
+  const auto choose = [](Eigen::Index size, std::uint64_t seed) {
+    Random random(seed, 0);
+    return randomChoice(1000, size, random);
+  };
+  const std::vector<Eigen::Index> chosen = choose(400, 1);
+  ASSERT_EQ(chosen.size(), 400U);
+  EXPECT_EQ(choose(400, 1), chosen);
+  EXPECT_NE(choose(400, 2), chosen);
+  // The mean of the first 100 has a standard deviation of 289 / 10.
+  const double mean =
+      std::accumulate(chosen.begin(), chosen.begin() + 100, 0.0) / 100.0;
+  EXPECT_NEAR(mean, 499.5, 4.0 * 28.9);
+  std::vector<Eigen::Index> sorted = choose(5000, 1);
+  ASSERT_EQ(sorted.size(), 1000U);
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    EXPECT_EQ(sorted[i], static_cast<Eigen::Index>(i));
+}
+
+} // namespace
+} // namespace bayesian_icp

@@ -1,0 +1,270 @@
+// The report of a calibrated estimate: numbers, directions, flags and their thresholds.
+#include "calibrated/calibrated_report.h"
+
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bayesian_icp {
+namespace {
+
+const Eigen::Vector3d centre(1.0, 2.0, 3.0);
+
+/** A flat sheet with noise. */
+const SurfaceModel&
+target()
+{
+  static const SurfaceModel model = [] {
+    Random random(5, 0);
+    Eigen::Matrix3Xd points(3, 400);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      points.col(i) << random.uniform(), random.uniform(), 0.002 * random.normal();
+    return SurfaceModel(points, SurfaceModelOptions(), 1);
+  }();
+  return model;
+}
+
+/** An estimate whose directions are the axes: a source of unit radius, a diagonal
+ * prior, and what the data know of each. */
+CalibratedEstimate
+diagonalEstimate()
+{
+  CalibratedEstimate estimate;
+  estimate.centre = centre;
+  estimate.residual_scale = 1.5;
+  estimate.scores.num_active = 90;
+  estimate.keep << 1.0, 0.9, 0.4, 0.0, 1.0, 0.5;
+  Vector6d relative_information;
+  relative_information << 99.0, 24.0, 3.0, 0.0, 399.0, 8.0;
+  estimate.prior.precision = Vector6d::Constant(4.0).asDiagonal();
+  const Vector6d information = 4.0 * relative_information;
+  estimate.information = information.asDiagonal();
+  estimate.covariance = (estimate.information + estimate.prior.precision).inverse();
+  // J = 1: the information before the debit is the curvature's square.
+  estimate.score_covariance.setIdentity();
+  for (int k = 0; k < 6; ++k)
+    if (estimate.keep[k] > 0.0)
+      estimate.curvature(k, k) = std::sqrt(information[k] / estimate.keep[k]);
+  estimate.kappa_48 = 1.5;
+  estimate.kappa_inf = 3.0;
+  estimate.other_end[0] = 0.1;
+  return estimate;
+}
+
+TEST(Report, ClosedFormOfADiagonalEstimate)
+{
+  const DataReport report = dataReportOf(diagonalEstimate(), 100, target());
+  EXPECT_TRUE(report.is_available);
+  EXPECT_DOUBLE_EQ(report.residual_scale, 1.5);
+  EXPECT_DOUBLE_EQ(report.noise_scale, 1.5 * target().medianSigma());
+  EXPECT_DOUBLE_EQ(report.active_fraction, 0.9);
+  EXPECT_DOUBLE_EQ(report.effective_patches, 48.0);
+  EXPECT_DOUBLE_EQ(report.correlation_factor, 3.0);
+  // Variance 1 / 400 m^2 of the posterior, and half the noise.
+  EXPECT_NEAR(
+      report.basin_distance, 0.1 / std::hypot(0.05, 0.5 * report.noise_scale), 1e-12);
+  EXPECT_EQ(report.centre, centre);
+
+  // Sorted by 1 / sqrt(4 (1 + relative information)).
+  const double information[] = {399.0, 99.0, 24.0, 8.0, 3.0, 0.0};
+  const int columns[] = {4, 0, 1, 5, 2, 3};
+  const Observability observability[] = {Observability::Observed,
+                                         Observability::Observed,
+                                         Observability::Observed,
+                                         Observability::Observed,
+                                         Observability::Weak,
+                                         Observability::PriorOnly};
+  ASSERT_EQ(report.directions.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const DataDirection& direction = report.directions[i];
+    EXPECT_NEAR(std::abs(direction.twist[columns[i]]), 1.0, 1e-12);
+    EXPECT_NEAR(
+        direction.standard_deviation, 0.5 / std::sqrt(1.0 + information[i]), 1e-12);
+    EXPECT_NEAR(direction.prior_standard_deviation, 0.5, 1e-12);
+    EXPECT_NEAR(direction.relative_information, information[i], 1e-10);
+    EXPECT_EQ(direction.observability, observability[i]) << i;
+    EXPECT_EQ(direction.description, describeTwist(direction.twist, centre));
+  }
+}
+
+TEST(Report, WhatHardlyNarrowsThePriorIsNotObserved)
+{
+  // Standard deviations are 1 / sqrt(1 + information) times the prior's: 0.9902,
+  // 0.9898, 0.709, 0.705.
+  const double information[] = {0.0199, 0.0207, 0.99, 1.01};
+  const Observability expected[] = {Observability::PriorOnly,
+                                    Observability::Weak,
+                                    Observability::Weak,
+                                    Observability::Observed};
+  CalibratedEstimate estimate = diagonalEstimate();
+  for (std::size_t i = 0; i < 4; ++i) {
+    estimate.information(0, 0) = 4.0 * information[i];
+    estimate.curvature(0, 0) = std::sqrt(4.0 * information[i]);
+    estimate.covariance(0, 0) = 0.25 / (1.0 + information[i]);
+    const DataReport report = dataReportOf(estimate, 100, target());
+    const auto found = std::find_if(
+        report.directions.begin(), report.directions.end(), [](const DataDirection& d) {
+          return std::abs(d.twist[0]) > 0.999;
+        });
+    ASSERT_NE(found, report.directions.end());
+    EXPECT_EQ(found->observability, expected[i]) << information[i];
+  }
+}
+
+TEST(Report, DirectionsAreIndependentInPosteriorAndPrior)
+{
+  // Neither the information nor the prior nor the metric is diagonal; the data say
+  // nothing along two oblique twists.
+  Random random(9, 0);
+  Matrix6d A, B, C;
+  for (int k = 0; k < 6; ++k) {
+    A.col(k) = random.normal6();
+    B.col(k) = random.normal6();
+    C.col(k) = random.normal6();
+  }
+  CalibratedEstimate estimate = diagonalEstimate();
+  estimate.prior.precision = B * B.transpose() + Matrix6d::Identity();
+  estimate.displacement_metric = C * C.transpose() + Matrix6d::Identity();
+  const Eigen::Matrix<double, 4, 6> rows = 10.0 * A.topRows<4>();
+  estimate.information = rows.transpose() * rows;
+  estimate.curvature = estimate.information;
+  estimate.score_covariance = estimate.information + 1e-9 * Matrix6d::Identity();
+  estimate.covariance = (estimate.information + estimate.prior.precision).inverse();
+  const DataReport report = dataReportOf(estimate, 100, target());
+  int num_free = 0;
+  for (const DataDirection& a : report.directions) {
+    EXPECT_NEAR(a.twist.dot(estimate.displacement_metric * a.twist), 1.0, 1e-10);
+    EXPECT_NEAR(a.standard_deviation / a.prior_standard_deviation,
+                1.0 / std::sqrt(1.0 + a.relative_information),
+                1e-10);
+    for (const DataDirection& b : report.directions) {
+      if (&a == &b)
+        continue;
+      const double scale = a.prior_standard_deviation * b.prior_standard_deviation;
+      EXPECT_NEAR(scale * a.twist.dot(estimate.prior.precision * b.twist), 0.0, 1e-8);
+      const double spread = a.standard_deviation * b.standard_deviation;
+      EXPECT_NEAR(spread * a.twist.dot(estimate.information * b.twist), 0.0, 1e-8);
+    }
+    if (a.observability == Observability::PriorOnly) {
+      ++num_free;
+      EXPECT_NEAR((rows * a.twist).norm(), 0.0, 1e-6);
+    }
+  }
+  EXPECT_EQ(num_free, 2);
+}
+
+TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
+{
+  // The prior's deviation is 0.5; the fourth direction is held by it only.
+  CalibratedEstimate estimate = diagonalEstimate();
+  estimate.prior.deviation << 0.5, 0.0, 0.0, 1e3, 1.0, 0.5;
+  estimate.mean << 0.0, 0.0, 0.0, 0.0, 0.5, 0.0;
+  const double squared_distance = 1.0 + 9.0 + 1.0;
+  const auto tail = [](int degrees, double x) {
+    return cdf(complement(boost::math::chi_squared(degrees), x));
+  };
+  EXPECT_NEAR(dataReportOf(estimate, 100, target()).prior_probability,
+              tail(5, squared_distance),
+              1e-12);
+  // Held by five, four, ... directions.
+  for (int k = 0; k < 6; ++k) {
+    if (k == 3)
+      continue;
+    estimate.information(k, k) = 0.0;
+    estimate.prior.deviation[k] = 0.0;
+    estimate.mean[k] = 0.0;
+    double distance = 0.0;
+    int num_held = 0;
+    for (int i = k + 1; i < 6; ++i)
+      if (i != 3) {
+        ++num_held;
+        distance += std::pow(2.0 * (estimate.prior.deviation + estimate.mean)[i], 2);
+      }
+    EXPECT_NEAR(dataReportOf(estimate, 100, target()).prior_probability,
+                num_held > 0 ? tail(num_held, distance) : 1.0,
+                1e-12)
+        << k;
+  }
+}
+
+TEST(Report, StartsMayDifferFreelyWherePriorOnlyHolds)
+{
+  CalibratedEstimate estimate = diagonalEstimate();
+  estimate.other_end << 0.0, 0.0, 0.0, 50.0, 0.0, 0.0;
+  EXPECT_NEAR(dataReportOf(estimate, 100, target()).basin_distance, 0.0, 1e-6);
+}
+
+/** An estimate without flags. */
+CalibratedEstimate
+goodEstimate()
+{
+  CalibratedEstimate estimate = diagonalEstimate();
+  estimate.residual_scale = 1.0;
+  estimate.kappa_48 = estimate.kappa_inf = 1.2;
+  estimate.other_end.setZero();
+  return estimate;
+}
+
+/** Flags of goodEstimate() after \p change. */
+template <typename Change>
+DataFlags
+flagsAfter(const Change& change)
+{
+  CalibratedEstimate estimate = goodEstimate();
+  change(estimate);
+  return dataReportOf(estimate, 100, target()).flags;
+}
+
+TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
+{
+  using E = CalibratedEstimate;
+  EXPECT_FALSE(flagsAfter([](E&) {}).any());
+  // 20 standard deviations a metre along x; half the noise is 2 % of one.
+  EXPECT_FALSE(flagsAfter([](E& e) { e.other_end[0] = 0.149; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.other_end[0] = 0.151; }).wrong_basin);
+  EXPECT_FALSE(flagsAfter([](E& e) {
+                 e.other_end[0] = 1.0;
+                 e.other_cost_ratio = max_other_cost_ratio + 0.01;
+               }).any());
+  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active = 40; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active = 39; }).low_support);
+  EXPECT_FALSE(flagsAfter([](E& e) { e.kappa_inf = 5.75; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.kappa_inf = 5.77; }).few_patches);
+  // The prior alone holds one direction, which a disagreement may hide ...
+  EXPECT_FALSE(flagsAfter([](E& e) { e.residual_scale = 1.99; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.residual_scale = 2.01; }).misfit);
+  // ... and here none.
+  const auto hold_all = [](E& e, double residual_scale) {
+    e.information(3, 3) = 400.0;
+    e.curvature(3, 3) = 20.0;
+    e.residual_scale = residual_scale;
+  };
+  EXPECT_FALSE(flagsAfter([&](E& e) { hold_all(e, 9.99); }).any());
+  EXPECT_TRUE(flagsAfter([&](E& e) { hold_all(e, 10.01); }).misfit);
+  EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
+  // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2647)^2.
+  const auto deviate = [](E& e, double metres) { e.prior.deviation[0] = metres; };
+  EXPECT_FALSE(flagsAfter([&](E& e) { deviate(e, 2.264); }).any());
+  EXPECT_TRUE(flagsAfter([&](E& e) { deviate(e, 2.265); }).prior_conflict);
+}
+
+TEST(Report, WhatIsNotANumberIsFlagged)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const DataFlags flags = flagsAfter([nan](CalibratedEstimate& e) {
+    e.residual_scale = e.kappa_inf = e.other_end[0] = e.prior.deviation[0] = nan;
+  });
+  EXPECT_TRUE(flags.wrong_basin && flags.few_patches && flags.misfit &&
+              flags.prior_conflict);
+}
+
+} // namespace
+} // namespace bayesian_icp

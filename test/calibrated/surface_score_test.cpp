@@ -1,0 +1,315 @@
+#include "calibrated/calibration_test_support.h"
+#include "geometry/twist.h"
+#include "support/test_support.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace bayesian_icp {
+namespace {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/** A plane that every patch knows exactly, and points around it: some too far off it to
+ * count, and some beyond its border. */
+struct PlaneCase {
+  PlaneCase()
+  : model(test::gridPlane(40, 0.05).points)
+  , pose(isometryOf(Vector6d::Zero()))
+  , tau(1.7)
+  {
+    Random random(61, 0);
+    // Patches of exact points have a noise of 1e-4 spacings.
+    const double sigma = model.medianSigma();
+    Matrix3Xd points(3, 60);
+    for (Index i = 0; i < points.cols(); ++i) {
+      const double x = 0.3 + 1.4 * random.uniform(), y = 0.3 + 1.4 * random.uniform();
+      points.col(i) << x, y, 3.0 * tau * sigma * random.normal();
+    }
+    points.col(7).x() += 4.0;
+    points.col(33).y() -= 4.0;
+    points.col(8).z() = 20.0 * tau * sigma;
+    // Anywhere in the source frame.
+    Vector6d parameters;
+    parameters << 0.4, -0.2, 1.0, 0.5, -0.4, 2.0;
+    pose = isometryOf(parameters);
+    source = pose.inverse() * points;
+  }
+
+  SurfaceScores
+  scoresAt(const Isometry3d& T_target_source, double scale) const
+  {
+    const SurfaceScorer scorer(source, model);
+    PatchHints hints;
+    SurfaceScores scores;
+    scorer.evaluate(T_target_source, centre(), scale, hints, scores);
+    return scores;
+  }
+
+  Vector3d
+  centre() const
+  {
+    return {0.9, 1.1, 0.2};
+  }
+
+  /** Steps of twists at which the residuals move by a hundredth. */
+  double
+  step() const
+  {
+    return 0.01 * model.medianSigma();
+  }
+
+  SurfaceModel model;
+  Isometry3d pose;
+  double tau;
+  Matrix3Xd source;
+};
+
+/** Tukey's rho of a residual u at scale tau, whose derivative is psi(u). */
+double
+tukeyEnergy(double u, double tau)
+{
+  const double c = SurfaceScorer::tukey_constant * tau;
+  const double z = std::min(1.0, std::abs(u / c));
+  return c * c / 6.0 * (1.0 - std::pow(1.0 - z * z, 3));
+}
+
+TEST(SurfaceScore, ResidualsAreHeightsOverAKnownPlane)
+{
+  const PlaneCase c;
+  const SurfaceScores scores = c.scoresAt(c.pose, c.tau);
+  const Matrix3Xd moved = c.pose * c.source;
+  int num_with_patch = 0, num_active = 0;
+  for (Index i = 0; i < moved.cols(); ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    const bool is_inside = i != 7 && i != 33;
+    EXPECT_EQ(bool(scores.has_patch[index]), is_inside) << i;
+    const double u = is_inside ? moved(2, i) / c.model.medianSigma() : 0.0;
+    // Moving there and back rounds at 1e-16 m, of a noise of 5e-6 m.
+    EXPECT_NEAR(std::abs(scores.residuals[i]), std::abs(u), 1e-8) << i;
+    const bool is_active =
+        is_inside && std::abs(u) < SurfaceScorer::tukey_constant * c.tau;
+    EXPECT_EQ(bool(scores.active[index]), is_active) << i;
+    num_with_patch += is_inside;
+    num_active += is_active;
+  }
+  EXPECT_EQ(scores.num_active, num_active);
+  EXPECT_LT(num_active, num_with_patch);
+}
+
+TEST(SurfaceScore, IsTheGradientOfTukeysEnergy)
+{
+  const PlaneCase c;
+  const SurfaceScores scores = c.scoresAt(c.pose, c.tau);
+  const double sigma = c.model.medianSigma();
+  for (Index i = 0; i < c.source.cols(); ++i) {
+    const auto energy = [&](const Vector6d& xi) {
+      const Vector3d point = movedBy(xi, c.centre(), c.pose) * c.source.col(i);
+      return tukeyEnergy(point.z() / sigma, c.tau);
+    };
+    const bool is_inside = i != 7 && i != 33;
+    const Vector6d expected =
+        is_inside ? test::centralDifferences(energy, Vector6d::Zero(), c.step())
+                  : Vector6d::Zero();
+    // Differences of 0.01 in u: (0.01)^2 / 6 times a third derivative of less than
+    // 12 / (4.685 tau)^2, and levers of 1.5 m.
+    EXPECT_LT((scores.scores.col(i) - expected).norm(), 2e-4 / sigma) << i;
+  }
+  const Vector6d sum = scores.scores.rowwise().sum();
+  EXPECT_LT((scores.total - sum).norm(), 1e-12 * scores.scores.norm());
+}
+
+TEST(SurfaceScore, InformationIsThatOfWeightedResiduals)
+{
+  const PlaneCase c;
+  const SurfaceScores scores = c.scoresAt(c.pose, c.tau);
+  std::array<Eigen::VectorXd, 6> rates;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d h = c.step() * Vector6d::Unit(k);
+    rates[static_cast<std::size_t>(k)] =
+        (c.scoresAt(movedBy(h, c.centre(), c.pose), c.tau).residuals -
+         c.scoresAt(movedBy(-h, c.centre(), c.pose), c.tau).residuals) /
+        (2.0 * c.step());
+  }
+  Matrix6d expected = Matrix6d::Zero();
+  for (Index i = 0; i < c.source.cols(); ++i) {
+    Vector6d gradient;
+    for (int k = 0; k < 6; ++k)
+      gradient[k] = rates[static_cast<std::size_t>(k)][i];
+    const double z = std::min(
+        1.0, std::abs(scores.residuals[i]) / (SurfaceScorer::tukey_constant * c.tau));
+    expected += std::pow(1.0 - z * z, 2) * gradient * gradient.transpose();
+  }
+  // Heights are linear in the twist but for its square, 1e-8 of a lever.
+  EXPECT_LT((scores.information - expected).norm(), 1e-6 * expected.norm());
+  EXPECT_LT(
+      (scores.jacobians * scores.jacobians.transpose() - scores.information).norm(),
+      1e-12 * expected.norm());
+}
+
+TEST(SurfaceScore, InfiniteScaleIsLeastSquares)
+{
+  const PlaneCase c;
+  const SurfaceScores scores = c.scoresAt(c.pose, infinity);
+  EXPECT_EQ(scores.active, scores.has_patch);
+  EXPECT_EQ(scores.num_active, c.source.cols() - 2);
+  for (Index i = 0; i < c.source.cols(); ++i)
+    EXPECT_LT(
+        (scores.scores.col(i) - scores.residuals[i] * scores.jacobians.col(i)).norm(),
+        1e-12 * (1.0 + scores.scores.col(i).norm()));
+}
+
+/** A noisy sphere and a second scan of it. */
+struct SphereCase {
+  SphereCase()
+  {
+    Random random(62, 0);
+    const auto scan = [&](Index num_points) {
+      return test::noisy(test::sphere(random, num_points, 0.2), 0.002, random);
+    };
+    model = std::make_unique<SurfaceModel>(scan(1500));
+    source = scan(300);
+  }
+
+  std::unique_ptr<SurfaceModel> model;
+  Matrix3Xd source;
+};
+
+TEST(SurfaceScore, UsesThePatchWhoseProjectedPointIsNearest)
+{
+  const SphereCase c;
+  const SurfaceScorer scorer(c.source, *c.model);
+  PatchHints hints;
+  SurfaceScores scores;
+  scorer.evaluate(Isometry3d::Identity(), Vector3d::Zero(), 1.0, hints, scores);
+  for (Index i = 0; i < c.source.cols(); ++i) {
+    const Vector3d point = c.source.col(i) - c.model->origin();
+    double nearest = infinity;
+    const SurfacePatch* patch = nullptr;
+    for (const SurfacePatch& candidate : c.model->patches()) {
+      const SurfaceOffset own = offsetFrom(candidate, candidate.centre);
+      const double distance =
+          (candidate.centre - own.distance * own.normal - point).norm();
+      if (distance < nearest) {
+        nearest = distance;
+        patch = &candidate;
+      }
+    }
+    const SurfaceOffset offset = offsetFrom(*patch, point);
+    const bool has_patch =
+        patch->isUsable() &&
+        offset.in_plane <= SurfaceScorer::max_in_plane * patch->radius;
+    EXPECT_EQ(bool(scores.has_patch[static_cast<std::size_t>(i)]), has_patch) << i;
+    EXPECT_NEAR(
+        scores.residuals[i], has_patch ? offset.distance / patch->sigma : 0.0, 1e-9)
+        << i;
+  }
+}
+
+TEST(SurfaceScore, HintsChangeNothing)
+{
+  const SphereCase c;
+  const SurfaceScorer scorer(c.source, *c.model);
+  PatchHints hints;
+  SurfaceScores fresh, hinted;
+  Random random(63, 0);
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    const Isometry3d pose =
+        movedBy(0.03 * random.normal6(), Vector3d::Zero(), Isometry3d::Identity());
+    PatchHints none;
+    scorer.evaluate(pose, Vector3d::Zero(), 1.2, none, fresh);
+    scorer.evaluate(pose, Vector3d::Zero(), 1.2, hints, hinted);
+    EXPECT_EQ(hinted.total, fresh.total);
+    EXPECT_EQ(hinted.residuals, fresh.residuals);
+    EXPECT_EQ(hinted.scores, fresh.scores);
+    EXPECT_EQ(hinted.has_patch, fresh.has_patch);
+  }
+}
+
+TEST(SurfaceScore, BatchesAddUp)
+{
+  const SphereCase c;
+  const SurfaceScorer scorer(c.source, *c.model);
+  PatchHints hints;
+  SurfaceScores scores;
+  const Vector3d centre(0.1, 0.0, -0.1);
+  const double tau = 0.6;
+  scorer.evaluate(Isometry3d::Identity(), centre, tau, hints, scores);
+  ASSERT_LT(scores.num_active, c.source.cols());
+
+  std::vector<std::size_t> all(static_cast<std::size_t>(c.source.cols()));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = i;
+  Vector6d total;
+  const auto num_with_patch =
+      static_cast<int>(std::count(scores.has_patch.begin(), scores.has_patch.end(), 1));
+  EXPECT_EQ(scorer.batchScore(Isometry3d::Identity(), centre, tau, all, hints, total),
+            num_with_patch);
+  EXPECT_LT((total - scores.total).norm(), 1e-12 * scores.scores.norm());
+
+  PatchHints none;
+  scorer.batchScore(Isometry3d::Identity(), centre, tau, {5, 9, 5}, none, total);
+  EXPECT_LT((total - 2.0 * scores.scores.col(5) - scores.scores.col(9)).norm(),
+            1e-12 * scores.scores.norm());
+}
+
+TEST(SurfaceScore, IsZeroWithoutPatches)
+{
+  Random random(64, 0);
+  const Matrix3Xd source = test::randomPoints(random, 10);
+  for (const Index num_target_points : {0, 1, 7}) {
+    const SurfaceModel model(test::randomPoints(random, num_target_points));
+    const SurfaceScorer scorer(source, model);
+    PatchHints hints;
+    SurfaceScores scores;
+    scorer.evaluate(Isometry3d::Identity(), Vector3d::Zero(), 1.0, hints, scores);
+    EXPECT_EQ(scores.total, Vector6d::Zero());
+    EXPECT_EQ(scores.information, Matrix6d::Zero());
+    EXPECT_EQ(scores.num_active, 0);
+    EXPECT_EQ(meanCappedResidual(scores), 5.0);
+    EXPECT_EQ(residualScale(scores), 1.0);
+  }
+}
+
+TEST(SurfaceScore, ScaleAndCostOfResiduals)
+{
+  SurfaceScores scores{};
+  scores.residuals.resize(6);
+  scores.residuals << 1.0, -2.0, 0.5, 100.0, -7.0, 0.1;
+  scores.has_patch = {1, 1, 1, 0, 1, 1};
+  // Magnitudes 0.1, 0.5, 1, 2, 7; the fourth point has no patch and costs 5.
+  EXPECT_DOUBLE_EQ(residualScale(scores), 1.4826);
+  EXPECT_DOUBLE_EQ(meanCappedResidual(scores), (1.0 + 2.0 + 0.5 + 5.0 + 5.0 + 0.1) / 6);
+  scores.residuals *= 0.1;
+  EXPECT_DOUBLE_EQ(residualScale(scores), 0.3);
+}
+
+TEST(SurfaceScore, IsTheSameFarFromTheOrigin)
+{
+  const SphereCase c;
+  const Vector3d far(512000.0, 5400000.0, 128.0);
+  const SurfaceModel far_model(Matrix3Xd(c.source.colwise() + far));
+  const SurfaceModel near_model(c.source);
+  PatchHints near_hints, far_hints;
+  SurfaceScores near_scores, far_scores;
+  const SurfaceScorer scorer(c.source, near_model), far_scorer(c.source, far_model);
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() << 0.001, -0.001, 0.002;
+  scorer.evaluate(pose, pose.translation(), 1.0, near_hints, near_scores);
+  pose.translation() += far;
+  far_scorer.evaluate(pose, pose.translation(), 1.0, far_hints, far_scores);
+  // Coordinates there are multiples of 1e-9 m, of a noise of 2e-3 m; a hundred times
+  // that for what quadrics make of it.
+  EXPECT_EQ(far_scores.has_patch, near_scores.has_patch);
+  EXPECT_LT((far_scores.residuals - near_scores.residuals).lpNorm<Eigen::Infinity>(),
+            1e-4);
+}
+
+} // namespace
+} // namespace bayesian_icp

@@ -1,0 +1,431 @@
+// The registration that is inside pcl::BayesianIterativeClosestPoint is that of
+// pcl::IterativeClosestPoint to the last bit, whichever tree has found the pairs.
+#include "support/registration_support.h"
+
+#include <pcl/io/pcd_io.h>
+#include <pcl/registration/correspondence_rejection_median_distance.h>
+#include <pcl/registration/correspondence_rejection_one_to_one.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace pcl {
+namespace test {
+namespace {
+
+using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
+using Tree = search::KdTree<PointXYZ>;
+using OneToOne = registration::CorrespondenceRejectorOneToOne;
+using Median = registration::CorrespondenceRejectorMedianDistance;
+
+/** What align() leaves behind. */
+struct Snapshot {
+  Eigen::Matrix4d final_transformation, last_increment, previous_increment;
+  bool has_converged;
+  int state;
+  int num_iterations;
+  Correspondences correspondences;
+  Cloud output;
+  double fitness;
+};
+
+/** A registration that keeps a snapshot of every align(). */
+template <typename Registration>
+struct Recorder : Registration {
+  void
+  alignAndRecord(const Eigen::Matrix4d& guess)
+  {
+    Snapshot now;
+    this->align(now.output,
+                guess.template cast<typename Registration::Matrix4::Scalar>());
+    now.final_transformation = this->final_transformation_.template cast<double>();
+    now.last_increment = this->transformation_.template cast<double>();
+    now.previous_increment = this->previous_transformation_.template cast<double>();
+    now.has_converged = this->converged_;
+    now.state = this->convergence_criteria_->getConvergenceState();
+    now.num_iterations = this->nr_iterations_;
+    now.correspondences = *this->correspondences_;
+    now.fitness = this->getFitnessScore();
+    snapshots.push_back(now);
+  }
+
+  std::vector<Snapshot> snapshots;
+};
+
+void
+expectSamePairs(const Correspondences& actual, const Correspondences& expected)
+{
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    ASSERT_EQ(actual[i].index_query, expected[i].index_query);
+    ASSERT_EQ(actual[i].index_match, expected[i].index_match);
+    ASSERT_EQ(actual[i].distance, expected[i].distance);
+  }
+}
+
+void
+expectSame(const Snapshot& actual, const Snapshot& expected)
+{
+  EXPECT_EQ(actual.final_transformation, expected.final_transformation);
+  EXPECT_EQ(actual.last_increment, expected.last_increment);
+  EXPECT_EQ(actual.previous_increment, expected.previous_increment);
+  EXPECT_EQ(actual.has_converged, expected.has_converged);
+  EXPECT_EQ(actual.state, expected.state);
+  EXPECT_EQ(actual.num_iterations, expected.num_iterations);
+  EXPECT_EQ(actual.fitness, expected.fitness);
+  expectSamePairs(actual.correspondences, expected.correspondences);
+  ASSERT_EQ(actual.output.size(), expected.output.size());
+  for (std::size_t i = 0; i < actual.output.size(); ++i)
+    ASSERT_EQ(actual.output[i].getVector4fMap(), expected.output[i].getVector4fMap());
+}
+
+/** What a user does, given a registration without clouds. */
+using Align = std::function<void(const Eigen::Matrix4d& guess)>;
+template <typename Scalar>
+using Scenario = std::function<void(
+    IterativeClosestPoint<PointXYZ, PointXYZ, Scalar>& icp, const Align& align)>;
+
+template <typename Registration, typename Scalar>
+std::vector<Snapshot>
+snapshotsOf(Recorder<Registration>& registration, const Scenario<Scalar>& scenario)
+{
+  scenario(registration, [&registration](const Eigen::Matrix4d& guess) {
+    registration.alignAndRecord(guess);
+  });
+  return (registration.snapshots);
+}
+
+/** Does the same with PCL's class and with ours. */
+template <typename Scalar = float, typename Work>
+void
+expectTheRegistrationOfIcp(const Work& work)
+{
+  const Scenario<Scalar> scenario = work;
+  using Reference = IterativeClosestPoint<PointXYZ, PointXYZ, Scalar>;
+  using Bayesian = BayesianIterativeClosestPoint<PointXYZ, PointXYZ, Scalar>;
+  const QuietConsole quiet;
+  Recorder<Reference> icp;
+  const auto expected = snapshotsOf<Reference, Scalar>(icp, scenario);
+  ASSERT_FALSE(expected.empty());
+  for (const unsigned int num_threads : {1, 3}) {
+    Recorder<Bayesian> bayesian;
+    usePaper(bayesian);
+    bayesian.setNumberOfThreads(num_threads);
+    const auto actual = snapshotsOf<Bayesian, Scalar>(bayesian, scenario);
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      SCOPED_TRACE("align() number " + std::to_string(i));
+      expectSame(actual[i], expected[i]);
+    }
+  }
+}
+
+/** Every \p step-th point of a cloud of data/. */
+Cloud::Ptr
+readThinned(const std::string& file, std::size_t step)
+{
+  Cloud all;
+  EXPECT_EQ(io::loadPCDFile(std::string(BAYESIAN_ICP_DATA_DIR) + "/" + file, all), 0);
+  Cloud::Ptr thinned(new Cloud);
+  for (std::size_t i = 0; i < all.size(); i += step)
+    thinned->push_back(all[i]);
+  return (thinned);
+}
+
+/** On a lattice of 1/32 m: many points equally near, and repeated points. */
+Cloud::Ptr
+onLattice(const Cloud& cloud)
+{
+  Cloud::Ptr rounded(new Cloud(cloud));
+  for (auto& point : *rounded)
+    point.getVector3fMap() =
+        (32.0f * point.getVector3fMap().array()).round().matrix() / 32.0f;
+  return (rounded);
+}
+
+const Eigen::Matrix4d no_guess = Eigen::Matrix4d::Identity();
+
+class DropInOnScans : public ::testing::TestWithParam<const char*> {
+protected:
+  const std::string scene = GetParam();
+  const Cloud::Ptr source = readThinned(scene + "/source.pcd", 7);
+  const Cloud::Ptr target = readThinned(scene + "/target.pcd", 5);
+};
+
+TEST_P(DropInOnScans, IsTheRegistrationOfIcp)
+{
+  expectTheRegistrationOfIcp([this](Icp& icp, const Align& align) {
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    align(no_guess);
+    icp.setMaxCorrespondenceDistance(0.02);
+    align(bayesian_icp::matrixOf(smallPose()));
+  });
+}
+
+TEST_P(DropInOnScans, IsTheRegistrationOfIcpInDouble)
+{
+  expectTheRegistrationOfIcp<double>([this](auto& icp, const Align& align) {
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    align(no_guess);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Data,
+    DropInOnScans,
+    ::testing::Values("bowl", "can", "corridor", "mug", "table", "table_top"),
+    [](const auto& scene) { return std::string(scene.param); });
+
+/** Whether target points are equally near to some of the queries. */
+class DropInClouds : public ::testing::TestWithParam<bool> {
+protected:
+  DropInClouds()
+  {
+    Scans<PointXYZ> scans;
+    if (GetParam())
+      for (auto* cloud : {&scans.source, &scans.target})
+        *cloud = onLattice(**cloud);
+    source = scans.source;
+    target = scans.target;
+  }
+
+  /** With the clouds of this test. */
+  void
+  expectSameWith(const std::function<void(Icp&)>& settings)
+  {
+    expectTheRegistrationOfIcp([&](Icp& icp, const Align& align) {
+      icp.setInputSource(source);
+      icp.setInputTarget(target);
+      settings(icp);
+      align(no_guess);
+      align(bayesian_icp::matrixOf(smallPose()));
+    });
+  }
+
+  Cloud::Ptr source, target;
+};
+
+TEST_P(DropInClouds, WithDefaults)
+{
+  expectSameWith([](Icp&) {});
+}
+
+TEST_P(DropInClouds, WithGates)
+{
+  for (const double gate : {0.02, -0.02, 0.0, 1e-30, 1e30, std::nan("")})
+    expectSameWith([&](Icp& icp) { icp.setMaxCorrespondenceDistance(gate); });
+}
+
+TEST_P(DropInClouds, WithRejectors)
+{
+  expectSameWith([](Icp& icp) {
+    icp.addCorrespondenceRejector(pcl::make_shared<OneToOne>());
+    icp.addCorrespondenceRejector(pcl::make_shared<Median>());
+  });
+}
+
+TEST_P(DropInClouds, WithReciprocalPairs)
+{
+  expectSameWith([](Icp& icp) { icp.setUseReciprocalCorrespondences(true); });
+}
+
+TEST_P(DropInClouds, WithATreeOfTheUser)
+{
+  expectSameWith([](Icp& icp) { icp.setSearchMethodTarget(pcl::make_shared<Tree>()); });
+}
+
+TEST_P(DropInClouds, WithAReadyTreeOfHalfOfTheTarget)
+{
+  expectSameWith([this](Icp& icp) {
+    const auto half = pcl::make_shared<Indices>();
+    for (index_t i = 0; i < 900; i += 2)
+      half->push_back(i);
+    const auto tree = pcl::make_shared<Tree>();
+    tree->setInputCloud(target, half);
+    icp.setSearchMethodTarget(tree, true);
+  });
+}
+
+/** Distances along z count ten times. */
+struct Stretched : PointRepresentation<PointXYZ> {
+  Stretched() { nr_dimensions_ = 3; }
+  void
+  copyToFloatArray(const PointXYZ& point, float* out) const override
+  {
+    out[0] = point.x;
+    out[1] = point.y;
+    out[2] = 10.0f * point.z;
+  }
+};
+
+TEST_P(DropInClouds, WithPointRepresentations)
+{
+  expectSameWith(
+      [](Icp& icp) { icp.setPointRepresentation(pcl::make_shared<Stretched>()); });
+  expectSameWith([](Icp& icp) {
+    const auto estimation = pcl::make_shared<Estimation>();
+    estimation->setPointRepresentation(pcl::make_shared<Stretched>());
+    icp.setCorrespondenceEstimation(estimation);
+  });
+}
+
+TEST_P(DropInClouds, WithTargetIndicesOfTheEstimation)
+{
+  const auto half = pcl::make_shared<Indices>();
+  for (index_t i = 0; i < 900; i += 2)
+    half->push_back(i);
+  expectTheRegistrationOfIcp([&](Icp& icp, const Align& align) {
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    const auto estimation = pcl::make_shared<Estimation>();
+    estimation->setIndicesTarget(half);
+    icp.setCorrespondenceEstimation(estimation);
+    align(no_guess);
+    icp.setCorrespondenceEstimation(pcl::make_shared<Estimation>());
+    align(no_guess);
+  });
+}
+
+TEST_P(DropInClouds, WithTargetsThatChange)
+{
+  const Cloud::Ptr other(new Cloud(*target));
+  for (auto& point : *other)
+    point.x += 0.03f;
+  expectTheRegistrationOfIcp([&](Icp& icp, const Align& align) {
+    const Cloud::Ptr changing(new Cloud(*target));
+    icp.setInputSource(source);
+    for (const auto& cloud : {changing, other, changing}) {
+      icp.setInputTarget(cloud);
+      align(no_guess);
+    }
+    for (auto& point : *changing) // in place, and nobody is told
+      point.y -= 0.04f;
+    align(no_guess);
+    icp.setUseReciprocalCorrespondences(true);
+    align(no_guess);
+    for (auto& point : *changing)
+      point.y -= 0.02f;
+    icp.setUseReciprocalCorrespondences(false);
+    align(no_guess);
+  });
+}
+
+TEST_P(DropInClouds, WithATreeThatAnotherRegistrationUsesToo)
+{
+  const Cloud::Ptr other(new Cloud(*target));
+  for (auto& point : *other)
+    point.x += 0.03f;
+  expectTheRegistrationOfIcp([&](Icp& icp, const Align& align) {
+    const auto tree = pcl::make_shared<Tree>();
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    icp.setSearchMethodTarget(tree);
+    align(no_guess);
+    tree->setInputCloud(other);
+    align(no_guess);
+  });
+}
+
+TEST_P(DropInClouds, OneIterationAtATime)
+{
+  expectTheRegistrationOfIcp([this](Icp& icp, const Align& align) {
+    icp.setMaximumIterations(1);
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    Eigen::Matrix4d guess = no_guess;
+    for (int i = 0; i < 5; ++i) {
+      align(guess);
+      guess = icp.getFinalTransformation().cast<double>();
+    }
+  });
+}
+
+TEST_P(DropInClouds, WithPointsThatAreNotFinite)
+{
+  // PCL's class aborts on them in the source, and leaves them out of the target.
+  const auto with_holes = [](Cloud cloud) {
+    for (std::size_t i = 3; i < cloud.size(); i += 10)
+      cloud[i].y = std::nanf("");
+    return (cloud);
+  };
+  *target = with_holes(*target);
+  const Cloud whole = with_holes(*source);
+  Indices finite;
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    if (isXYZFinite(whole[i]))
+      finite.push_back(static_cast<index_t>(i));
+  ASSERT_LT(finite.size(), whole.size());
+  Cloud::Ptr finite_source(new Cloud);
+  copyPointCloud(whole, finite, *finite_source);
+
+  const QuietConsole quiet;
+  Recorder<Icp> icp;
+  Recorder<BayesianIcp> bayesian;
+  usePaper(bayesian);
+  icp.setInputSource(finite_source);
+  bayesian.setInputSource(whole.makeShared());
+  for (Icp* registration : {static_cast<Icp*>(&icp), static_cast<Icp*>(&bayesian)})
+    registration->setInputTarget(target);
+  icp.alignAndRecord(no_guess);
+  bayesian.alignAndRecord(no_guess);
+  Snapshot &actual = bayesian.snapshots[0], &expected = icp.snapshots[0];
+  for (auto& pair : expected.correspondences)
+    pair.index_query = finite[static_cast<std::size_t>(pair.index_query)];
+  Cloud finite_output;
+  copyPointCloud(actual.output, finite, finite_output);
+  actual.output = finite_output;
+  expectSame(actual, expected);
+}
+
+TEST_P(DropInClouds, ThePairsOfTheDefaultEstimationCanBeAskedForAfterwards)
+{
+  const auto pairsAfterAlign = [this](Icp& icp) {
+    const auto estimation = pcl::make_shared<Estimation>();
+    icp.setCorrespondenceEstimation(estimation);
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    Cloud output;
+    icp.align(output);
+    Correspondences pairs;
+    estimation->determineCorrespondences(pairs);
+    return (pairs);
+  };
+  const QuietConsole quiet;
+  Icp icp;
+  BayesianIcp bayesian;
+  usePaper(bayesian);
+  expectSamePairs(pairsAfterAlign(bayesian), pairsAfterAlign(icp));
+}
+
+INSTANTIATE_TEST_SUITE_P(UniqueAndTied,
+                         DropInClouds,
+                         ::testing::Bool(),
+                         [](const auto& tied) {
+                           return tied.param ? "Tied" : "Unique";
+                         });
+
+TEST(DropInTies, OccurOnTheLattice)
+{
+  const Scans<PointXYZ> scans;
+  const auto numTied = [](const Cloud& source, const Cloud& target) {
+    const bayesian_icp::KdTree tree(bayesian_icp_detail::pointMatrix<float>(target));
+    return (std::count_if(source.begin(), source.end(), [&](const auto& point) {
+      return (tree.nearest(point.getVector3fMap(), std::numeric_limits<float>::max())
+                  .is_tied);
+    }));
+  };
+  EXPECT_GT(numTied(*onLattice(*scans.source), *onLattice(*scans.target)), 100);
+  EXPECT_EQ(numTied(*scans.source, *scans.target), 0);
+}
+
+} // namespace
+} // namespace test
+} // namespace pcl

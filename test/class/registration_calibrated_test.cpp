@@ -1,0 +1,138 @@
+// Preset `calibrated` in the PCL class: what it finds, and whose points it looks at.
+#include "support/registration_support.h"
+
+#include <pcl/registration/correspondence_rejection_one_to_one.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include <limits>
+
+namespace pcl {
+namespace test {
+namespace {
+
+using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
+
+/** Dense enough for a surface. */
+class CalibratedTest : public ::testing::Test {
+protected:
+  CalibratedTest()
+  {
+    transformPointCloud(
+        *target, *target, bayesian_icp::matrixOf(smallPose()).cast<float>().eval());
+    configure(icp);
+    icp.setInputTarget(target);
+  }
+
+  void
+  configure(BayesianIcp& registration) const
+  {
+    registration.setPreset(bayesian_icp::Preset::Calibrated);
+    registration.setInputSource(source);
+  }
+
+  Cloud::Ptr source = bumpySurface<PointXYZ>(1, 1500);
+  Cloud::Ptr target = bumpySurface<PointXYZ>(2, 8000);
+  BayesianIcp icp;
+  Cloud output;
+  QuietConsole quiet;
+};
+
+TEST_F(CalibratedTest, FindsThePoseAndReportsWhatTheDataSay)
+{
+  icp.align(output);
+  const bayesian_icp::Summary& summary = icp.getSummary();
+  ASSERT_EQ(summary.status, bayesian_icp::Status::Ok) << summary.message;
+  const auto convention = bayesian_icp::CovarianceConvention::R3xSO3;
+  const bayesian_icp::Vector6d error =
+      bayesian_icp::poseError(smallPose(), icp.getMean(), convention);
+  // chi^2_6 exceeds 27.9 once in 10 000.
+  EXPECT_LT(error.dot(icp.getCovariance(convention).inverse() * error), 27.9);
+  ASSERT_TRUE(summary.data.is_available);
+  EXPECT_EQ(summary.data.directions.size(), 6u);
+  EXPECT_NEAR(summary.data.noise_scale, 0.001, 0.0003);
+}
+
+TEST_F(CalibratedTest, LooksAtTheSelectedTargetPointsOnly)
+{
+  icp.align(output);
+  const auto expected = icp.getSamples();
+  ASSERT_GT(expected.rows(), 0);
+
+  const Cloud::Ptr with_decoy(new Cloud(*target));
+  *with_decoy += *source;
+  const IndicesPtr selected(new Indices(target->size()));
+  for (std::size_t i = 0; i < selected->size(); ++i)
+    (*selected)[i] = static_cast<index_t>(i);
+  icp.setInputTarget(with_decoy);
+  icp.align(output);
+  EXPECT_NE(icp.getSamples(), expected);
+
+  const pcl::shared_ptr<Estimation> estimation(new Estimation);
+  estimation->setIndicesTarget(selected);
+  icp.setCorrespondenceEstimation(estimation);
+  icp.align(output);
+  EXPECT_EQ(icp.getSamples(), expected);
+
+  const search::KdTree<PointXYZ>::Ptr ready_tree(new search::KdTree<PointXYZ>);
+  ready_tree->setInputCloud(with_decoy, selected);
+  BayesianIcp with_tree;
+  configure(with_tree);
+  with_tree.setInputTarget(with_decoy);
+  with_tree.setSearchMethodTarget(ready_tree, true);
+  with_tree.align(output);
+  EXPECT_EQ(with_tree.getSamples(), expected);
+}
+
+TEST_F(CalibratedTest, RejectorsReciprocityAndTheGateAreForIcpAlone)
+{
+  icp.align(output);
+  const auto expected = icp.getSamples();
+  const Eigen::Matrix4f plain = icp.getFinalTransformation();
+  icp.addCorrespondenceRejector(
+      pcl::make_shared<registration::CorrespondenceRejectorOneToOne>());
+  icp.setUseReciprocalCorrespondences(true);
+  icp.setMaxCorrespondenceDistance(0.1);
+  icp.align(output);
+  EXPECT_NE(icp.getFinalTransformation(), plain);
+  EXPECT_EQ(icp.getSamples(), expected);
+}
+
+TEST_F(CalibratedTest, TheMeanCanBeTheFinalTransformation)
+{
+  icp.setUseMeanAsFinalTransformation(true);
+  icp.align(output);
+  EXPECT_EQ(icp.getFinalTransformation(), icp.getMeanTransformation());
+}
+
+TEST_F(CalibratedTest, AnInfinitePriorIsRefused)
+{
+  bayesian_icp::Vector6d variance = bayesian_icp::Vector6d::Constant(0.1);
+  variance[5] = std::numeric_limits<double>::infinity();
+  icp.setPrior(bayesian_icp::Vector6d::Zero(), variance);
+  icp.align(output);
+  EXPECT_TRUE(icp.hasConverged()); // ICP's meaning
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
+  EXPECT_EQ(icp.getSamples().rows(), 0);
+}
+
+TEST_F(CalibratedTest, NonFinitePointsAreLeftOut)
+{
+  icp.align(output);
+  const auto expected = icp.getSamples();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const Cloud::Ptr holey_source(new Cloud(*source)), holey_target(new Cloud(*target));
+  holey_source->push_back({nan, 0.0f, 0.0f});
+  holey_target->push_back({0.0f, nan, 0.0f});
+  holey_source->is_dense = holey_target->is_dense = false;
+  icp.setInputSource(holey_source);
+  icp.setInputTarget(holey_target);
+  icp.align(output);
+  EXPECT_EQ(icp.getSamples(), expected);
+}
+
+} // namespace
+} // namespace test
+} // namespace pcl

@@ -1,0 +1,505 @@
+// What a user installs in the registration is honoured by ICP and by the sampler:
+// indices, correspondence estimation, rejectors, trees, representation, estimation.
+#include "support/registration_support.h"
+
+#include <pcl/filters/extract_indices.h>
+#include <pcl/registration/correspondence_rejection_distance.h>
+#include <pcl/registration/correspondence_rejection_median_distance.h>
+#include <pcl/registration/correspondence_rejection_one_to_one.h>
+#include <pcl/registration/correspondence_rejection_surface_normal.h>
+#include <pcl/registration/transformation_estimation_2D.h>
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace pcl {
+namespace test {
+namespace {
+
+using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
+
+class PluginTest : public ::testing::Test {
+protected:
+  PluginTest()
+  {
+    usePaper(icp);
+    icp.setInputSource(scans.source);
+    icp.setInputTarget(scans.target);
+  }
+
+  Scans<PointXYZ> scans;
+  BayesianIcp icp;
+  Cloud output;
+  QuietConsole quiet;
+};
+
+TEST_F(PluginTest, IndicesSelectThePointsOfTheEstimate)
+{
+  IndicesPtr indices(new Indices);
+  for (index_t i = 100; i < 700; i += 2)
+    indices->push_back(i);
+  Cloud::Ptr subset(new Cloud);
+  copyPointCloud(*scans.source, *indices, *subset);
+  BayesianIcp of_subset;
+  usePaper(of_subset);
+  of_subset.setInputSource(subset);
+  of_subset.setInputTarget(scans.target);
+  Cloud subset_output;
+  of_subset.align(subset_output);
+
+  icp.setIndices(indices);
+  icp.align(output);
+  EXPECT_EQ(icp.getFinalTransformation(), of_subset.getFinalTransformation());
+  EXPECT_EQ(icp.getSamples(), of_subset.getSamples());
+  ASSERT_EQ(output.size(), scans.source->size()); // the whole cloud, as in PCL
+  EXPECT_EQ(output[102].getVector3fMap(), subset_output[1].getVector3fMap());
+}
+
+TEST_F(PluginTest, CorrespondencesOfASubsetReferToTheWholeSource)
+{
+  struct Exposed : BayesianIcp {
+    using BayesianIcp::correspondences_;
+  } exposed;
+  usePaper(exposed);
+  exposed.setInputSource(scans.source);
+  exposed.setInputTarget(scans.target);
+  IndicesPtr indices(new Indices{10, 20, 30, 40, 50, 60});
+  exposed.setIndices(indices);
+  exposed.align(output);
+  ASSERT_EQ(exposed.correspondences_->size(), indices->size());
+  for (std::size_t i = 0; i < indices->size(); ++i)
+    EXPECT_EQ((*exposed.correspondences_)[i].index_query, (*indices)[i]);
+}
+
+TEST_F(PluginTest, AnEmptyListOfIndicesMeansTheWholeCloud)
+{
+  icp.setIndices(IndicesPtr(new Indices));
+  icp.align(output);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_EQ(output.size(), scans.source->size());
+}
+
+TEST_F(PluginTest, IndicesOfTheEstimationApplyToIcpAndToEveryMiniBatch)
+{
+  const IndicesPtr indices(new Indices);
+  for (index_t i = 100; i < 900; i += 3)
+    indices->push_back(i);
+  const pcl::shared_ptr<Estimation> estimation(new Estimation);
+  estimation->setIndicesSource(indices);
+  Icp reference;
+  reference.setInputSource(scans.source);
+  reference.setInputTarget(scans.target);
+  reference.setCorrespondenceEstimation(estimation);
+  reference.align(output);
+
+  BayesianIcp of_indices;
+  usePaper(of_indices);
+  of_indices.setInputSource(scans.source);
+  of_indices.setInputTarget(scans.target);
+  of_indices.setIndices(indices);
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(1e3f);
+  for (const bool has_rejector : {false, true}) {
+    if (has_rejector) {
+      icp.addCorrespondenceRejector(rejector);
+      of_indices.addCorrespondenceRejector(rejector);
+    }
+    icp.setCorrespondenceEstimation(estimation);
+    icp.align(output);
+    of_indices.align(output);
+    EXPECT_EQ(icp.getFinalTransformation(), reference.getFinalTransformation());
+    EXPECT_EQ(icp.getSamples(), of_indices.getSamples());
+    EXPECT_EQ(estimation->getIndicesSource(), indices);
+  }
+}
+
+TEST_F(PluginTest, AChainThatRunsAwayDoesNotReachThePlugins)
+{
+  // Without a prior nothing stops it, and PCL's trees assert that queries are finite.
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(1e3f);
+  icp.addCorrespondenceRejector(rejector);
+  icp.setPrior(bayesian_icp::Vector6d::Constant(std::nan("")),
+               bayesian_icp::Vector6d::Constant(HUGE_VAL));
+  bayesian_icp::Options options = icp.getOptions();
+  options.paper.sgld.step_size = 1e40;
+  icp.setOptions(options);
+  icp.align(output);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_NE(icp.getSummary().status, bayesian_icp::Status::Ok);
+}
+
+/** The default estimation, counting the points it is asked about. */
+struct CountingEstimation : Estimation {
+  void
+  determineCorrespondences(Correspondences& correspondences,
+                           double max_distance) override
+  {
+    num_points += input_->size();
+    Estimation::determineCorrespondences(correspondences, max_distance);
+  }
+  std::size_t num_points = 0;
+};
+
+TEST_F(PluginTest, OwnEstimationIsAskedByIcpAndByEveryStep)
+{
+  const pcl::shared_ptr<CountingEstimation> estimation(new CountingEstimation);
+  icp.setCorrespondenceEstimation(estimation);
+  icp.align(output);
+  struct Exposed : Icp {
+    using Icp::nr_iterations_;
+  } reference;
+  reference.setInputSource(scans.source);
+  reference.setInputTarget(scans.target);
+  Cloud reference_output;
+  reference.align(reference_output);
+  const std::size_t n = scans.source->size();
+  EXPECT_EQ(icp.getFinalTransformation(), reference.getFinalTransformation());
+  // ICP's iterations, the count at the guess, 40 mini-batches of 20.
+  EXPECT_EQ(estimation->num_points,
+            static_cast<std::size_t>(reference.nr_iterations_) * n + n + 40UL * 20UL);
+  EXPECT_EQ(icp.getSamples().rows(), 40);
+}
+
+TEST_F(PluginTest, ExceptionsOfPluginsPassThroughAndTheObjectStaysUsable)
+{
+  struct Throwing : Estimation {
+    void
+    determineCorrespondences(Correspondences& c, double max_distance) override
+    {
+      if (input_->size() == 20) // a mini-batch
+        throw std::runtime_error("sensor unplugged");
+      Estimation::determineCorrespondences(c, max_distance);
+    }
+  };
+  icp.setCorrespondenceEstimation(pcl::shared_ptr<Throwing>(new Throwing));
+  IndicesPtr indices(new Indices{10,  20,  30,  40,  50,  60,  70,  80,
+                                 90,  100, 110, 120, 130, 140, 150, 160,
+                                 170, 180, 190, 200, 210, 220, 230, 240});
+  icp.setIndices(indices);
+  EXPECT_THROW(icp.align(output), std::runtime_error);
+  EXPECT_EQ(icp.getInputSource(), scans.source);
+  icp.setCorrespondenceEstimation(pcl::shared_ptr<Estimation>(new Estimation));
+  icp.align(output);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_EQ(icp.getSamples().rows(), 40);
+}
+
+TEST_F(PluginTest, ARejectorThatRejectsNothingChangesNothing)
+{
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(1e3f);
+  BayesianIcp plain;
+  usePaper(plain);
+  plain.setInputSource(scans.source);
+  plain.setInputTarget(scans.target);
+  plain.align(output);
+  icp.addCorrespondenceRejector(rejector);
+  icp.align(output);
+  EXPECT_EQ(icp.getFinalTransformation(), plain.getFinalTransformation());
+  // Only the points are moved in float here and in double there.
+  EXPECT_LT((icp.getSamples().row(0) - plain.getSamples().row(0)).norm(), 1e-5);
+}
+
+TEST_F(PluginTest, ReciprocityIsThatOfTheWholeSourceAlsoWithRejectors)
+{
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(1e3f);
+  BayesianIcp plain;
+  usePaper(plain);
+  plain.setUseReciprocalCorrespondences(true);
+  plain.setInputSource(scans.source);
+  plain.setInputTarget(scans.target);
+  plain.align(output);
+  icp.setUseReciprocalCorrespondences(true);
+  icp.addCorrespondenceRejector(rejector);
+  icp.align(output);
+  EXPECT_EQ(icp.getSamples(), plain.getSamples());
+}
+
+TEST_F(PluginTest, RejectorsWithDataOfTheirOwnKnowPointsByTheirIndexInTheSource)
+{
+  struct Recording : registration::CorrespondenceRejectorOneToOne {
+    void
+    getRemainingCorrespondences(const Correspondences& in,
+                                Correspondences& out) override
+    {
+      CorrespondenceRejectorOneToOne::getRemainingCorrespondences(in, out);
+      if (in.size() <= 20) // a mini-batch
+        for (const auto& pair : in)
+          largest_index = std::max(largest_index, pair.index_query);
+    }
+    index_t largest_index = 0;
+  };
+  const pcl::shared_ptr<Recording> rejector(new Recording);
+  icp.addCorrespondenceRejector(rejector);
+  icp.align(output);
+  EXPECT_GT(rejector->largest_index, 800); // of 900
+  EXPECT_EQ(icp.getSamples().rows(), 40);
+}
+
+TEST_F(PluginTest, ADistanceRejectorActsAsTheGate)
+{
+  registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(0.05f);
+  BayesianIcp gated;
+  usePaper(gated);
+  gated.setMaxCorrespondenceDistance(0.05);
+  gated.setInputSource(scans.source);
+  gated.setInputTarget(scans.target);
+  gated.align(output);
+  icp.addCorrespondenceRejector(rejector);
+  icp.align(output);
+  EXPECT_EQ(icp.getSamples().rows(), gated.getSamples().rows());
+  EXPECT_LT((icp.getChain(0).row(0) - gated.getChain(0).row(0)).norm(), 1e-5);
+}
+
+TEST_F(PluginTest, RejectorsAreAppliedInOrderEachToTheOthersOutput)
+{
+  struct Recording : registration::CorrespondenceRejectorMedianDistance {
+    void
+    getRemainingCorrespondences(const Correspondences& in,
+                                Correspondences& out) override
+    {
+      CorrespondenceRejectorMedianDistance::getRemainingCorrespondences(in, out);
+      last_in = in.size();
+      last_out = out.size();
+    }
+    std::size_t last_in = 0, last_out = 0;
+  };
+  const pcl::shared_ptr<Recording> first(new Recording), second(new Recording);
+  first->setMedianFactor(1.0);
+  second->setMedianFactor(1.0);
+  icp.addCorrespondenceRejector(first);
+  icp.addCorrespondenceRejector(second);
+  icp.align(output);
+  EXPECT_EQ(first->last_in, 20u); // the last mini-batch
+  EXPECT_LT(first->last_out, first->last_in);
+  EXPECT_EQ(second->last_in, first->last_out);
+}
+
+TEST(Plugins, RejectorsThatNeedNormalsGetThoseOfTheMovedMiniBatch)
+{
+  Scans<PointNormal> scans;
+  // The guess turns the source by half a turn, and its normals have to turn with it: as
+  // they are in the file, all pairs would be rejected.
+  const Eigen::Matrix4f half_turn =
+      Eigen::Vector4f(-1.0f, 1.0f, -1.0f, 1.0f).asDiagonal().toDenseMatrix();
+  for (auto* cloud : {&*scans.source, &*scans.target})
+    for (auto& point : *cloud)
+      point.getNormalVector3fMap() = Eigen::Vector3f::UnitZ();
+  transformPointCloudWithNormals(*scans.source, *scans.source, half_turn);
+  using Rejector = registration::CorrespondenceRejectorSurfaceNormal;
+  Rejector::Ptr rejector(new Rejector);
+  rejector->setThreshold(0.5);
+  BayesianIterativeClosestPoint<PointNormal, PointNormal> icp;
+  usePaper(icp);
+  icp.addCorrespondenceRejector(rejector);
+  icp.setInputSource(scans.source);
+  icp.setInputTarget(scans.target);
+  const QuietConsole quiet;
+  PointCloud<PointNormal> output;
+  icp.align(output, half_turn);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_GT(icp.getSamples().rows(), 0);
+}
+
+/** A search tree that counts queries. */
+struct CountingTree : search::KdTree<PointXYZ> {
+  using search::KdTree<PointXYZ>::nearestKSearch;
+  int
+  nearestKSearch(const PointXYZ& point,
+                 int k,
+                 Indices& indices,
+                 std::vector<float>& squared_distances) const override
+  {
+    ++num_queries;
+    return (
+        search::KdTree<PointXYZ>::nearestKSearch(point, k, indices, squared_distances));
+  }
+  void
+  setInputCloud(const PointCloudConstPtr& cloud,
+                const IndicesConstPtr& indices = IndicesConstPtr()) override
+  {
+    ++num_builds;
+    search::KdTree<PointXYZ>::setInputCloud(cloud, indices);
+  }
+  mutable std::size_t num_queries = 0;
+  std::size_t num_builds = 0;
+};
+
+TEST_F(PluginTest, OwnSearchTreeIsAskedByEveryStep)
+{
+  const pcl::shared_ptr<CountingTree> tree(new CountingTree);
+  icp.setMaximumIterations(1);
+  icp.setSearchMethodTarget(tree);
+  icp.align(output);
+  const std::size_t n = scans.source->size();
+  EXPECT_EQ(tree->num_queries, n + n + 40UL * 20UL);
+}
+
+/** Runs preset exact against \p target, which holds the true target and then a decoy at
+ * the identity, and returns how far the mean is from the truth. */
+double
+yawErrorOfExact(BayesianIcp& icp, const Cloud::Ptr& target)
+{
+  bayesian_icp::Options options = icp.getOptions();
+  options.preset = bayesian_icp::Preset::Exact;
+  options.chains.num_draws = 200;
+  options.exact.scale.measurement_sigma = 0.005;
+  options.exact.scale.effective_points = 300;
+  options.exact.initial_spread =
+      bayesian_icp::Vector6d(bayesian_icp::Vector6d::Constant(0.001));
+  icp.setOptions(options);
+  icp.setInputTarget(target);
+  Cloud output;
+  icp.align(output);
+  return (std::abs(icp.getMean()[5] - smallPose()[5]));
+}
+
+TEST_F(PluginTest, PresetExactSearchesTheSelectedTargetPointsOnly)
+{
+  const Cloud::Ptr with_decoy(new Cloud(*scans.target));
+  *with_decoy += *scans.source;
+  const IndicesPtr selected(new Indices(scans.target->size()));
+  for (std::size_t i = 0; i < selected->size(); ++i)
+    (*selected)[i] = static_cast<index_t>(i);
+
+  BayesianIcp all_points;
+  all_points.setInputSource(scans.source);
+  EXPECT_GT(yawErrorOfExact(all_points, with_decoy), 0.04);
+
+  const pcl::shared_ptr<Estimation> estimation(new Estimation);
+  estimation->setIndicesTarget(selected);
+  icp.setCorrespondenceEstimation(estimation);
+  EXPECT_LT(yawErrorOfExact(icp, with_decoy), 0.02);
+
+  const search::KdTree<PointXYZ>::Ptr ready_tree(new search::KdTree<PointXYZ>);
+  ready_tree->setInputCloud(with_decoy, selected);
+  BayesianIcp with_tree;
+  with_tree.setInputSource(scans.source);
+  with_tree.setSearchMethodTarget(ready_tree, true);
+  EXPECT_LT(yawErrorOfExact(with_tree, with_decoy), 0.02);
+}
+
+TEST_F(PluginTest, ASharedReadyTreeIsNeverRebuilt)
+{
+  const pcl::shared_ptr<CountingTree> tree(new CountingTree);
+  tree->setInputCloud(scans.target);
+  icp.setSearchMethodTarget(tree, true);
+  icp.align(output);
+  EXPECT_EQ(tree->num_builds, 1u);
+  EXPECT_TRUE(icp.hasConverged());
+}
+
+TEST_F(PluginTest, PointRepresentationOfTheTreeIsHonoured)
+{
+  // Heights only: correspondences, and with them the draws, must differ from the
+  // default's.
+  struct HeightOnly : PointRepresentation<PointXYZ> {
+    HeightOnly() { nr_dimensions_ = 1; }
+    void
+    copyToFloatArray(const PointXYZ& point, float* out) const override
+    {
+      out[0] = point.z;
+    }
+  };
+  icp.setMaximumIterations(1);
+  icp.align(output);
+  const auto plain = icp.getSamples();
+  icp.setPointRepresentation(pcl::shared_ptr<const HeightOnly>(new HeightOnly));
+  icp.align(output);
+  ASSERT_EQ(icp.getSamples().rows(), 40);
+  EXPECT_GT((icp.getSamples() - plain).norm(), 1e-3);
+}
+
+TEST_F(PluginTest, VisualizationCallbackIsCalledOnceAnIcpIteration)
+{
+  int num_calls = 0;
+  std::function<Registration<PointXYZ, PointXYZ>::UpdateVisualizerCallbackSignature>
+      callback = [&](const Cloud&, const Indices&, const Cloud&, const Indices&) {
+        ++num_calls;
+      };
+  EXPECT_TRUE(icp.registerVisualizationCallback(callback));
+  const int at_registration = num_calls;
+  icp.setMaximumIterations(5);
+  icp.setTransformationEpsilon(0.0);
+  icp.align(output);
+  EXPECT_EQ(num_calls - at_registration, 5);
+}
+
+TEST_F(PluginTest, TheMeanStaysWithinWhatAPlanarEstimationAllows)
+{
+  using Planar = registration::TransformationEstimation2D<PointXYZ, PointXYZ>;
+  icp.setTransformationEstimation(pcl::shared_ptr<Planar>(new Planar));
+  icp.setUseMeanAsFinalTransformation(true);
+  icp.align(output);
+  const Eigen::Matrix4f T = icp.getFinalTransformation();
+  EXPECT_NEAR(T(2, 2), 1.0f, 1e-6f);
+  EXPECT_NEAR(T(2, 3), 0.0f, 1e-6f);
+  // It is what that estimation makes of the source moved to the mean.
+  Cloud at_mean;
+  transformPointCloud(*scans.source, at_mean, icp.getMeanTransformation());
+  Eigen::Matrix4f expected;
+  Planar().estimateRigidTransformation(*scans.source, at_mean, expected);
+  EXPECT_GT((icp.getMeanTransformation() - expected).norm(), 1e-3f);
+  EXPECT_LT((T - expected).norm(), 1e-5f);
+}
+
+/** Correspondences by the fast search and by PCL's own estimation at random poses. */
+class SearchComparison : public ::testing::TestWithParam<bool> {};
+
+TEST_P(SearchComparison, FastSearchFindsWhatPclsEstimationFinds)
+{
+  const Scans<PointXYZ> scans;
+  const bool is_reciprocal = GetParam();
+  const double max_distance = 0.03;
+  search::KdTree<PointXYZ>::Ptr tree(new search::KdTree<PointXYZ>);
+  tree->setInputCloud(scans.target);
+  const bayesian_icp_detail::KdTreeSearch<PointXYZ, PointXYZ> search(
+      tree, scans.target, max_distance, is_reciprocal ? scans.source : nullptr);
+
+  std::vector<std::size_t> all(scans.source->size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = i;
+  bayesian_icp::Random random(3, 0);
+  std::size_t num_compared = 0;
+  for (int repeat = 0; repeat < 10; ++repeat) {
+    const bayesian_icp::Vector6d pose = smallPose() + 0.02 * random.normal6();
+    Cloud::Ptr moved(new Cloud);
+    transformPointCloud(*scans.source, *moved, bayesian_icp::matrixOf(pose));
+    bayesian_icp::Correspondences found;
+    search.find(pose, all, bayesian_icp_detail::pointMatrix(*moved), found);
+
+    Estimation estimation;
+    estimation.setInputSource(moved);
+    estimation.setInputTarget(scans.target);
+    Correspondences expected;
+    if (is_reciprocal)
+      estimation.determineReciprocalCorrespondences(expected, max_distance);
+    else
+      estimation.determineCorrespondences(expected, max_distance);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].source_index,
+                static_cast<std::size_t>(expected[i].index_query));
+      EXPECT_EQ(found[i].target_point.cast<float>(),
+                (*scans.target)[expected[i].index_match].getVector3fMap());
+    }
+    num_compared += found.size();
+  }
+  EXPECT_GT(num_compared, 1000u);
+  EXPECT_LT(num_compared, 10 * all.size()); // the gate, or reciprocity, did reject
+}
+
+INSTANTIATE_TEST_SUITE_P(PlainAndReciprocal, SearchComparison, ::testing::Bool());
+
+} // namespace
+} // namespace test
+} // namespace pcl

@@ -1,0 +1,418 @@
+// pcl::StochasticGradientDescentIterativeClosestPoint as a drop-in registration.
+#include "support/registration_support.h"
+
+#include <pcl/registration/correspondence_rejection_distance.h>
+#include <pcl/registration/incremental_registration.h>
+#include <pcl/registration/stochastic_gradient_icp.h>
+#include <pcl/registration/transformation_estimation_2D.h>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace pcl {
+namespace test {
+namespace {
+
+using bayesian_icp::DescentEnd;
+using bayesian_icp::SgdOptimizer;
+using SgdIcp = StochasticGradientDescentIterativeClosestPoint<PointXYZ, PointXYZ>;
+using Criteria = registration::DefaultConvergenceCriteria<float>;
+
+constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
+
+struct Exposed : SgdIcp {
+  using SgdIcp::correspondences_;
+  using SgdIcp::nr_iterations_;
+};
+
+/** Steps of the size of an object of 1 m. */
+void
+useGentleSteps(SgdIcp& icp)
+{
+  icp.setOptimizer(SgdOptimizer::Momentum);
+  icp.setMaximumIterations(400);
+}
+
+class SgdRegistration : public ::testing::Test {
+protected:
+  void
+  align(SgdIcp& icp, const Eigen::Matrix4f& guess = Eigen::Matrix4f::Identity())
+  {
+    icp.setInputSource(scans_.source);
+    icp.setInputTarget(scans_.target);
+    icp.align(output_, guess);
+  }
+
+  Scans<PointXYZ> scans_;
+  Cloud output_;
+  QuietConsole quiet_;
+};
+
+TEST_F(SgdRegistration, IsHeldByThePointersOfItsBases)
+{
+  const SgdIcp::Ptr icp(new SgdIcp);
+  const Icp::Ptr as_icp = icp;
+  const Registration<PointXYZ, PointXYZ>::Ptr as_registration = icp;
+  EXPECT_EQ(icp->getClassName(), "StochasticGradientDescentIterativeClosestPoint");
+  EXPECT_FALSE(icp->hasConverged());
+  EXPECT_EQ(icp->getResult().num_iterations, 0);
+  as_registration->setInputSource(scans_.source);
+  as_registration->setInputTarget(scans_.target);
+  as_registration->align(output_);
+  EXPECT_GT(icp->getResult().num_iterations, 0);
+  registration::IncrementalRegistration<PointXYZ> incremental;
+  incremental.setRegistration(as_registration);
+  EXPECT_TRUE(incremental.registerCloud(scans_.target));
+  EXPECT_TRUE(incremental.registerCloud(scans_.source));
+}
+
+TEST_F(SgdRegistration, TheOutputIsTheSourceMovedByTheFinalTransformation)
+{
+  Exposed icp;
+  useGentleSteps(icp);
+  align(icp);
+  EXPECT_TRUE(icp.hasConverged());
+  Cloud expected;
+  transformPointCloud(*scans_.source, expected, icp.getFinalTransformation());
+  ASSERT_EQ(output_.size(), expected.size());
+  for (std::size_t i = 0; i < output_.size(); ++i)
+    ASSERT_LT((output_[i].getVector3fMap() - expected[i].getVector3fMap()).norm(),
+              1e-6f); // a few roundings of numbers below 1 m
+  EXPECT_EQ(icp.getFinalTransformation(),
+            bayesian_icp::matrixOf(icp.getResult().pose).cast<float>().eval());
+  EXPECT_EQ(icp.nr_iterations_, icp.getResult().num_iterations);
+  EXPECT_EQ(icp.correspondences_->size(), scans_.source->size());
+  // The mean squared distance of the pairs is what PCL calls the fitness.
+  double sum = 0.0;
+  for (const auto& pair : *icp.correspondences_)
+    sum += pair.distance;
+  EXPECT_NEAR(icp.getFitnessScore(),
+              sum / static_cast<double>(output_.size()),
+              1e-5 * icp.getFitnessScore());
+}
+
+TEST_F(SgdRegistration, ComesNearerToTheTruthThanItStarted)
+{
+  for (const SgdOptimizer optimizer : {SgdOptimizer::FixedStep,
+                                       SgdOptimizer::Momentum,
+                                       SgdOptimizer::AdaDelta,
+                                       SgdOptimizer::Adam,
+                                       SgdOptimizer::RmsProp}) {
+    SgdIcp icp;
+    icp.setOptimizer(optimizer);
+    align(icp);
+    Cloud at_truth;
+    transformPointCloud(*scans_.source,
+                        at_truth,
+                        bayesian_icp::matrixOf(smallPose()).cast<float>().eval());
+    double sum = 0.0, sum_at_start = 0.0;
+    for (std::size_t i = 0; i < output_.size(); ++i) {
+      const Eigen::Vector3f truth = at_truth[i].getVector3fMap();
+      sum += (output_[i].getVector3fMap() - truth).squaredNorm();
+      sum_at_start += ((*scans_.source)[i].getVector3fMap() - truth).squaredNorm();
+    }
+    EXPECT_LT(sum, sum_at_start) << toString(optimizer);
+  }
+}
+
+TEST_F(SgdRegistration, TheFinalTransformationIncludesTheGuess)
+{
+  bayesian_icp::Vector6d far = smallPose();
+  far[0] += 0.02;
+  const Eigen::Matrix4f guess = bayesian_icp::matrixOf(far).cast<float>();
+  SgdIcp icp;
+  icp.setMaxCorrespondenceDistance(1e-9); // no step is made
+  align(icp, guess);
+  EXPECT_EQ(icp.getFinalTransformation(), guess);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_EQ(icp.getResult().end, DescentEnd::TooFewCorrespondences);
+  EXPECT_EQ(icp.getConvergeCriteria()->getConvergenceState(),
+            Criteria::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
+  // The object can be used again.
+  icp.setMaxCorrespondenceDistance(1.0);
+  useGentleSteps(icp);
+  icp.setMaximumIterations(1);
+  icp.align(output_, guess);
+  EXPECT_TRUE(icp.hasConverged());
+  const Eigen::Matrix4f step = icp.getLastIncrementalTransformation();
+  EXPECT_LT((step * guess - icp.getFinalTransformation()).norm(), 1e-6f);
+  EXPECT_GT((step - Eigen::Matrix4f::Identity()).norm(), 1e-4f);
+}
+
+TEST_F(SgdRegistration, EpsilonsAndIterationsArePclsSettings)
+{
+  SgdIcp icp;
+  const bayesian_icp::StochasticGradientIcpOptions defaults;
+  EXPECT_EQ(icp.getMaximumIterations(), defaults.max_iterations);
+  EXPECT_NEAR(
+      icp.getOptions().translation_epsilon, defaults.translation_epsilon, 1e-15);
+  // The cosine of a small angle a is known to 1e-16, so the angle to 1e-16 / a.
+  EXPECT_NEAR(icp.getOptions().rotation_epsilon, defaults.rotation_epsilon, 1e-13);
+  icp.setTransformationEpsilon(1e-6);
+  EXPECT_NEAR(icp.getOptions().translation_epsilon, 1e-3, 1e-15);
+  EXPECT_NEAR(icp.getOptions().rotation_epsilon, defaults.rotation_epsilon, 1e-13);
+  icp.setTransformationRotationEpsilon(std::cos(0.25));
+  EXPECT_NEAR(icp.getOptions().rotation_epsilon, 0.25, 1e-14);
+  icp.setTransformationRotationEpsilon(0.0); // as in PCL: of the other epsilon
+  EXPECT_NEAR(icp.getOptions().rotation_epsilon, std::acos(1.0 - 1e-6), 1e-12);
+  auto options = icp.getOptions();
+  options.max_iterations = 3;
+  options.translation_epsilon = 0.5;
+  icp.setOptions(options);
+  EXPECT_EQ(icp.getMaximumIterations(), 3);
+  EXPECT_EQ(icp.getTransformationEpsilon(), 0.25);
+}
+
+TEST_F(SgdRegistration, RunningOutOfIterationsIsConvergenceUnlessToldOtherwise)
+{
+  SgdIcp icp;
+  icp.setMaximumIterations(2);
+  align(icp);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_EQ(icp.getConvergeCriteria()->getConvergenceState(),
+            Criteria::CONVERGENCE_CRITERIA_ITERATIONS);
+  EXPECT_EQ(icp.getResult().end, DescentEnd::MaxIterations);
+  icp.getConvergeCriteria()->setFailureAfterMaximumIterations(true);
+  align(icp);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_EQ(icp.getConvergeCriteria()->getConvergenceState(),
+            Criteria::CONVERGENCE_CRITERIA_FAILURE_AFTER_MAX_ITERATIONS);
+  icp.setMaximumIterations(0); // once, as in PCL
+  align(icp);
+  EXPECT_EQ(icp.getResult().num_iterations, 1);
+}
+
+TEST_F(SgdRegistration, AFreshObjectRepeatsTheResultAndASecondAlignForgetsTheFirst)
+{
+  SgdIcp icp, again, other_seed;
+  align(icp);
+  const Eigen::Matrix4f first = icp.getFinalTransformation();
+  align(icp, bayesian_icp::matrixOf(smallPose()).cast<float>());
+  align(icp);
+  EXPECT_EQ(icp.getFinalTransformation(), first);
+  align(again);
+  EXPECT_EQ(again.getFinalTransformation(), first);
+  other_seed.setSeed(77);
+  align(other_seed);
+  EXPECT_NE(other_seed.getFinalTransformation(), first);
+  Cloud::Ptr source(new Cloud(*scans_.source));
+  icp.setInputSource(source);
+  icp.align(*source);
+  EXPECT_EQ(icp.getFinalTransformation(), first);
+  align(again);
+  EXPECT_EQ((*source)[5].getVector3fMap(), output_[5].getVector3fMap());
+}
+
+TEST_F(SgdRegistration, NonFinitePointsAreSkippedAndKept)
+{
+  Exposed clean, holed;
+  align(clean);
+  for (const std::ptrdiff_t i : {0, 17, 500}) {
+    const PointXYZ hole(1.0f, i == 17 ? nan_value : 1e30f, 2.0f);
+    scans_.source->insert(scans_.source->begin() + i, hole);
+  }
+  (*scans_.target).push_back(PointXYZ(nan_value, 0.0f, 0.0f));
+  align(holed);
+  EXPECT_EQ(holed.getFinalTransformation(), clean.getFinalTransformation());
+  EXPECT_EQ(holed.getFitnessScore(), clean.getFitnessScore());
+  ASSERT_EQ(output_.size(), scans_.source->size());
+  EXPECT_TRUE(std::isnan(output_[17].y));
+  ASSERT_EQ(holed.correspondences_->size(), scans_.source->size() - 3);
+  EXPECT_EQ(holed.correspondences_->front().index_query, 1);
+}
+
+TEST_F(SgdRegistration, IndicesSelectThePointsOfTheEstimate)
+{
+  const std::size_t num_good = scans_.source->size();
+  SgdIcp clean, indexed;
+  align(clean);
+  for (int i = 0; i < 300; ++i)
+    scans_.source->push_back(PointXYZ(5.0f, 5.0f, 0.01f * static_cast<float>(i)));
+  IndicesPtr indices(new Indices);
+  for (std::size_t i = 0; i < num_good; ++i)
+    indices->push_back(static_cast<index_t>(i));
+  indexed.setIndices(indices);
+  align(indexed);
+  EXPECT_EQ(indexed.getFinalTransformation(), clean.getFinalTransformation());
+  EXPECT_EQ(output_.size(), num_good + 300);
+}
+
+TEST_F(SgdRegistration, BadInputFailsWithoutHarm)
+{
+  const Cloud::Ptr all_nan(new Cloud(10, 1, PointXYZ(nan_value, 0.0f, 0.0f)));
+  const Cloud::Ptr two_points(new Cloud(2, 1, PointXYZ(1.0f, 0.0f, 0.0f)));
+  Eigen::Matrix4f scaled = Eigen::Matrix4f::Identity(), not_finite = scaled;
+  scaled.topLeftCorner<3, 3>() *= 0.9f;
+  not_finite(1, 3) = nan_value;
+  const auto expectFailure = [&](const Cloud::Ptr& source,
+                                 const Cloud::Ptr& target,
+                                 const Eigen::Matrix4f& guess,
+                                 DescentEnd end) {
+    SgdIcp icp;
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    icp.align(output_, guess);
+    EXPECT_FALSE(icp.hasConverged());
+    EXPECT_EQ(icp.getResult().end, end);
+    EXPECT_EQ(output_.size(), source->size());
+    align(icp);
+    EXPECT_TRUE(icp.hasConverged());
+  };
+  const auto none = Eigen::Matrix4f::Identity();
+  expectFailure(all_nan, scans_.target, none, DescentEnd::TooFewCorrespondences);
+  expectFailure(scans_.source, all_nan, none, DescentEnd::TooFewCorrespondences);
+  expectFailure(two_points, scans_.target, none, DescentEnd::TooFewCorrespondences);
+  expectFailure(scans_.source, scans_.target, not_finite, DescentEnd::InvalidInput);
+  expectFailure(scans_.source, scans_.target, scaled, DescentEnd::InvalidInput);
+
+  SgdIcp icp;
+  icp.align(output_); // neither source nor target
+  EXPECT_FALSE(icp.hasConverged());
+  icp.setInputSource(Cloud::Ptr(new Cloud)); // refused by PCL
+  EXPECT_EQ(icp.getInputSource(), nullptr);
+  icp.setStepSize(-1.0);
+  align(icp);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_EQ(icp.getResult().end, DescentEnd::InvalidInput);
+}
+
+TEST_F(SgdRegistration, AStepBeyondTheRangeOfScalarIsDivergence)
+{
+  SgdIcp icp;
+  icp.setOptimizer(SgdOptimizer::FixedStep);
+  icp.setStepSize(1e60); // poses that a double can hold
+  align(icp);
+  EXPECT_EQ(icp.getResult().end, DescentEnd::Diverged);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_TRUE(icp.getFinalTransformation().allFinite());
+}
+
+TEST_F(SgdRegistration, ADistanceRejectorActsAsTheGate)
+{
+  SgdIcp gated, rejecting;
+  gated.setMaxCorrespondenceDistance(0.03);
+  align(gated);
+  const registration::CorrespondenceRejectorDistance::Ptr rejector(
+      new registration::CorrespondenceRejectorDistance);
+  rejector->setMaximumDistance(0.03f);
+  rejecting.addCorrespondenceRejector(rejector);
+  align(rejecting);
+  EXPECT_LT(
+      (rejecting.getFinalTransformation() - gated.getFinalTransformation()).norm(),
+      1e-6f);
+  SgdIcp plain;
+  align(plain);
+  EXPECT_NE(plain.getFinalTransformation(), gated.getFinalTransformation());
+}
+
+/** Counts how often it is asked. */
+class CountingEstimation
+: public registration::CorrespondenceEstimation<PointXYZ, PointXYZ> {
+public:
+  int num_calls = 0;
+
+  void
+  determineCorrespondences(Correspondences& pairs, double max_distance) override
+  {
+    ++num_calls;
+    registration::CorrespondenceEstimation<PointXYZ, PointXYZ>::
+        determineCorrespondences(pairs, max_distance);
+  }
+};
+
+TEST_F(SgdRegistration, OwnEstimationIsAskedByEveryStep)
+{
+  SgdIcp plain, own;
+  const pcl::shared_ptr<CountingEstimation> estimation(new CountingEstimation);
+  own.setCorrespondenceEstimation(estimation);
+  align(plain);
+  align(own);
+  EXPECT_EQ(own.getResult().num_iterations, plain.getResult().num_iterations);
+  // Once more for the correspondences at the end.
+  EXPECT_EQ(estimation->num_calls, own.getResult().num_iterations + 1);
+  EXPECT_LT((own.getFinalTransformation() - plain.getFinalTransformation()).norm(),
+            1e-5f);
+}
+
+TEST_F(SgdRegistration, ASharedReadyTreeIsSearchedAsItIs)
+{
+  SgdIcp plain, with_tree;
+  align(plain);
+  const search::KdTree<PointXYZ>::Ptr tree(new search::KdTree<PointXYZ>);
+  tree->setInputCloud(scans_.target);
+  const auto input = tree->getInputCloud();
+  with_tree.setSearchMethodTarget(tree, true);
+  align(with_tree);
+  EXPECT_EQ(with_tree.getFinalTransformation(), plain.getFinalTransformation());
+  EXPECT_EQ(tree->getInputCloud(), input);
+}
+
+TEST_F(SgdRegistration, IndicesOfTheTargetAreThoseSearched)
+{
+  SgdIcp plain, selected;
+  align(plain);
+  IndicesPtr indices(new Indices);
+  for (std::size_t i = 0; i < scans_.target->size(); ++i)
+    indices->push_back(static_cast<index_t>(i));
+  for (int i = 0; i < 300; ++i) // ready to be matched, were it not for the indices
+    scans_.target->push_back((*scans_.source)[static_cast<std::size_t>(i)]);
+  const registration::CorrespondenceEstimation<PointXYZ, PointXYZ>::Ptr estimation(
+      new registration::CorrespondenceEstimation<PointXYZ, PointXYZ>);
+  estimation->setIndicesTarget(indices);
+  selected.setCorrespondenceEstimation(estimation);
+  align(selected);
+  EXPECT_EQ(selected.getFinalTransformation(), plain.getFinalTransformation());
+}
+
+TEST_F(SgdRegistration, StaysWithinWhatAPlanarEstimationAllows)
+{
+  SgdIcp icp;
+  useGentleSteps(icp);
+  icp.setTransformationEstimation(
+      registration::TransformationEstimation2D<PointXYZ, PointXYZ>::Ptr(
+          new registration::TransformationEstimation2D<PointXYZ, PointXYZ>));
+  align(icp);
+  const Eigen::Matrix4f T = icp.getFinalTransformation();
+  EXPECT_EQ(T.row(2), Eigen::RowVector4f(0.0f, 0.0f, 1.0f, 0.0f));
+  EXPECT_EQ(T.col(2), Eigen::Vector4f(0.0f, 0.0f, 1.0f, 0.0f));
+  EXPECT_NE(T, Eigen::Matrix4f::Identity());
+}
+
+TEST_F(SgdRegistration, VisualizationCallbackIsCalledOnceAStep)
+{
+  SgdIcp icp;
+  icp.setInputSource(scans_.source);
+  icp.setInputTarget(scans_.target);
+  int num_calls = 0;
+  std::function<SgdIcp::UpdateVisualizerCallbackSignature> callback =
+      [&](const Cloud& source, const Indices& in_source, const Cloud&, const Indices&) {
+        ++num_calls;
+        EXPECT_EQ(source.size(), scans_.source->size());
+        EXPECT_EQ(in_source.size(), num_calls == 1 ? 0 : source.size());
+      };
+  icp.registerVisualizationCallback(callback); // calls it at once, without pairs
+  icp.align(output_);
+  EXPECT_EQ(num_calls, 1 + icp.getResult().num_iterations);
+}
+
+TEST_F(SgdRegistration, DoubleKeepsTheRotationOrthonormalAndNormalsAreTurned)
+{
+  Scans<PointNormal> scans;
+  for (auto& point : *scans.source)
+    point.getNormalVector3fMap() = Eigen::Vector3f::UnitZ();
+  StochasticGradientDescentIterativeClosestPoint<PointNormal, PointNormal, double> icp;
+  icp.setInputSource(scans.source);
+  icp.setInputTarget(scans.target);
+  PointCloud<PointNormal> output;
+  icp.align(output);
+  const Eigen::Matrix3d R = icp.getFinalTransformation().topLeftCorner<3, 3>();
+  EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  const Eigen::Vector3f normal = output[3].getNormalVector3fMap();
+  EXPECT_LT((normal - R.col(2).cast<float>()).norm(), 1e-6f);
+  EXPECT_NE(normal, Eigen::Vector3f::UnitZ());
+}
+
+} // namespace
+} // namespace test
+} // namespace pcl

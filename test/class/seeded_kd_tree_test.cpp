@@ -1,0 +1,338 @@
+// The search tree of the registration classes answers as PCL's, whatever it is asked.
+#include "support/registration_support.h"
+
+#include <pcl/registration/impl/seeded_kd_tree.hpp>
+#include <pcl/search/kdtree.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <thread>
+#include <vector>
+
+namespace pcl {
+namespace test {
+namespace {
+
+using Tree = search::KdTree<PointXYZ>;
+using Seeded = bayesian_icp_detail::SeededKdTree<PointXYZ>;
+
+struct Answer {
+  int number;
+  Indices indices;
+  std::vector<float> squared_distances;
+};
+
+bool
+operator==(const Answer& a, const Answer& b)
+{
+  return (a.number == b.number && a.indices == b.indices &&
+          a.squared_distances == b.squared_distances);
+}
+
+std::vector<Answer>
+nearestTo(const Tree& tree, const Cloud& queries, int k)
+{
+  std::vector<Answer> answers;
+  for (const auto& query : queries) {
+    Answer answer;
+    answer.number =
+        tree.nearestKSearch(query, k, answer.indices, answer.squared_distances);
+    answers.push_back(answer);
+  }
+  return (answers);
+}
+
+std::vector<Answer>
+withinRadius(const Tree& tree, const Cloud& queries)
+{
+  std::vector<Answer> answers;
+  for (const auto& query : queries) {
+    Answer answer;
+    answer.number =
+        tree.radiusSearch(query, 0.1, answer.indices, answer.squared_distances);
+    answers.push_back(answer);
+  }
+  return (answers);
+}
+
+/** Does the same with PCL's tree and with ours, and asks both. */
+class SeededKdTreeTest : public ::testing::Test {
+protected:
+  void
+  expectPclsAnswersAfter(const std::function<void(Tree&)>& work)
+  {
+    Tree pcls;
+    Seeded ours;
+    work(pcls);
+    work(ours);
+    EXPECT_EQ(ours.getInputCloud(), pcls.getInputCloud());
+    EXPECT_EQ(ours.getIndices(), pcls.getIndices());
+    EXPECT_EQ(ours.getEpsilon(), pcls.getEpsilon());
+    for (const int k : {1, 5})
+      EXPECT_EQ(nearestTo(ours, *source, k), nearestTo(pcls, *source, k)) << k;
+    EXPECT_EQ(withinRadius(ours, *source), withinRadius(pcls, *source));
+    // The radius has built PCL's tree, if nothing else had.
+    EXPECT_EQ(ours.getEpsilon(), pcls.getEpsilon());
+    EXPECT_EQ(nearestTo(ours, *source, 1), nearestTo(pcls, *source, 1));
+  }
+
+  const Cloud::Ptr source = bumpySurface<PointXYZ>(1),
+                   target = bumpySurface<PointXYZ>(2);
+};
+
+TEST_F(SeededKdTreeTest, AnswersAsPcls)
+{
+  expectPclsAnswersAfter([this](Tree& tree) { tree.setInputCloud(target); });
+}
+
+TEST_F(SeededKdTreeTest, AnswersAsPclsWhereSeveralPointsAreAsNear)
+{
+  for (auto* cloud : {source.get(), target.get()})
+    for (auto& point : *cloud)
+      point.getVector3fMap() = (16.0f * point.getVector3fMap().array()).round() / 16.0f;
+  expectPclsAnswersAfter([this](Tree& tree) { tree.setInputCloud(target); });
+}
+
+TEST_F(SeededKdTreeTest, AnswersAsPclsWithoutPoints)
+{
+  const QuietConsole quiet;
+  const Cloud::Ptr nowhere(new Cloud);
+  nowhere->resize(3);
+  for (auto& point : *nowhere)
+    point.z = std::nanf("");
+  Tree pcls;
+  Seeded ours;
+  // Within a radius PCL's tree finds nothing to look at, and crashes.
+  EXPECT_EQ(nearestTo(ours, *source, 1), nearestTo(pcls, *source, 1));
+  pcls.setInputCloud(nowhere);
+  ours.setInputCloud(nowhere);
+  for (const int k : {1, 5})
+    EXPECT_EQ(nearestTo(ours, *source, k), nearestTo(pcls, *source, k));
+  expectPclsAnswersAfter([&](Tree& tree) {
+    tree.setInputCloud(nowhere);
+    tree.setInputCloud(target);
+  });
+}
+
+TEST_F(SeededKdTreeTest, LeavesOutPointsThatAreNotFinite)
+{
+  for (std::size_t i = 3; i < target->size(); i += 10)
+    (*target)[i].y = std::nanf("");
+  expectPclsAnswersAfter([this](Tree& tree) { tree.setInputCloud(target); });
+}
+
+TEST_F(SeededKdTreeTest, TakesIndices)
+{
+  const auto half = pcl::make_shared<Indices>();
+  for (index_t i = 0; i < 900; i += 2)
+    half->push_back(i);
+  expectPclsAnswersAfter([&](Tree& tree) { tree.setInputCloud(target, half); });
+  expectPclsAnswersAfter([&](Tree& tree) {
+    tree.setInputCloud(target);
+    tree.setInputCloud(target, half);
+  });
+  expectPclsAnswersAfter([&](Tree& tree) {
+    tree.setInputCloud(target, half);
+    tree.setInputCloud(target);
+  });
+}
+
+/** Distances along z count ten times. */
+struct Stretched : PointRepresentation<PointXYZ> {
+  Stretched() { nr_dimensions_ = 3; }
+  void
+  copyToFloatArray(const PointXYZ& point, float* out) const override
+  {
+    out[0] = point.x;
+    out[1] = point.y;
+    out[2] = 10.0f * point.z;
+  }
+};
+
+TEST_F(SeededKdTreeTest, TakesPointRepresentationsBeforeAndAfterTheCloud)
+{
+  const auto stretched = pcl::make_shared<Stretched>();
+  expectPclsAnswersAfter([&](Tree& tree) {
+    tree.setPointRepresentation(stretched);
+    tree.setInputCloud(target);
+  });
+  expectPclsAnswersAfter([&](Tree& tree) {
+    tree.setInputCloud(target);
+    tree.setPointRepresentation(stretched);
+  });
+  expectPclsAnswersAfter([&](Tree& tree) {
+    tree.setInputCloud(target);
+    tree.setPointRepresentation(stretched);
+    tree.setPointRepresentation(
+        pcl::make_shared<DefaultPointRepresentation<PointXYZ>>());
+  });
+}
+
+TEST_F(SeededKdTreeTest, TakesTheOrderOfItsResults)
+{
+  expectPclsAnswersAfter([this](Tree& tree) {
+    tree.setSortedResults(false);
+    tree.setInputCloud(target);
+  });
+  expectPclsAnswersAfter([this](Tree& tree) {
+    tree.setInputCloud(target);
+    tree.setSortedResults(false);
+  });
+}
+
+TEST_F(SeededKdTreeTest, KeepsEpsilonAsPcls)
+{
+  // Too small to change an answer.
+  expectPclsAnswersAfter([this](Tree& tree) {
+    tree.setInputCloud(target);
+    tree.setEpsilon(1e-9f);
+  });
+  expectPclsAnswersAfter([this](Tree& tree) {
+    tree.setEpsilon(1e-9f);
+    tree.setInputCloud(target);
+    tree.setEpsilon(1e-9f);
+    tree.setInputCloud(target);
+  });
+}
+
+TEST_F(SeededKdTreeTest, HasThePointsAsTheyWereWhenTheyWereGiven)
+{
+  const auto change = [](Cloud& cloud) {
+    for (auto& point : cloud)
+      point.x += 0.1f;
+  };
+  const auto expectSame = [&](int num_times_given) {
+    Answer answers[2][3];
+    for (Tree* tree : {static_cast<Tree*>(new Tree), static_cast<Tree*>(new Seeded)}) {
+      const Tree::Ptr owner(tree);
+      const Cloud::Ptr cloud(new Cloud(*target));
+      for (int i = 0; i < num_times_given; ++i) {
+        tree->setInputCloud(cloud);
+        change(*cloud);
+      }
+      auto* answer = answers[dynamic_cast<Seeded*>(tree) ? 1 : 0];
+      answer[0] = nearestTo(*tree, *source, 1)[0];
+      answer[1] = nearestTo(*tree, *source, 7)[0];
+      answer[2] = withinRadius(*tree, *source)[0];
+    }
+    for (int i = 0; i < 3; ++i)
+      EXPECT_EQ(answers[1][i], answers[0][i]) << i;
+  };
+  expectSame(1);
+  expectSame(2);
+}
+
+TEST_F(SeededKdTreeTest, IsNotBuiltAgainForTheSamePoints)
+{
+  Seeded tree;
+  tree.setInputCloud(target);
+  const auto* first = tree.seeded->get().get();
+  ASSERT_NE(first, nullptr);
+  tree.setInputCloud(target);
+  EXPECT_EQ(tree.seeded->get().get(), first);
+  const Cloud::Ptr copy(new Cloud(*target));
+  tree.setInputCloud(copy);
+  EXPECT_EQ(tree.seeded->get().get(), first);
+  EXPECT_EQ(tree.getInputCloud(), copy);
+  (*copy)[5].z = std::nextafter((*copy)[5].z, 1.0f);
+  const auto kept = tree.seeded->get(); // so that no other has its address
+  tree.setInputCloud(copy);
+  EXPECT_NE(tree.seeded->get(), kept);
+}
+
+TEST_F(SeededKdTreeTest, BeginningAtLastAnswersChangesNone)
+{
+  Tree pcls;
+  const auto ours = pcl::make_shared<Seeded>();
+  pcls.setInputCloud(target);
+  ours->setInputCloud(target);
+  // Also fewer places than points, and answers of another cloud.
+  for (const std::size_t num_points :
+       {source->size(), std::size_t(7), std::size_t(1)}) {
+    ours->seeded->beginAtLastAnswers(num_points);
+    Cloud moved = *source;
+    for (int round = 0; round < 4; ++round) {
+      for (auto& point : moved)
+        point.x += 0.05f;
+      EXPECT_EQ(nearestTo(*ours, moved, 1), nearestTo(pcls, moved, 1));
+    }
+    const Cloud::Ptr smaller(new Cloud(*target));
+    smaller->resize(100);
+    pcls.setInputCloud(smaller);
+    ours->setInputCloud(smaller);
+    EXPECT_EQ(nearestTo(*ours, moved, 1), nearestTo(pcls, moved, 1));
+    pcls.setInputCloud(target);
+    ours->setInputCloud(target);
+  }
+  ours->seeded->beginAtLastAnswers(0);
+  EXPECT_EQ(nearestTo(*ours, *source, 1), nearestTo(pcls, *source, 1));
+}
+
+TEST_F(SeededKdTreeTest, AnswersSeveralThreadsAtOnce)
+{
+  Tree pcls;
+  Seeded ours;
+  pcls.setInputCloud(target);
+  ours.setInputCloud(target);
+  std::vector<Answer> nearest[4], within[4];
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&, i] {
+      nearest[i] = nearestTo(ours, *source, 1);
+      within[i] = withinRadius(ours, *source); // which builds PCL's tree
+    });
+  for (auto& thread : threads)
+    thread.join();
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(nearest[i], nearestTo(pcls, *source, 1));
+    EXPECT_EQ(within[i], withinRadius(pcls, *source));
+  }
+}
+
+TEST(RegistrationTree, IsOurs)
+{
+  const Scans<PointXYZ> scans;
+  BayesianIcp icp;
+  usePaper(icp);
+  icp.setInputSource(scans.source);
+  icp.setInputTarget(scans.target);
+  Cloud output;
+  const QuietConsole quiet;
+  icp.align(output);
+  const auto ours = dynamic_cast<const Seeded*>(icp.getSearchMethodTarget().get());
+  ASSERT_NE(ours, nullptr);
+  ASSERT_NE(ours->seeded->get(), nullptr);
+  Tree pcls;
+  pcls.setInputCloud(scans.target);
+  EXPECT_EQ(withinRadius(*ours, output), withinRadius(pcls, output));
+}
+
+TEST(RegistrationTree, MayBeReadyForOtherRegistrations)
+{
+  const Scans<PointXYZ> scans;
+  const QuietConsole quiet;
+  Cloud output;
+  Eigen::Matrix4f transformations[3];
+  BayesianIcp owner;
+  for (int i = 0; i < 3; ++i) {
+    BayesianIcp other;
+    BayesianIcp& icp = i == 0 ? owner : other;
+    usePaper(icp);
+    icp.setInputSource(scans.source);
+    icp.setInputTarget(scans.target);
+    if (i > 0)
+      icp.setSearchMethodTarget(owner.getSearchMethodTarget(), i == 1);
+    icp.align(output);
+    EXPECT_EQ(icp.getSamples(), owner.getSamples());
+    transformations[i] = icp.getFinalTransformation();
+  }
+  EXPECT_EQ(transformations[1], transformations[0]);
+  EXPECT_EQ(transformations[2], transformations[0]);
+}
+
+} // namespace
+} // namespace test
+} // namespace pcl

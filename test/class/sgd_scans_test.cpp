@@ -1,0 +1,90 @@
+// SGD-ICP on a committed pair of scans: its results scatter about what all points
+// together give.
+#include "support/registration_support.h"
+
+#include <pcl/io/pcd_io.h>
+#include <pcl/registration/stochastic_gradient_icp.h>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace pcl {
+namespace test {
+namespace {
+
+using bayesian_icp::Vector6d;
+using SgdIcp = StochasticGradientDescentIterativeClosestPoint<PointXYZ, PointXYZ>;
+
+class SgdScans : public ::testing::Test {
+protected:
+  SgdScans()
+  {
+    const std::string folder = std::string(BAYESIAN_ICP_DATA_DIR) + "/table/";
+    EXPECT_EQ(io::loadPCDFile(folder + "source.pcd", *source_), 0);
+    EXPECT_EQ(io::loadPCDFile(folder + "target.pcd", *target_), 0);
+    std::ifstream file(folder + "T_target_source.txt");
+    for (int i = 0; i < 16; ++i)
+      file >> truth_(i / 4, i % 4);
+    EXPECT_FALSE(file.fail());
+    // An eighth of the source, to be quick.
+    bayesian_icp::Random random(1, 0);
+    const auto size = static_cast<Eigen::Index>(source_->size());
+    for (const auto index : bayesian_icp::randomChoice(size, size / 8, random))
+      some_->push_back(static_cast<index_t>(index));
+  }
+
+  /** Error of the pose from the true one, with pairs not filtered. */
+  Vector6d
+  error(int batch_size, std::uint64_t seed)
+  {
+    SgdIcp icp;
+    auto options = icp.getOptions();
+    options.optimizer = bayesian_icp::SgdOptimizer::Momentum;
+    options.batch_size = batch_size;
+    options.seed = seed;
+    options.is_one_to_one = false;
+    options.max_iterations = 300;
+    options.translation_epsilon = 0.0; // never at rest
+    icp.setOptions(options);
+    icp.setInputSource(source_);
+    icp.setInputTarget(target_);
+    icp.setIndices(some_);
+    Cloud output;
+    icp.align(output);
+    return (bayesian_icp::poseError(icp.getResult().pose,
+                                    bayesian_icp::poseOf(truth_),
+                                    bayesian_icp::CovarianceConvention::R3xSO3));
+  }
+
+  Cloud::Ptr source_{new Cloud};
+  Cloud::Ptr target_{new Cloud};
+  IndicesPtr some_{new Indices};
+  Eigen::Matrix4d truth_;
+  QuietConsole quiet_;
+};
+
+TEST_F(SgdScans, MiniBatchesComeAsNearToTheTruthAsAllPointsUpToTheirNoise)
+{
+  constexpr int num_runs = 10;
+  const Vector6d full = error(1 << 20, 0);
+  Vector6d mean = Vector6d::Zero(), squares = Vector6d::Zero();
+  for (std::uint64_t seed = 1; seed <= num_runs; ++seed) {
+    const Vector6d e = error(150, seed);
+    mean += e / num_runs;
+    squares += (e - full).cwiseAbs2() / num_runs;
+  }
+  for (int k = 0; k < 6; ++k) {
+    // Ten runs about the truth less what all points miss it by; 4.8 is the 99.9 %
+    // quantile of |t| with nine degrees of freedom.
+    EXPECT_LT(std::abs(mean[k]),
+              std::abs(full[k]) + 4.8 * std::sqrt(squares[k] / num_runs))
+        << "coordinate " << k;
+    // Not by standing still: the source started 30 mm and 0.08 rad from there.
+    EXPECT_LT(std::sqrt(squares[k]), 0.02) << "coordinate " << k;
+  }
+}
+
+} // namespace
+} // namespace test
+} // namespace pcl

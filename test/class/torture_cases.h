@@ -1,0 +1,80 @@
+/** \file
+ * \brief Clouds and options at the edge of what can be registered, and what is to come
+ * of each.
+ */
+#pragma once
+
+#include "class/torture_clouds.h"
+
+#include <bayesian_icp/options.h>
+#include <bayesian_icp/summary.h>
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bayesian_icp {
+namespace test {
+
+/** What a registration has to end in. */
+enum class Verdict {
+  /** Status Ok, and the posterior is right: isRight() in torture_test.cpp. */
+  Right,
+  /** Draws, but a status that is not Ok and a message that says why. */
+  Warned,
+  /** As Warned, and yet the posterior is right. */
+  RightButWarned,
+  /** No draws: a status and a message that says why. */
+  Refused,
+  /** The preset does not have the option that the case changes. */
+  NoSuchOption,
+  /** The case is not tried. */
+  NotTried
+};
+
+/** A status and a piece of its message. */
+struct Outcome {
+  Status status;
+  std::string reason;
+};
+
+struct Expectation {
+  Verdict verdict;
+  /** Any of these will do. */
+  std::vector<Outcome> outcomes;
+};
+
+struct TortureCase {
+  /** For the name of the test. */
+  std::string id;
+  /** For the table. */
+  std::string description;
+  std::function<TorturePair()> make;
+  std::function<void(Options&)> change;
+  /** Of presets calibrated, exact and paper. */
+  std::array<Expectation, 3> expected;
+  /** Of preset paper with small steps. */
+  Expectation with_small_steps = {Verdict::NotTried, {}};
+};
+
+/** \brief Options before TortureCase::change: quick, and with a scale that fits the
+ * clouds of most cases. Preset paper has the paper's scale and step size. */
+Options
+tortureOptions(Preset preset);
+
+/** \brief Those of preset paper with a scale and a step size with which its chains mix
+ * on usualPair(). */
+Options
+smallStepOptions();
+
+/** \brief The cases of odd clouds. */
+std::vector<TortureCase>
+tortureCasesOfClouds();
+
+/** \brief All cases, in the order of the table. */
+std::vector<TortureCase>
+tortureCases();
+
+} // namespace test
+} // namespace bayesian_icp

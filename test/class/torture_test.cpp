@@ -1,0 +1,355 @@
+// pcl::BayesianIterativeClosestPoint where it hurts: each case ends in the right
+// answer, or in a status that says why not. The cases are in torture_cases.cpp; their
+// table in docs/reliability.md is made here (with BAYESIAN_ICP_WRITE_TABLE set,
+// written).
+#include "class/torture_cases.h"
+#include "support/registration_support.h"
+
+#include <bayesian_icp/chains.h>
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+namespace bayesian_icp {
+namespace test {
+
+void
+PrintTo(const TortureCase& the_case, std::ostream* stream)
+{
+  *stream << the_case.id;
+}
+
+namespace {
+
+/** chi^2 with 6 degrees of freedom exceeds it once in 10 000. */
+constexpr double max_squared_distance = 27.9;
+
+/** In standard deviations of the noise: a third of the way from the guess to the truth
+ * of most pairs. */
+constexpr double max_error = 3.0;
+
+/** Of the mean pose, in standard deviations of the draws. */
+constexpr double max_offset = 0.1;
+
+Eigen::Matrix3Xd
+finiteColumns(const Eigen::Matrix3Xd& points)
+{
+  Eigen::Matrix3Xd finite(3, points.cols());
+  Eigen::Index num_finite = 0;
+  for (const auto& point : points.colwise())
+    if (point.allFinite())
+      finite.col(num_finite++) = point;
+  return finite.leftCols(num_finite);
+}
+
+pcl::PointCloud<pcl::PointXYZ>::Ptr
+cloudOf(const Eigen::Matrix3Xd& points)
+{
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  for (const auto& point : points.cast<float>().colwise())
+    cloud->push_back({point.x(), point.y(), point.z()});
+  cloud->is_dense = points.allFinite();
+  return cloud;
+}
+
+template <typename Scalar>
+PosteriorEstimate
+estimateOf(const TorturePair& pair, const Options& options)
+{
+  pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, Scalar> icp;
+  icp.setOptions(options);
+  if (options.exact.residual.max_distance < 1.0)
+    icp.setMaxCorrespondenceDistance(options.exact.residual.max_distance);
+  icp.setInputSource(cloudOf(pair.source));
+  icp.setInputTarget(cloudOf(pair.target));
+  const pcl::test::QuietConsole quiet;
+  pcl::PointCloud<pcl::PointXYZ> output;
+  icp.align(output, matrixOf(pair.guess).template cast<Scalar>());
+  PosteriorEstimate estimate;
+  estimate.summary = icp.getSummary();
+  estimate.samples = icp.getSamples();
+  return estimate;
+}
+
+/** Squared distance of the truth from the mean, in standard deviations. */
+double
+squaredDistance(const TorturePair& pair, const Summary& summary)
+{
+  const auto convention = CovarianceConvention::R3xSO3;
+  const Vector6d error = poseError(pair.truth, summary.mean, convention);
+  return error.dot(summary.covariance(convention).ldlt().solve(error));
+}
+
+/** Where the draws put a point of the source, along the axes that the clouds hold: root
+ * mean squares over all points [m]. */
+struct Placement {
+  /** From its place at the truth to the mean of its places. */
+  double error;
+  /** Standard deviation about that mean. */
+  double spread;
+  /** From the mean of its places to its place at the mean pose. */
+  double offset_of_mean;
+};
+
+Placement
+placementOf(const TorturePair& pair, const Vector6d& mean, const PoseMatrix& draws)
+{
+  const int num_held_axes = 3 - pair.num_free_axes;
+  const Eigen::Matrix3d to_source = rotationOf(pair.truth).transpose();
+  const Eigen::Matrix3Xd source = finiteColumns(pair.source);
+  const Eigen::Matrix3Xd truth = moved(pair.truth, source);
+  const auto offsetsOf = [&](const Vector6d& pose) -> Eigen::MatrixXd {
+    return (to_source * (moved(pose, source) - truth)).bottomRows(num_held_axes);
+  };
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(num_held_axes, source.cols());
+  double sum_of_squares = 0.0;
+  for (const auto& draw : draws.rowwise()) {
+    const Eigen::MatrixXd offsets = offsetsOf(draw.transpose());
+    sum += offsets;
+    sum_of_squares += offsets.squaredNorm();
+  }
+  const auto num_draws = static_cast<double>(draws.rows());
+  const auto num_points = static_cast<double>(source.cols());
+  const double squared_error = (sum / num_draws).squaredNorm() / num_points;
+  return {std::sqrt(squared_error),
+          std::sqrt(sum_of_squares / (num_draws * num_points) - squared_error),
+          (offsetsOf(mean) - sum / num_draws).norm() / std::sqrt(num_points)};
+}
+
+/** Whether a posterior holds the truth and says more than a single point would. */
+::testing::AssertionResult
+isRight(const TorturePair& pair,
+        const Options& options,
+        const PosteriorEstimate& estimate)
+{
+  // Preset calibrated is told no scale: it has to find the noise.
+  const double sd_of_a_point = options.preset == Preset::Calibrated ? pair.noise
+                               : options.preset == Preset::Exact
+                                   ? options.exact.scale.measurement_sigma
+                                   : options.paper.scale.measurement_sigma;
+  const double squared_distance = squaredDistance(pair, estimate.summary);
+  const Placement placement =
+      placementOf(pair, estimate.summary.mean, estimate.samples);
+  const bool is_right = pair.has_truth && squared_distance < max_squared_distance &&
+                        placement.error < max_error * pair.noise &&
+                        placement.spread < sd_of_a_point &&
+                        placement.offset_of_mean < max_offset * placement.spread;
+  return (is_right ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
+         << "squared distance " << squared_distance << ", error " << placement.error
+         << " m, spread " << placement.spread << " m, mean " << placement.offset_of_mean
+         << " m off";
+}
+
+void
+expectNothing(const PosteriorEstimate& estimate)
+{
+  EXPECT_EQ(estimate.samples.rows(), 0);
+  EXPECT_TRUE(estimate.summary.mean.array().isNaN().all());
+  for (const Matrix6d& covariance : estimate.summary.covariances)
+    EXPECT_TRUE(covariance.array().isNaN().all());
+}
+
+bool
+isAsExpected(const Outcome& expected, const Summary& summary)
+{
+  return summary.status == expected.status &&
+         summary.message.find(expected.reason) != std::string::npos;
+}
+
+void
+expectVerdict(const Expectation& expected,
+              const TorturePair& pair,
+              const Options& options,
+              const PosteriorEstimate& estimate)
+{
+  EXPECT_TRUE(std::any_of(expected.outcomes.begin(),
+                          expected.outcomes.end(),
+                          [&estimate](const Outcome& outcome) {
+                            return isAsExpected(outcome, estimate.summary);
+                          }));
+  EXPECT_TRUE(estimate.samples.allFinite());
+  if (expected.verdict == Verdict::Refused || estimate.samples.rows() == 0)
+    expectNothing(estimate);
+  const bool must_be_right =
+      expected.verdict == Verdict::Right || expected.verdict == Verdict::RightButWarned;
+  if (must_be_right) {
+    EXPECT_TRUE(isRight(pair, options, estimate));
+  }
+}
+
+class Torture : public ::testing::TestWithParam<TortureCase> {
+protected:
+  template <typename Scalar>
+  void
+  check(Options options, const Expectation& expected) const
+  {
+    if (expected.verdict == Verdict::NoSuchOption)
+      return;
+    const TortureCase& the_case = GetParam();
+    const TorturePair pair = the_case.make();
+    the_case.change(options);
+    const PosteriorEstimate estimate = estimateOf<Scalar>(pair, options);
+    SCOPED_TRACE(the_case.id + ", " + toString(options.preset) + ": " +
+                 toString(estimate.summary.status) + ": " + estimate.summary.message);
+    RecordProperty("message", estimate.summary.message); // for --gtest_output=xml
+    expectVerdict(expected, pair, options, estimate);
+  }
+};
+
+TEST_P(Torture, Calibrated)
+{
+  check<float>(tortureOptions(Preset::Calibrated), GetParam().expected[0]);
+}
+
+TEST_P(Torture, CalibratedDouble)
+{
+  check<double>(tortureOptions(Preset::Calibrated), GetParam().expected[0]);
+}
+
+TEST_P(Torture, Exact)
+{
+  check<float>(tortureOptions(Preset::Exact), GetParam().expected[1]);
+}
+
+TEST_P(Torture, Paper)
+{
+  check<float>(tortureOptions(Preset::Paper), GetParam().expected[2]);
+}
+
+const auto name_of_case = [](const auto& of_case) { return of_case.param.id; };
+
+INSTANTIATE_TEST_SUITE_P(OfClouds,
+                         Torture,
+                         ::testing::ValuesIn(tortureCases()),
+                         name_of_case);
+
+std::vector<TortureCase>
+casesWithSmallSteps()
+{
+  std::vector<TortureCase> cases = tortureCases();
+  cases.erase(std::remove_if(cases.begin(),
+                             cases.end(),
+                             [](const TortureCase& the_case) {
+                               return the_case.with_small_steps.verdict ==
+                                      Verdict::NotTried;
+                             }),
+              cases.end());
+  return cases;
+}
+
+class TortureSmallSteps : public Torture {};
+
+TEST_P(TortureSmallSteps, Paper)
+{
+  check<float>(smallStepOptions(), GetParam().with_small_steps);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfClouds,
+                         TortureSmallSteps,
+                         ::testing::ValuesIn(casesWithSmallSteps()),
+                         name_of_case);
+
+TEST(TortureRight, ThePriorAloneIsNot)
+{
+  for (const TortureCase& the_case : tortureCases())
+    for (const Preset preset : {Preset::Calibrated, Preset::Exact}) {
+      if (the_case.expected[preset == Preset::Exact].verdict != Verdict::Right)
+        continue;
+      Options options = tortureOptions(preset);
+      const Vector6d sd = options.prior.variance.cwiseSqrt();
+      the_case.change(options);
+      const TorturePair pair = the_case.make();
+      Random random(1, 0);
+      PosteriorEstimate prior;
+      prior.samples.resize(1000, 6);
+      for (auto draw : prior.samples.rowwise())
+        draw = (pair.guess + sd.cwiseProduct(random.normal6())).transpose();
+      ChainSet chains;
+      chains.chains.push_back({prior.samples, false});
+      prior.summary = summarize(chains);
+      EXPECT_FALSE(isRight(pair, options, prior)) << the_case.id;
+    }
+}
+
+TEST(TorturePlane, ThreeOfSixMotionsAreThePriorsAlone)
+{
+  const PosteriorEstimate estimate = estimateOf<float>(
+      flattenedPair(2, usual_noise), tortureOptions(Preset::Calibrated));
+  const auto& directions = estimate.summary.data.directions;
+  ASSERT_EQ(directions.size(), 6u);
+  EXPECT_EQ(std::count_if(directions.begin(),
+                          directions.end(),
+                          [](const DataDirection& direction) {
+                            return direction.observability == Observability::PriorOnly;
+                          }),
+            3);
+}
+
+std::string
+cellOf(const Expectation& expected)
+{
+  std::string outcomes;
+  for (const Outcome& outcome : expected.outcomes)
+    outcomes += (outcomes.empty() ? ": `" : " or `") +
+                std::string(toString(outcome.status)) + "`, \"" + outcome.reason + "\"";
+  switch (expected.verdict) {
+  case Verdict::Right:
+    return "right";
+  case Verdict::Warned:
+    return "warns" + outcomes;
+  case Verdict::RightButWarned:
+    return "right, warns" + outcomes;
+  case Verdict::Refused:
+    return "refuses" + outcomes;
+  case Verdict::NoSuchOption:
+    return "no such option";
+  case Verdict::NotTried:
+    return "";
+  }
+  return "";
+}
+
+std::string
+tableOfCases()
+{
+  std::string table =
+      "| case | `calibrated` | `exact` | `paper` | `paper`, small steps "
+      "|\n|---|---|---|---|---|\n";
+  for (const TortureCase& the_case : tortureCases()) {
+    table += "| " + the_case.description;
+    for (const Expectation& expected : the_case.expected)
+      table += " | " + cellOf(expected);
+    table += " | " + cellOf(the_case.with_small_steps) + " |\n";
+  }
+  return table;
+}
+
+TEST(TortureTable, IsTheOneOfTheDocumentation)
+{
+  const std::string begin = "<!-- table of cases: begin -->\n";
+  const std::string end = "<!-- table of cases: end -->\n";
+  const std::string name = BAYESIAN_ICP_RELIABILITY;
+  std::ostringstream content;
+  content << std::ifstream(name).rdbuf();
+  std::string text = content.str();
+  const std::size_t first = text.find(begin), last = text.find(end);
+  ASSERT_NE(first, std::string::npos) << name;
+  ASSERT_NE(last, std::string::npos) << name;
+  const std::size_t place = first + begin.size();
+  if (std::getenv("BAYESIAN_ICP_WRITE_TABLE") != nullptr)
+    std::ofstream(name) << text.replace(place, last - place, tableOfCases());
+  else
+    EXPECT_EQ(text.substr(place, last - place), tableOfCases());
+}
+
+} // namespace
+} // namespace test
+} // namespace bayesian_icp

@@ -1,0 +1,94 @@
+// Real pairs as cases of the coverage study.
+#include "coverage/coverage_methods.h"
+#include "coverage/coverage_real.h"
+#include "io/errors.h"
+#include "support/command_helpers.h"
+
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+using namespace bayesian_icp;
+using namespace bayesian_icp::evaluate;
+namespace fs = std::filesystem;
+
+namespace {
+
+void
+write(const std::string& file, const std::string& text)
+{
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+class RealPairsTest : public FolderTest {};
+
+/** A pair of 40 points with the source a half turn about z from the target. */
+void
+writePair(const fs::path& folder)
+{
+  fs::create_directories(folder / "pair");
+  std::string points;
+  Random random(1, 0);
+  for (int i = 0; i < 40; ++i)
+    points += std::to_string(3.0 + random.normal()) + ' ' +
+              std::to_string(random.normal()) + " 0.5\n";
+  const std::string header =
+      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\n"
+      "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 40\nDATA ascii\n";
+  write((folder / "pair/source.pcd").string(), header + points);
+  write((folder / "pair/target.pcd").string(), header + points);
+  write((folder / "pair/truth.txt").string(),
+        "-1 0 0 0.5\n0 -1 0 0\n0 0 1 0\n0 0 0 1\n");
+  write((folder / "manifest.json").string(),
+        R"([{"name": "pair",
+            "files": {"source": "pair/source.pcd", "target": "pair/target.pcd",
+                      "ground_truth": "pair/truth.txt"},
+            "ground_truth_accuracy": {"translation_m": 0.3, "rotation_deg": 9.0},
+            "suggested_prior_sigma": {"translation_m": 0.2, "rotation_rad": 0.1}}])");
+}
+
+} // namespace
+
+TEST_F(RealPairsTest, RealPosesAreDrawnFromThePrior)
+{
+  writePair(folder_);
+  const RealPairs pairs(folder_.string());
+  ASSERT_EQ(pairs.names(), std::vector<std::string>{"pair"});
+  constexpr int num_cases = 400;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= num_cases; ++seed) {
+    const CoverageCase made = pairs.makeCase("pair", seed);
+    sum += priorOf(made)
+               .deviation(poseOf(made.truth.matrix()))
+               .cwiseQuotient(made.prior_sd)
+               .squaredNorm();
+    // The file's points, turned by half a turn and shifted.
+    ASSERT_EQ(made.source.cols(), 40);
+    const Eigen::Vector3d moved =
+        made.truth * Eigen::Vector3d(made.source.rowwise().mean());
+    const Eigen::Vector3d target = made.target.rowwise().mean();
+    EXPECT_LT((moved - Eigen::Vector3d(0.5 - target.x(), -target.y(), 0.5)).norm(),
+              1e-6);
+  }
+  // Chi-square with 6 degrees of freedom: mean 6, variance 12; 4 standard errors.
+  EXPECT_NEAR(sum / num_cases, 6.0, 4.0 * std::sqrt(12.0 / num_cases));
+  const CoverageCase made = pairs.makeCase("pair", 1);
+  EXPECT_NEAR(made.truth_sd_translation, 0.3 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(
+      made.truth_sd_rotation, 9.0 * std::acos(-1.0) / 180.0 / std::sqrt(3.0), 1e-12);
+  EXPECT_EQ(made.source, pairs.makeCase("pair", 1).source);
+}
+
+TEST_F(RealPairsTest, BadFoldersOfPairsAreNamed)
+{
+  EXPECT_THROW(RealPairs((folder_ / "none").string()), io::FileError);
+  write((folder_ / "manifest.json").string(), R"([{"name": "pair"}])");
+  EXPECT_THROW(RealPairs(folder_.string()), io::FileError);
+  writePair(folder_);
+  write((folder_ / "pair/truth.txt").string(), "1 0 0 0\n0 1 0 0\n");
+  EXPECT_THROW(RealPairs(folder_.string()).makeCase("pair", 1), io::FileError);
+}

@@ -1,0 +1,294 @@
+// The coverage study: rows that come back, runs that are not made again.
+#include "coverage/coverage_study.h"
+#include "coverage/coverage_table.h"
+#include "evaluation/coverage_test_support.h"
+#include "io/errors.h"
+
+#include <bayesian_icp/pipeline.h>
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <sstream>
+
+using namespace bayesian_icp;
+using namespace bayesian_icp::evaluate;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string>
+linesOf(const std::string& file)
+{
+  std::ifstream stream(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);)
+    lines.push_back(line);
+  return lines;
+}
+
+void
+write(const std::string& file, const std::string& text)
+{
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/** Runs the test in an empty folder of its own. */
+class CoverageStudyTest : public testing::Test {
+protected:
+  void
+  SetUp() override
+  {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() /
+              ("coverage_" + std::string(test->name()) + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    file_ = (folder_ / "coverage.csv").string();
+  }
+
+  void
+  TearDown() override
+  {
+    fs::remove_all(folder_);
+  }
+
+  /** Two methods on \p num_cases cases; counts what is run. */
+  CoverageStudy
+  study(std::uint64_t num_cases, int num_threads)
+  {
+    CoverageStudy study;
+    for (std::uint64_t seed = 1; seed <= num_cases; ++seed)
+      study.cases.push_back({"scene", "condition", seed});
+    study.make_case = [](const CoverageCaseName& name) {
+      return rightPosterior(name.seed, 0).problem;
+    };
+    study.methods = {{"right",
+                      [this](const CoverageCase& problem) {
+                        ++num_runs_;
+                        return rightPosterior(problem.seed, 0).result;
+                      }},
+                     {"bad", [this](const CoverageCase&) -> MethodResult {
+                        ++num_runs_;
+                        throw std::runtime_error("no, never");
+                      }}};
+    study.num_threads = num_threads;
+    return study;
+  }
+
+  fs::path folder_;
+  std::string file_;
+  std::atomic<int> num_runs_ = 0;
+};
+
+void
+expectSame(const CoverageScore& a, const CoverageScore& b)
+{
+  EXPECT_EQ(a.is_valid, b.is_valid);
+  EXPECT_EQ(a.notes, b.notes);
+  if (!a.is_valid)
+    return;
+  EXPECT_EQ(a.nees, b.nees);
+  EXPECT_EQ(a.log_score, b.log_score);
+  EXPECT_EQ(a.energy_score, b.energy_score);
+  EXPECT_EQ(a.pit, b.pit);
+  EXPECT_EQ(a.z, b.z);
+  EXPECT_EQ(a.relative_sd, b.relative_sd);
+  EXPECT_EQ(a.translation_error, b.translation_error);
+  EXPECT_EQ(a.rotation_error, b.rotation_error);
+  EXPECT_EQ(a.num_queries, b.num_queries);
+}
+
+} // namespace
+
+TEST_F(CoverageStudyTest, RowsComeBackAsTheyWent)
+{
+  CoverageRun run;
+  run.name = {"a scene", "same", 18446744073709551615u, "method"};
+  const RightPosterior right = rightPosterior(3, 0);
+  run.score = coverageScoreOf(right.problem, right.result);
+  run.score.notes = "flag:misfit;a, b\nc";
+  run.score.seconds = 0.1;
+  run.score.num_queries = 123456789;
+  CoverageFile(file_).add(run);
+  const CoverageFile file(file_);
+  const CoverageRun* back = file.find(run.name);
+  ASSERT_NE(back, nullptr);
+  run.score.notes = "flag:misfit;a  b c";
+  expectSame(back->score, run.score);
+  EXPECT_EQ(back->score.seconds, 0.1);
+  EXPECT_EQ(file.find({"a scene", "same", 1, "method"}), nullptr);
+}
+
+TEST_F(CoverageStudyTest, GoesOnWhereItStopped)
+{
+  {
+    CoverageFile results(file_);
+    runCoverageStudy(study(5, 1), results);
+    EXPECT_EQ(num_runs_, 10);
+    runCoverageStudy(study(5, 1), results);
+    EXPECT_EQ(num_runs_, 10);
+  }
+  const auto complete = linesOf(file_);
+  ASSERT_EQ(complete.size(), 11u);
+  // The last row was being written when the power went.
+  fs::resize_file(file_, fs::file_size(file_) - 1);
+  CoverageFile results(file_);
+  EXPECT_EQ(linesOf(file_).size(), 10u);
+  runCoverageStudy(study(6, 1), results);
+  EXPECT_EQ(num_runs_, 13);
+  const auto lines = linesOf(file_);
+  EXPECT_EQ(lines.size(), 13u);
+  EXPECT_TRUE(std::equal(complete.begin(), complete.end() - 1, lines.begin()));
+}
+
+TEST_F(CoverageStudyTest, RowsDoNotDependOnThreads)
+{
+  CoverageFile one(file_), many(file_ + "2");
+  runCoverageStudy(study(8, 1), one);
+  runCoverageStudy(study(8, 4), many);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    for (const char* method : {"right", "bad"}) {
+      const CoverageRunName name = {"scene", "condition", seed, method};
+      ASSERT_NE(one.find(name), nullptr);
+      ASSERT_NE(many.find(name), nullptr);
+      expectSame(one.find(name)->score, many.find(name)->score);
+    }
+}
+
+TEST_F(CoverageStudyTest, AnExceptionOfAMethodIsAResult)
+{
+  CoverageFile results(file_);
+  runCoverageStudy(study(1, 1), results);
+  const CoverageRun* run = results.find({"scene", "condition", 1, "bad"});
+  ASSERT_NE(run, nullptr);
+  EXPECT_FALSE(run->score.is_valid);
+  EXPECT_EQ(run->score.notes, "exception: no, never");
+}
+
+TEST_F(CoverageStudyTest, AnExceptionOfACaseEndsTheStudyAndKeepsTheRows)
+{
+  CoverageFile results(file_);
+  CoverageStudy failing = study(6, 2);
+  const auto make_case = failing.make_case;
+  failing.make_case = [make_case](const CoverageCaseName& name) {
+    if (name.seed == 6)
+      throw io::FileError("cloud", "cannot be read");
+    return make_case(name);
+  };
+  EXPECT_THROW(runCoverageStudy(failing, results), io::FileError);
+  EXPECT_NE(results.find({"scene", "condition", 1, "right"}), nullptr);
+  EXPECT_EQ(results.find({"scene", "condition", 6, "right"}), nullptr);
+}
+
+TEST_F(CoverageStudyTest, LackOfMemoryIsNoResult)
+{
+  CoverageFile results(file_);
+  CoverageStudy failing = study(2, 2);
+  failing.methods[0].run = [](const CoverageCase&) -> MethodResult {
+    throw std::bad_alloc();
+  };
+  EXPECT_THROW(runCoverageStudy(failing, results), std::bad_alloc);
+  EXPECT_EQ(linesOf(file_).size(), 1u) << "only the header";
+}
+
+TEST_F(CoverageStudyTest, AnExceptionOfTheReportEndsTheStudy)
+{
+  CoverageFile results(file_);
+  CoverageStudy failing = study(2, 2);
+  failing.report = [](const CoverageProgress&) { throw std::bad_alloc(); };
+  EXPECT_THROW(runCoverageStudy(failing, results), std::bad_alloc);
+}
+
+TEST_F(CoverageStudyTest, BrokenRowsAreRefused)
+{
+  {
+    CoverageFile results(file_);
+    runCoverageStudy(study(1, 1), results);
+  }
+  const auto lines = linesOf(file_);
+  const std::string good = lines[0] + '\n' + lines[1] + '\n';
+  write(file_, good);
+  EXPECT_NO_THROW(CoverageFile{file_});
+  std::string wrong_number = lines[1];
+  wrong_number.replace(wrong_number.find(",1,"), 3, ",x,");
+  for (const std::string& bad :
+       {wrong_number, lines[1] + ",more", std::string("a,b")}) {
+    write(file_, good + bad + '\n');
+    EXPECT_THROW(CoverageFile{file_}, io::FileError) << bad;
+    EXPECT_EQ(linesOf(file_).size(), 3u) << "the file is left as it was";
+  }
+  write(file_, "x,y\n");
+  EXPECT_THROW(CoverageFile{file_}, io::FileError);
+}
+
+TEST_F(CoverageStudyTest, TableHasEveryCellAndThePools)
+{
+  std::vector<CoverageRun> runs;
+  for (const char* scene : {"box", "can"})
+    for (const char* condition : {"same", "moved"}) {
+      const RightPosterior right = rightPosterior(1, 0);
+      runs.push_back({{scene, condition, 1, "right"},
+                      coverageScoreOf(right.problem, right.result)});
+    }
+  std::ostringstream table;
+  printCoverageTable(runs, table);
+  for (const char* title : {"\nbox, same\n",
+                            "\ncan, moved\n",
+                            "\nbox, all conditions\n",
+                            "\nall scenes, moved\n",
+                            "\nall\n"})
+    EXPECT_NE(table.str().find(title), std::string::npos) << title;
+}
+
+TEST(CoverageMethods, PaperIsAlgorithm1WithThePriorOfTheCase)
+{
+  CoverageCase problem = rightPosterior(1, 0).problem;
+  problem.prior_mean << 0.1, 0.0, -0.1, 0.0, 0.1, 0.0;
+  Options options;
+  options.preset = Preset::Paper;
+  options.prior.mean = problem.prior_mean;
+  options.prior.variance = problem.prior_sd.cwiseAbs2();
+  options.prior.frame = PriorFrame::SourceCentroid;
+  options.chains.seed = problem.seed;
+  const PosteriorEstimate expected =
+      estimatePosterior(problem.source,
+                        KdTree(problem.target.cast<float>(), 1),
+                        problem.prior_mean,
+                        options);
+  ASSERT_GT(expected.samples.rows(), 0);
+  for (const CoverageMethod& method : coverageMethods())
+    if (method.name == "paper") {
+      EXPECT_EQ(timedResult(method, problem).draws, expected.samples);
+      return;
+    }
+  FAIL() << "no method paper";
+}
+
+TEST(CoverageMethods, PriorIsAsLikelyAsItSays)
+{
+  // Its z are those of the prior's own coordinates, to first order.
+  CoverageCase problem = rightPosterior(1, 0).problem;
+  Vector6d deviation;
+  deviation << 0.01, -0.02, 0.03, 1e-4, 2e-4, -1e-4;
+  problem.prior_mean = Vector6d::Zero();
+  const Eigen::Vector3d centroid = problem.source.rowwise().mean();
+  problem.truth.linear() = rotationOf(deviation);
+  problem.truth.translation() =
+      centroid + deviation.head<3>() - problem.truth.linear() * centroid;
+  for (const CoverageMethod& method : coverageMethods())
+    if (method.name == "prior") {
+      const CoverageScore score =
+          coverageScoreOf(problem, timedResult(method, problem));
+      ASSERT_TRUE(score.is_valid);
+      for (int k = 0; k < 6; ++k)
+        EXPECT_NEAR(score.z[k], deviation[k] / problem.prior_sd[k], 1e-4) << k;
+      return;
+    }
+  FAIL() << "no method prior";
+}

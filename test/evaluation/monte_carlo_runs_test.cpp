@@ -1,0 +1,176 @@
+// Runs of Monte Carlo ICP on disk: the same bits, made once, never of other inputs.
+#include "io/errors.h"
+#include "paper/monte_carlo_runs.h"
+#include "support/command_helpers.h"
+#include "support/test_support.h"
+
+#include <algorithm>
+
+using namespace bayesian_icp;
+using namespace bayesian_icp::evaluate;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class MonteCarloRuns : public FolderTest {
+protected:
+  MonteCarloRuns()
+  {
+    Random random(9, 0);
+    source_ = test::randomPoints(random, 40);
+    options_.half_range.setConstant(0.3);
+    // More than one block, and a gate that some starts are beyond.
+    options_.num_runs = 130;
+    options_.icp.max_iterations = 20;
+    options_.icp.max_distance = 0.1;
+    options_.num_threads = 2;
+  }
+
+  KdTree
+  tree() const
+  {
+    return KdTree(source_.cast<float>());
+  }
+
+  MonteCarloFile
+  file() const
+  {
+    return {(folder_ / "runs").string(), "cube"};
+  }
+
+  std::string
+  fileName() const
+  {
+    return file().name(monteCarloKey(source_, tree(), options_));
+  }
+
+  std::vector<MonteCarloIcpRun>
+  kept(const std::function<void(const std::string&)>& report = {}) const
+  {
+    return keptMonteCarloRuns(source_, tree(), options_, file(), report);
+  }
+
+  void
+  expectThoseOf(const std::vector<MonteCarloIcpRun>& runs,
+                const MonteCarloIcpOptions& options) const
+  {
+    const auto expected = monteCarloIcp(source_, tree(), options);
+    ASSERT_EQ(runs.size(), expected.size());
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      EXPECT_EQ(runs[i].index, expected[i].index);
+      EXPECT_EQ(runs[i].start, expected[i].start);
+      EXPECT_EQ(runs[i].end, expected[i].end);
+      EXPECT_EQ(runs[i].stop, expected[i].stop);
+      EXPECT_EQ(runs[i].has_converged, expected[i].has_converged);
+      EXPECT_EQ(runs[i].num_iterations, expected[i].num_iterations);
+      EXPECT_EQ(runs[i].mean_squared_distance, expected[i].mean_squared_distance);
+    }
+  }
+
+  Eigen::Matrix3Xd source_;
+  MonteCarloIcpOptions options_;
+};
+
+std::size_t
+numLines(const std::string& text)
+{
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+} // namespace
+
+TEST_F(MonteCarloRuns, AreBitForBitThoseOfMonteCarloIcp)
+{
+  const auto runs = kept();
+  expectThoseOf(runs, options_);
+  const std::string content = contentOf(fileName());
+  EXPECT_EQ(numLines(content), 131u);
+  // Read back, and not made again.
+  expectThoseOf(kept(), options_);
+  EXPECT_EQ(contentOf(fileName()), content);
+  // Some starts are beyond the gate, and are no draws.
+  const auto num_good = std::count_if(
+      runs.begin(), runs.end(), [](const auto& run) { return run.has_converged; });
+  EXPECT_GT(num_good, 0);
+  EXPECT_LT(num_good, 130);
+  const PoseMatrix ends = endsOf(runs);
+  ASSERT_EQ(ends.rows(), num_good);
+  const auto last = std::find_if(
+      runs.rbegin(), runs.rend(), [](const auto& run) { return run.has_converged; });
+  EXPECT_EQ(ends.bottomRows<1>().transpose(), last->end);
+}
+
+TEST_F(MonteCarloRuns, GoOnWhereTheyStopped)
+{
+  kept();
+  const std::string content = contentOf(fileName());
+  // Cut off in the middle of a row.
+  fs::resize_file(fileName(), content.size() / 2);
+  expectThoseOf(kept(), options_);
+  EXPECT_EQ(contentOf(fileName()), content);
+  // A part from the middle, then all: every row once.
+  fs::remove(fileName());
+  MonteCarloIcpOptions all = options_;
+  options_.first_run = 50;
+  options_.num_runs = 7;
+  expectThoseOf(kept(), options_);
+  EXPECT_EQ(numLines(contentOf(fileName())), 8u);
+  options_ = all;
+  expectThoseOf(kept(), all);
+  EXPECT_EQ(numLines(contentOf(fileName())), 131u);
+  // Fewer than there are.
+  options_.num_runs = 10;
+  expectThoseOf(kept(), options_);
+}
+
+TEST_F(MonteCarloRuns, OtherInputsAreAnotherFile)
+{
+  const auto key = [this] { return monteCarloKey(source_, tree(), options_); };
+  const MonteCarloIcpOptions before = options_;
+  const std::uint64_t expected = key();
+  options_.num_runs = 1;
+  options_.first_run = 3;
+  options_.num_threads = 1;
+  EXPECT_EQ(key(), expected);
+  const std::function<void()> changes[] = {
+      [&] { options_.seed = 2; },
+      [&] { options_.mean[5] = 1e-9; },
+      [&] { options_.half_range[0] = 1.0; },
+      [&] { options_.icp.max_iterations = 21; },
+      [&] { options_.icp.max_distance = 0.2; },
+      [&] { options_.icp.transformation_epsilon = 1e-9; },
+      [&] { options_.icp.rotation_epsilon = 0.9; },
+      [&] { options_.icp.euclidean_fitness_epsilon = 1e-9; },
+      [&] { options_.icp.absolute_fitness_epsilon = 1e-9; },
+      [&] { source_(0, 0) += 1e-12; }};
+  for (const auto& change : changes) {
+    options_ = before;
+    change();
+    EXPECT_NE(key(), expected);
+  }
+}
+
+TEST_F(MonteCarloRuns, BrokenFilesAreNamed)
+{
+  options_.num_runs = 3;
+  kept();
+  const std::string good = contentOf(fileName());
+  const auto expectError = [this](const std::string& content, const char* what) {
+    std::ofstream(fileName(), std::ios::binary) << content;
+    try {
+      kept();
+      FAIL() << what;
+    }
+    catch (const io::FileError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(fileName()), std::string::npos) << message;
+      EXPECT_NE(message.find(what), std::string::npos) << message;
+    }
+  };
+  expectError(good + "3,oops\n", "bad line");
+  expectError("another header\n", "not a file of results");
+  std::string other_end = good;
+  other_end.replace(other_end.rfind('_'), 1, "?");
+  expectError(other_end, "bad line");
+}

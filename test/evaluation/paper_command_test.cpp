@@ -1,0 +1,193 @@
+// The sub-commands of the paper's evaluation, run as a user would.
+#include "evaluation/csv_rows.h"
+#include "evaluation/paper_pairs.h"
+#include "support/command_helpers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/** The rows without the column of seconds, which differ from run to run. */
+Rows
+withoutSeconds(Rows rows)
+{
+  const auto header = rows.front();
+  const auto column = std::find(header.begin(), header.end(), "seconds");
+  if (column != header.end())
+    for (auto& row : rows)
+      row.erase(row.begin() + (column - header.begin()));
+  return rows;
+}
+
+class PaperCommand : public FolderTest {
+protected:
+  CommandResult
+  run(const std::string& arguments, const std::string& environment = "") const
+  {
+    return runShell("cd '" + folder_.string() + "' && " + environment +
+                    " '" BAYESIAN_ICP_EVALUATE "' " + arguments);
+  }
+
+  fs::path
+  runsOfIcp() const
+  {
+    for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+      if (entry.path().filename().string().rfind("monte_carlo_good_", 0) == 0)
+        return entry.path();
+    return {};
+  }
+};
+
+constexpr char small[] =
+    " --data . --output out --quick --repeats 2 --baseline-runs 10 --no-report";
+
+} // namespace
+
+TEST_F(PaperCommand, BrokenPairsAreSkippedAndTheExitCodeSaysSo)
+{
+  writeScanPair(folder_, "good");
+  writeScanPair(folder_, "broken");
+  std::ofstream(folder_ / "broken/T_target_source.txt") << "1 0 0";
+  const CommandResult result =
+      run(std::string("distribution --pairs broken,good,missing") + small);
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  for (const char* piece : {"pair broken is skipped: ./broken/T_target_source.txt",
+                            "pair missing is skipped: ./missing/source.pcd",
+                            "2 pairs were skipped",
+                            "medians of the runs of",
+                            "\n  good, online-icp "})
+    EXPECT_NE(result.output.find(piece), std::string::npos) << result.output;
+  const Rows rows = rowsOf(folder_ / "out/distribution.csv");
+  ASSERT_GT(rows.size(), 2u);
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    EXPECT_EQ(rows[i][1], "good");
+}
+
+TEST_F(PaperCommand, GoesOnAfterFilesThatWereCutOff)
+{
+  writeScanPair(folder_, "good");
+  const std::string command = std::string("distribution --pairs good") + small;
+  const CommandResult first = run(command);
+  ASSERT_EQ(first.exit_code, 0) << first.output;
+  const fs::path results = folder_ / "out/distribution.csv";
+  const std::string icp_rows = contentOf(runsOfIcp());
+  const Rows rows = rowsOf(results);
+  fs::resize_file(results, fs::file_size(results) - 100);
+  fs::resize_file(runsOfIcp(), icp_rows.size() - 150);
+  const CommandResult second = run(command);
+  EXPECT_EQ(second.exit_code, 0) << second.output;
+  EXPECT_EQ(contentOf(runsOfIcp()), icp_rows);
+  EXPECT_TRUE(withoutSeconds(rowsOf(results)) == withoutSeconds(rows));
+  // Only what was lost is made again.
+  EXPECT_EQ(count(" runs\n", second.output), 1) << second.output;
+  // A file that is not ours is not touched.
+  std::ofstream(results) << "x,y\n";
+  EXPECT_EQ(run(command).exit_code, 3);
+  EXPECT_EQ(contentOf(results), "x,y\n");
+}
+
+TEST_F(PaperCommand, ThreadsMakeNoDifference)
+{
+  writeScanPair(folder_, "good");
+  const std::string command = std::string("distribution --pairs good") + small;
+  ASSERT_EQ(run(command + " --threads 1").exit_code, 0);
+  const std::string icp_rows = contentOf(runsOfIcp());
+  const Rows rows = rowsOf(folder_ / "out/distribution.csv");
+  fs::remove_all(folder_ / "out");
+  ASSERT_EQ(run(command + " --threads 3").exit_code, 0);
+  EXPECT_EQ(contentOf(runsOfIcp()), icp_rows);
+  EXPECT_TRUE(withoutSeconds(rowsOf(folder_ / "out/distribution.csv")) ==
+              withoutSeconds(rows));
+}
+
+TEST_F(PaperCommand, WritesWhatTheReportNeeds)
+{
+  writeScanPair(folder_, "good");
+  const CommandResult result = run(std::string("distribution --pairs good") + small);
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.md"));
+  const Rows baseline = rowsOf(folder_ / "out/baseline.csv");
+  ASSERT_EQ(baseline.size(), 2u);
+  EXPECT_EQ(baseline[1][0], "good");
+  EXPECT_EQ(baseline[1][2], "300"); // points of the target
+  EXPECT_EQ(baseline[1][3], "10");
+  std::map<std::string, int> draws, points;
+  for (const auto& row : rowsOf(folder_ / "out/draws_good.csv"))
+    ++draws[row.front()];
+  for (const auto& row : rowsOf(folder_ / "out/points_good.csv"))
+    ++points[row.front()];
+  EXPECT_EQ(draws["baseline"], 10);
+  EXPECT_EQ(draws["exact"], 2000);
+  for (const char* cloud : {"target", "before", "bayesian-icp", "calibrated", "truth"})
+    EXPECT_GT(points[cloud], 100) << cloud;
+  const std::string key = rowsOf(folder_ / "out/distribution.csv")[1][0];
+  const std::string record = contentOf(folder_ / "out/study.json");
+  for (const std::string& piece :
+       {"\"key\": \"" + key + "\"",
+        std::string("\"seeds\": 2"),
+        std::string("evaluate distribution --data . --pairs good --baseline-runs 10")})
+    EXPECT_NE(record.find(piece), std::string::npos) << record;
+}
+
+TEST_F(PaperCommand, SaysWhatTheReportNeedsAndMakesItLater)
+{
+  writeScanPair(folder_, "good");
+  const std::string command = "runtime --pairs good --data . --output out --quick";
+  const std::string without = "PCL_BAYESIAN_ICP_PYTHON=/nowhere";
+  const CommandResult result = run(command, without);
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_EQ(
+      count("The CSV files are complete. The report needs python3-pandas and "
+            "python3-matplotlib; then run: pcl_bayesian_icp_evaluate report out\n",
+            result.output),
+      1)
+      << result.output;
+  EXPECT_NE(result.output.find("seconds per 1000 draws"), std::string::npos);
+  EXPECT_EQ(run("report out", without).exit_code, 3);
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.md"));
+  const CommandResult later = run("report out");
+  EXPECT_EQ(later.exit_code, 0) << later.output;
+  EXPECT_EQ(later.output, "out/report.html\n");
+  EXPECT_EQ(count("## Run time\n", contentOf(folder_ / "out/report.md")), 1);
+}
+
+TEST_F(PaperCommand, ReportNamesWhatIsWrong)
+{
+  for (const char* arguments : {"report", "report a b", "report --quick"})
+    EXPECT_EQ(run(arguments).exit_code, 2) << arguments;
+  EXPECT_EQ(run("report --help").exit_code, 0);
+  EXPECT_EQ(run("report nowhere").exit_code, 3);
+  const CommandResult result = run("report .");
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_NE(result.output.find("no rows of a study"), std::string::npos)
+      << result.output;
+}
+
+TEST_F(PaperCommand, BadOptionsExitWithTwoAndLeaveNothing)
+{
+  for (const char* arguments : {"--baseline-runs 7",
+                                "--repeats 1",
+                                "--points -1",
+                                "--start-translation 0",
+                                "--start-rotation nan",
+                                "--threads 1000",
+                                "--output ''",
+                                "--quic",
+                                "word"})
+    for (const char* command : {"paper ", "samples "}) {
+      const CommandResult result = run(std::string(command) + arguments);
+      EXPECT_EQ(result.exit_code, 2) << arguments << ": " << result.output;
+      EXPECT_TRUE(fs::is_empty(folder_)) << arguments;
+    }
+  EXPECT_EQ(run("paper --data nowhere").exit_code, 3);
+  const CommandResult help = run("burn-in --help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_NE(help.output.find("--baseline-runs"), std::string::npos);
+}

@@ -1,0 +1,276 @@
+// The energy of preset `exact`: residuals, kernels, gradients, coordinates, targets.
+#include "exact/pose_energy.h"
+#include "support/test_support.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include <numeric>
+
+namespace bayesian_icp {
+namespace {
+
+/** A scan of a wavy surface near (1, 0.5, -0.3), its source seen from a little off. */
+struct Scan {
+  Eigen::Matrix3Xd source;
+  Eigen::Matrix3Xf target;
+  Vector6d pose;
+
+  Scan()
+  {
+    Random random(71, 0);
+    const auto surface = [&](Eigen::Index n) {
+      Eigen::Matrix3Xd points = test::randomPoints(random, n, {1.0, 0.5, -0.3});
+      for (Eigen::Index i = 0; i < n; ++i)
+        points(2, i) = -0.3 + 0.1 * std::sin(6.0 * points(0, i)) * points(1, i);
+      return points;
+    };
+    target = surface(1500).cast<float>();
+    source = surface(200);
+    pose << 0.02, -0.015, 0.03, 0.04, -0.05, 0.03;
+  }
+};
+
+Prior
+somePrior(const Eigen::Vector3d& reference)
+{
+  Vector6d mean, variance;
+  mean << 0.1, -0.1, 0.05, 0.2, -0.1, 0.3;
+  variance << 0.1, 0.2, 0.3, 0.05, 0.1, 0.2;
+  return Prior(mean, variance, reference);
+}
+
+std::vector<ResidualOptions>
+allResiduals(double kernel_width, double max_distance)
+{
+  std::vector<ResidualOptions> all;
+  for (const auto residual : {Residual::PointToPoint, Residual::PointToPlane})
+    for (const auto kernel :
+         {RobustKernel::None, RobustKernel::Huber, RobustKernel::Tukey}) {
+      ResidualOptions options;
+      options.residual = residual;
+      options.kernel = kernel;
+      options.kernel_width = kernel_width;
+      options.max_distance = max_distance;
+      all.push_back(options);
+    }
+  return all;
+}
+
+std::string
+nameOf(const ResidualOptions& options)
+{
+  return std::string(toString(options.residual)) + " " + toString(options.kernel);
+}
+
+TEST(Kernels, WeightIsTheDerivativeOverTheResidual)
+{
+  for (const auto& options : allResiduals(0.03, 1.0))
+    for (const double r : {0.001, 0.02, 0.0299, 0.0301, 0.05, 1.0}) {
+      const double h = 1e-6;
+      const double derivative = (robustEnergy(options, (r + h) * (r + h)) -
+                                 robustEnergy(options, (r - h) * (r - h))) /
+                                (2.0 * h);
+      EXPECT_NEAR(robustWeight(options, r * r) * r, derivative, 1e-7)
+          << nameOf(options) << " at " << r;
+    }
+}
+
+TEST(Kernels, KnownValues)
+{
+  ResidualOptions options;
+  options.kernel_width = 2.0;
+  EXPECT_DOUBLE_EQ(robustEnergy(options, 9.0), 4.5);
+  options.kernel = RobustKernel::Huber;
+  EXPECT_DOUBLE_EQ(robustEnergy(options, 9.0), 2.0 * (3.0 - 1.0));
+  options.kernel = RobustKernel::Tukey;
+  EXPECT_DOUBLE_EQ(robustEnergy(options, 9.0), 4.0 / 6.0);
+  EXPECT_EQ(robustWeight(options, 9.0), 0.0);
+}
+
+/** Keeps the matches that were found at one pose: what gradients hold fixed. */
+class FixedMatches : public Target {
+public:
+  FixedMatches(const Target& target, const Vector6d& pose)
+  : target_(target)
+  , pose_(pose)
+  {}
+
+  void
+  match(const Vector6d& /* pose */,
+        const std::vector<std::size_t>& indices,
+        const Eigen::Matrix3Xf& moved,
+        NeighborHints& hints,
+        std::vector<TargetMatch>& matches) const override
+  {
+    if (fixed_.empty())
+      target_.match(pose_, indices, moved, hints, fixed_);
+    matches = fixed_;
+  }
+
+  bool
+  hasNormals() const override
+  {
+    return target_.hasNormals();
+  }
+
+  bool
+  isThreadSafe() const override
+  {
+    return false;
+  }
+
+private:
+  const Target& target_;
+  Vector6d pose_;
+  mutable std::vector<TargetMatch> fixed_;
+};
+
+TEST(Gradients, OfEveryResidualAndKernelAgreeWithFiniteDifferences)
+{
+  const Scan scan;
+  const KdTree tree(scan.target);
+  const Prior prior = somePrior({0.3, 0.2, 0.1});
+  for (const auto& options : allResiduals(0.03, 0.08)) {
+    const TreeTarget target(tree, options.max_distance, patchNormals(scan.target));
+    const FixedMatches fixed(target, scan.pose);
+    const PoseEnergy energy(scan.source, fixed, prior, 1000.0, options);
+    const Vector6d gradient = energy.energyGradient(scan.pose);
+    const Vector6d numerical = test::centralDifferences(
+        [&](const Vector6d& p) { return energy.energy(p); }, scan.pose, 1e-3);
+    // Coordinates are single precision: 1e-7 m of 0.05 m residuals, step 1e-3, and the
+    // curvature of the energy over that step.
+    const double tolerance = 0.01 * gradient.norm() + 0.01;
+    EXPECT_LT((gradient - numerical).norm(), tolerance) << nameOf(options) << "\n"
+                                                        << gradient.transpose() << "\n"
+                                                        << numerical.transpose();
+  }
+}
+
+TEST(Gradients, OfTheCentredPoseAgreeWithFiniteDifferences)
+{
+  const Scan scan;
+  const KdTree tree(scan.target);
+  const TreeTarget target(tree, 1.0);
+  for (const Eigen::Vector3d& reference :
+       {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(1.0, 0.5, -0.3)}) {
+    const PoseEnergy energy(
+        scan.source, target, somePrior(reference), 1.0, ResidualOptions());
+    const Vector6d phi = energy.toPhi(scan.pose);
+    const Vector6d numerical = test::centralDifferences(
+        [&](const Vector6d& p) { return energy.priorEnergy(p); }, phi);
+    EXPECT_LT((energy.priorGradient(phi) - numerical).norm(), 1e-6);
+
+    // The Hessian at the mean, by differences of the gradient.
+    const Vector6d mean = energy.toPhi(energy.prior().mean());
+    Matrix6d hessian;
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d h = 1e-5 * Vector6d::Unit(k);
+      hessian.col(k) =
+          (energy.priorGradient(mean + h) - energy.priorGradient(mean - h)) / 2e-5;
+    }
+    EXPECT_LT((energy.priorPrecision() - hessian).norm(), 1e-6);
+  }
+}
+
+TEST(CentredPose, IsInvertibleAndMovesTheCentroidByItsTranslation)
+{
+  const Scan scan;
+  const KdTree tree(scan.target);
+  const TreeTarget target(tree, 1.0);
+  const PoseEnergy energy(
+      scan.source, target, somePrior({0, 0, 0}), 1.0, ResidualOptions());
+  const Vector6d phi = energy.toPhi(scan.pose);
+  EXPECT_LT((energy.toTheta(phi) - scan.pose).norm(), 1e-14);
+  const Eigen::Vector3d c = scan.source.rowwise().mean();
+  const Eigen::Vector3d moved = rotationOf(scan.pose) * c + scan.pose.head<3>();
+  EXPECT_LT((moved - c - phi.head<3>()).norm(), 1e-14);
+}
+
+TEST(Energy, IsTheSameWithAndWithoutHintsAndThroughASearch)
+{
+  const Scan scan;
+  const KdTree tree(scan.target);
+  ResidualOptions options;
+  options.max_distance = 0.05;
+  const TreeTarget target(tree, options.max_distance);
+  const test::BruteForceSearch search(scan.target.cast<double>(), options.max_distance);
+  const SearchTarget through_search(search);
+  const Prior prior = somePrior({0, 0, 0});
+  const PoseEnergy energy(scan.source, target, prior, 100.0, options);
+  const PoseEnergy reference(scan.source, through_search, prior, 100.0, options);
+  auto workspace = energy.makeWorkspace();
+  Random random(72, 0);
+  for (int i = 0; i < 20; ++i) {
+    const Vector6d pose = scan.pose + 0.02 * random.normal6();
+    const double value = energy.energy(pose);
+    EXPECT_EQ(energy.energy(pose, workspace), value);
+    EXPECT_NEAR(reference.energy(pose), value, 1e-5 * std::abs(value));
+  }
+}
+
+TEST(Energy, FarOutEveryPointCostsTheGate)
+{
+  const Scan scan;
+  const KdTree tree(scan.target);
+  ResidualOptions options;
+  options.max_distance = 0.05;
+  const TreeTarget target(tree, options.max_distance);
+  const Prior prior = somePrior({0, 0, 0});
+  const PoseEnergy energy(scan.source, target, prior, 100.0, options);
+  Vector6d far = scan.pose;
+  far[0] += 50.0;
+  EXPECT_NEAR(energy.energy(far) - prior.energy(far), 100.0 * 0.5 * 0.05 * 0.05, 1e-9);
+}
+
+TEST(BatchTerms, CurvatureIsTheGaussNewtonMatrixAndSecondMomentTheNoise)
+{
+  const Scan scan;
+  const KdTree tree(scan.target);
+  const TreeTarget target(tree, 1.0);
+  const PoseEnergy energy(
+      scan.source, target, somePrior({0, 0, 0}), 1.0, ResidualOptions());
+  const Vector6d phi = energy.toPhi(scan.pose);
+  auto workspace = energy.makeWorkspace();
+  std::vector<std::size_t> all(energy.numPoints());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  const auto terms = [&](const Vector6d& p,
+                         const std::vector<std::size_t>& batch,
+                         BatchTerms::Extras extras) {
+    return energy.batchTerms(p, batch, extras, energy.residual(), workspace);
+  };
+  Matrix6d second_moment = Matrix6d::Zero();
+  for (const auto i : all) {
+    const Vector6d g = terms(phi, {i}, BatchTerms::Nothing).gradient;
+    second_moment += g * g.transpose() / static_cast<double>(all.size());
+  }
+  EXPECT_LT(
+      (terms(phi, all, BatchTerms::SecondMoment).second_moment - second_moment).norm(),
+      1e-5 * second_moment.norm());
+  // Translations of all points: the point-to-point curvature is the identity there.
+  const auto curvature = terms(phi, all, BatchTerms::Curvature);
+  EXPECT_LT(
+      (curvature.point_curvature.topLeftCorner<3, 3>() - Eigen::Matrix3d::Identity())
+          .norm(),
+      1e-6);
+  EXPECT_NEAR((curvature.plane_curvature.topLeftCorner<3, 3>().trace()), 1.0, 1e-5);
+}
+
+TEST(PatchNormals, OfAPlaneAreItsNormal)
+{
+  Random random(73, 0);
+  Eigen::Matrix3Xf points(3, 300);
+  const Eigen::Vector3f normal = Eigen::Vector3f(1, 2, 3).normalized();
+  const Eigen::Vector3f u = normal.unitOrthogonal(), v = normal.cross(u);
+  for (Eigen::Index i = 0; i < 300; ++i)
+    points.col(i) = static_cast<float>(random.normal()) * u +
+                    static_cast<float>(random.normal()) * v;
+  points(0, 7) = std::numeric_limits<float>::quiet_NaN();
+  const Eigen::Matrix3Xf normals = patchNormals(points);
+  for (Eigen::Index i = 0; i < 300; ++i)
+    EXPECT_NEAR(std::abs(normals.col(i).dot(normal)), i == 7 ? 0.0 : 1.0, 1e-4);
+}
+
+} // namespace
+} // namespace bayesian_icp

@@ -1,0 +1,241 @@
+// Posteriors without their prior: against draws of a known likelihood, and what becomes
+// of a filter that counts its odometry once or twice.
+#include "geometry/twist.h"
+
+#include <bayesian_icp/measurement.h>
+#include <bayesian_icp/random.h>
+#include <bayesian_icp/summary.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include <numeric>
+
+namespace bayesian_icp {
+namespace {
+
+constexpr auto left = CovarianceConvention::LeftSE3;
+constexpr auto right = CovarianceConvention::RightSE3;
+
+const Vector6d some_pose = (Vector6d() << 0.4, -0.3, 0.2, 0.2, -0.1, 0.7).finished();
+
+Matrix6d
+informationAt(const PoseEstimate& estimate, CovarianceConvention convention)
+{
+  return estimate.covariance(convention).inverse();
+}
+
+PoseEstimate
+estimateOf(const PoseMatrix& draws)
+{
+  PoseEstimate estimate;
+  estimate.status = Status::Ok;
+  estimate.mean = meanPose(draws);
+  for (int k = 0; k < 4; ++k)
+    estimate.covariances[static_cast<std::size_t>(k)] =
+        covarianceAbout(estimate.mean, draws, static_cast<CovarianceConvention>(k));
+  return estimate;
+}
+
+/** \p num_draws of the draws, each as often as its weight says. */
+PoseMatrix
+resampled(const PoseMatrix& draws, const Eigen::VectorXd& weights, Random& random)
+{
+  const auto num_draws = static_cast<double>(draws.rows());
+  PoseMatrix chosen(draws.rows(), 6);
+  const double offset = random.uniform();
+  double reached = weights[0];
+  Eigen::Index from = 0;
+  for (Eigen::Index i = 0; i < draws.rows(); ++i) {
+    const double wanted = (static_cast<double>(i) + offset) / num_draws * weights.sum();
+    while (reached < wanted && from + 1 < draws.rows())
+      reached += weights[++from];
+    chosen.row(i) = draws.row(from);
+  }
+  return chosen;
+}
+
+TEST(WithoutPrior, GivesTheLikelihoodBack)
+{
+  // A likelihood that is Gaussian in the source frame, and a prior hardly wider.
+  Random random(1, 0);
+  Matrix6d factor = 0.01 * Matrix6d::Identity();
+  factor(1, 5) = 0.005;
+  factor(2, 3) = -0.004;
+  Vector6d prior_mean = some_pose;
+  prior_mean += (Vector6d() << 0.01, -0.015, 0.01, 0.012, 0.0, -0.01).finished();
+  const Prior prior(prior_mean, Vector6d::Constant(0.015 * 0.015), {0.3, -0.2, 0.5});
+
+  constexpr Eigen::Index num_draws = 40000;
+  PoseMatrix draws(num_draws, 6);
+  Eigen::VectorXd weights(num_draws);
+  for (Eigen::Index i = 0; i < num_draws; ++i) {
+    const Vector6d pose = poseFromError(factor * random.normal6(), some_pose, right);
+    draws.row(i) = pose.transpose();
+    weights[i] = std::exp(-prior.energy(pose));
+  }
+  // Resampling doubles the variance of what is computed at most.
+  const double ess = std::pow(weights.sum(), 2) / weights.squaredNorm() / 2.0;
+  ASSERT_GT(ess, 1000.0);
+  const PoseEstimate posterior = estimateOf(resampled(draws, weights, random));
+  const PoseMeasurement measurement = withoutPrior(posterior, prior);
+  EXPECT_EQ(measurement.num_unmeasured, 0);
+
+  // A relative error of e = 1 / (1 + lambda) is one 1 / (1 - e) times as large of
+  // 1 / lambda; here e < 0.8^2, or there were
+  // unmeasured directions.
+  const double amplification = 1.0 / (1.0 - 0.8 * 0.8);
+  const Matrix6d inverse_factor = factor.inverse();
+  const Matrix6d relative = inverse_factor * measurement.estimate.covariance(right) *
+                            inverse_factor.transpose();
+  EXPECT_LT((relative - Matrix6d::Identity()).cwiseAbs().maxCoeff(),
+            5.0 * amplification * std::sqrt(2.0 / ess));
+  const Vector6d error =
+      inverse_factor * poseError(measurement.estimate.mean, some_pose, right);
+  EXPECT_LT(error.cwiseAbs().maxCoeff(), 5.0 * amplification / std::sqrt(ess));
+  // It had something to do: the posterior is narrower and elsewhere.
+  const Vector6d shift = inverse_factor * poseError(posterior.mean, some_pose, right);
+  EXPECT_GT(shift.cwiseAbs().maxCoeff(), 5.0 * amplification / std::sqrt(ess));
+}
+
+TEST(WithoutPrior, SaysWhereTheCloudsSayNothing)
+{
+  // min_ess draws of the prior itself.
+  const Vector6d deviation =
+      (Vector6d() << 0.02, 0.02, 0.02, 0.01, 0.01, 0.03).finished();
+  const Prior prior(some_pose, deviation.cwiseAbs2());
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    Random random(seed, 0);
+    PoseMatrix draws(static_cast<Eigen::Index>(min_ess), 6);
+    for (Eigen::Index i = 0; i < draws.rows(); ++i)
+      draws.row(i) = some_pose + deviation.cwiseProduct(random.normal6());
+    EXPECT_EQ(withoutPrior(estimateOf(draws), prior).num_unmeasured, 6) << seed;
+  }
+}
+
+TEST(WithoutPrior, NaNWithoutAPosterior)
+{
+  const PoseMeasurement measurement =
+      withoutPrior(PoseEstimate(), Prior(some_pose, Vector6d::Ones()));
+  EXPECT_TRUE(measurement.estimate.mean.array().isNaN().all());
+  EXPECT_TRUE(measurement.estimate.covariance(left).array().isNaN().all());
+}
+
+TEST(WithoutPrior, AnInfinitePriorChangesNothing)
+{
+  PoseEstimate posterior;
+  posterior.mean = some_pose;
+  posterior.covariances.fill(1e-4 * Matrix6d::Identity());
+  const double infinite = std::numeric_limits<double>::infinity();
+  const PoseMeasurement measurement =
+      withoutPrior(posterior, Prior(Vector6d::Zero(), Vector6d::Constant(infinite)));
+  EXPECT_EQ(measurement.num_unmeasured, 0);
+  EXPECT_LT((measurement.estimate.mean - some_pose).norm(), 1e-8);
+  EXPECT_TRUE(measurement.estimate.covariance(left).isApprox(
+      1e-4 * Matrix6d::Identity(), 1e-6));
+}
+
+/** A robot above a table: odometry N(0, 1 / odometry) about some_pose, and clouds that
+ * see height, roll and pitch only. Left twists; small, so that they add up. */
+class FilterWithOdometry : public testing::Test {
+protected:
+  FilterWithOdometry()
+  : prior_(some_pose, Vector6d::Constant(0.01 * 0.01))
+  , odometry_(
+        twistPrior(prior_, isometryOf(some_pose), Eigen::Vector3d::Zero()).precision)
+  {
+    clouds_.setZero();
+    clouds_.diagonal() << 0.0, 0.0, 1.0, 1.0, 1.0, 0.0;
+    clouds_ *= 1.0 / (0.002 * 0.002);
+    odometry_factor_ = odometry_.inverse().llt().matrixL();
+    posterior_information_ = odometry_ + clouds_;
+  }
+
+  /** What the filter believes: error about some_pose, and information. */
+  struct Belief {
+    Vector6d mean;
+    Matrix6d information;
+  };
+
+  Vector6d
+  drawTruth(Random& random) const
+  {
+    return odometry_factor_ * random.normal6();
+  }
+
+  /** The posterior with the odometry as its prior. */
+  PoseEstimate
+  registered(const Vector6d& truth, Random& random) const
+  {
+    const Vector6d seen = truth + 0.002 * random.normal6();
+    const Vector6d mean = posterior_information_.inverse() * (clouds_ * seen);
+    PoseEstimate posterior;
+    posterior.status = Status::Ok;
+    posterior.mean = poseFromError(mean, some_pose, left);
+    posterior.covariances[static_cast<std::size_t>(left)] =
+        posterior_information_.inverse();
+    return posterior;
+  }
+
+  Belief
+  fusedWithOdometry(const PoseEstimate& measurement) const
+  {
+    const Matrix6d information = informationAt(measurement, left);
+    const Vector6d error = poseError(measurement.mean, some_pose, left);
+    const Matrix6d sum = odometry_ + information;
+    return {sum.inverse() * (information * error), sum};
+  }
+
+  static double
+  nees(const Belief& belief, const Vector6d& truth)
+  {
+    const Vector6d error = belief.mean - truth;
+    return error.dot(belief.information * error);
+  }
+
+  Prior prior_;
+  Matrix6d odometry_;
+  Matrix6d odometry_factor_;
+  Matrix6d clouds_;
+  Matrix6d posterior_information_;
+};
+
+TEST_F(FilterWithOdometry, CountsItOnceWithoutThePriorAndTwiceWithIt)
+{
+  constexpr int num_runs = 1000;
+  double once = 0.0, twice = 0.0;
+  for (std::uint64_t run = 0; run < num_runs; ++run) {
+    Random random(2, run);
+    const Vector6d truth = drawTruth(random);
+    const PoseEstimate posterior = registered(truth, random);
+    const PoseMeasurement measurement = withoutPrior(posterior, prior_);
+    ASSERT_EQ(measurement.num_unmeasured, 3);
+    once += nees(fusedWithOdometry(measurement.estimate), truth) / num_runs;
+    twice += nees(fusedWithOdometry(posterior), truth) / num_runs;
+  }
+  // The mean of so many chi-squares of six degrees of freedom, variance 12.
+  const double tolerance = 5.0 * std::sqrt(12.0 / num_runs);
+  EXPECT_NEAR(once, 6.0, tolerance);
+  // Half the variance in the three directions that only the odometry knows: twice a
+  // chi-square of three, and one of three.
+  EXPECT_NEAR(twice, 9.0, 5.0 * std::sqrt(30.0 / num_runs));
+}
+
+TEST_F(FilterWithOdometry, FusedAgainItIsThePosterior)
+{
+  Random random(3, 0);
+  const PoseEstimate posterior = registered(drawTruth(random), random);
+  const Belief belief = fusedWithOdometry(withoutPrior(posterior, prior_).estimate);
+  const Vector6d difference = belief.mean - poseError(posterior.mean, some_pose, left);
+  // In standard deviations. What is not exact: unmeasured_deviation is not infinite,
+  // and twists of 0.01 do not quite add up.
+  const double distance =
+      std::sqrt(difference.dot(posterior_information_ * difference));
+  EXPECT_LT(distance, 0.05);
+  const Matrix6d ratio = posterior_information_.inverse() * belief.information;
+  EXPECT_LT((ratio - Matrix6d::Identity()).cwiseAbs().maxCoeff(), 0.05);
+}
+
+} // namespace
+} // namespace bayesian_icp

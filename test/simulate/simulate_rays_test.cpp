@@ -1,0 +1,112 @@
+/** \file
+ * \brief The rays of the scan simulator's sensors: do they go where they should, and
+ * are bad options refused?
+ */
+#include "simulate/simulate_helpers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+using namespace bayesian_icp::simulator;
+using Eigen::Vector3d;
+
+TEST(SensorPose, LooksAlongTheView)
+{
+  const Vector3d eye(1.0, 2.0, 3.0);
+  for (const Vector3d& look_at : {Vector3d(-1.0, 0.5, 1.0), Vector3d(1.0, 2.0, 0.0)}) {
+    const Vector3d forward = (look_at - eye).normalized();
+    const auto camera = sensorPose(SensorKind::DepthCamera, {eye, look_at});
+    const auto lidar = sensorPose(SensorKind::Lidar, {eye, look_at});
+    EXPECT_TRUE(camera.linear().col(2).isApprox(forward, 1e-14));
+    EXPECT_TRUE(lidar.linear().col(0).isApprox(forward, 1e-14));
+    EXPECT_LE(camera.linear()(2, 1), 0.0) << "y of the camera points down";
+    EXPECT_GE(lidar.linear()(2, 2), 0.0) << "z of the LiDAR points up";
+    EXPECT_NEAR(camera.linear().determinant(), 1.0, 1e-14);
+    EXPECT_NEAR(lidar.linear().determinant(), 1.0, 1e-14);
+  }
+}
+
+TEST(SensorRays, OfTheLidarHaveTheStatedAngles)
+{
+  SimulationOptions options = cleanOptions("room");
+  options.sensor.noise = 1.0;
+  const Scan scan = scanTarget(options);
+  ASSERT_EQ(raysPerRow(options.sensor), 180);
+  ASSERT_EQ(scan.points.cols(), 32 * 180) << "a closed room returns every ray";
+  for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
+    const Vector3d point = scan.points.col(i);
+    const Eigen::Index ring = i / 180;
+    const double elevation = std::asin(point.z() / point.norm());
+    ASSERT_NEAR(
+        elevation, (-30.0 + 40.0 / 31.0 * static_cast<double>(ring)) * degree, 1e-9);
+    const double azimuth = 2.0 * static_cast<double>(i % 180) * degree;
+    const Vector3d across(-std::sin(azimuth), std::cos(azimuth), 0.0);
+    ASSERT_NEAR(across.dot(point), 0.0, 1e-9);
+  }
+}
+
+TEST(SensorRays, OfTheCameraGoThroughThePixelsUpToTheJitter)
+{
+  SimulationOptions options = cleanOptions("table");
+  options.sensor.noise = 1.0;
+  const double focal_length = 80.0 / std::tan(28.5 * degree);
+  for (const double jitter : {0.0, 0.6}) {
+    options.sensor.jitter = jitter;
+    const Scan scan = scanTarget(options);
+    Vector3d most = Vector3d::Zero();
+    for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
+      const std::uint32_t ray = scan.ray_indices[static_cast<std::size_t>(i)];
+      const std::uint32_t column = ray % 160, row = ray / 160;
+      const Vector3d centre(column + 0.5 - 80.0, row + 0.5 - 60.0, focal_length);
+      const Vector3d pixel = scan.points.col(i) / scan.points(2, i) * focal_length;
+      most = most.cwiseMax((pixel - centre).cwiseAbs());
+    }
+    EXPECT_NEAR(most.x(), 0.5 * jitter, 0.001 + 1e-9);
+    EXPECT_NEAR(most.y(), 0.5 * jitter, 0.001 + 1e-9);
+    EXPECT_LE(most.maxCoeff(), 0.5 * jitter + 1e-9);
+  }
+}
+
+TEST(SensorOptions, OutsideTheirRangeAreRefusedByName)
+{
+  using Change = std::function<void(SensorOptions&)>;
+  const std::vector<std::pair<std::string, Change>> bad = {
+      {"width", [](SensorOptions& o) { o.camera.width = 0; }},
+      {"height", [](SensorOptions& o) { o.camera.height = -3; }},
+      {"fov", [](SensorOptions& o) { o.camera.horizontal_fov = 180.0; }},
+      {"lateral-noise", [](SensorOptions& o) { o.camera.lateral_noise = -1.0; }},
+      {"rings", [](SensorOptions& o) { o.lidar.rings = 0; }},
+      {"max-elevation", [](SensorOptions& o) { o.lidar.max_elevation = -20.0; }},
+      {"azimuth-step", [](SensorOptions& o) { o.lidar.azimuth_step = 0.0; }},
+      {"range-noise", [](SensorOptions& o) { o.lidar.range_noise = NAN; }},
+      {"ring-offset", [](SensorOptions& o) { o.lidar.ring_offset = -0.01; }},
+      {"azimuth-phase", [](SensorOptions& o) { o.lidar.azimuth_phase = 1.5; }},
+      {"noise", [](SensorOptions& o) { o.noise = INFINITY; }},
+      {"noise-correlation", [](SensorOptions& o) { o.noise_correlation = 1.1; }},
+      {"noise-correlation-pixels",
+       [](SensorOptions& o) { o.noise_correlation_pixels = 0.0; }},
+      {"incidence-noise", [](SensorOptions& o) { o.incidence_noise = -1.0; }},
+      {"dropout-from", [](SensorOptions& o) { o.dropout_from = 91.0; }},
+      {"outliers", [](SensorOptions& o) { o.outliers = 1.5; }},
+      {"jitter", [](SensorOptions& o) { o.jitter = 2.0; }},
+      {"min-range", [](SensorOptions& o) { o.min_range = 0.0; }},
+      {"max-range", [](SensorOptions& o) { o.max_range = o.min_range; }}};
+  for (const auto& entry : bad) {
+    SensorOptions options;
+    entry.second(options);
+    try {
+      validate(options);
+      ADD_FAILURE() << entry.first << " was accepted";
+    }
+    catch (const std::invalid_argument& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(entry.first + " is ", 0), 0U)
+          << error.what();
+    }
+  }
+}
