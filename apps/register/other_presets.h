@@ -33,10 +33,11 @@ refuseOfOtherPresets(const std::string& name, Preset preset, const Predicate& is
       others += (others.empty() ? "" : " and ") + std::string(toString(candidate));
   }
   if (!others.empty())
-    throw io::UsageError(
-        name + (others.find(' ') == std::string::npos ? " belongs to preset "
-                                                      : " belongs to presets ") +
-        others + ", and the preset is " + toString(preset));
+    throw io::UsageError(name +
+                         (others.find(' ') == std::string::npos
+                              ? " belongs to preset "
+                              : " belongs to presets ") +
+                         others + ", and the preset is " + toString(preset));
 }
 
 } // namespace bayesian_icp::app
