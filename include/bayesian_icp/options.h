@@ -45,7 +45,7 @@ constexpr AutomaticTag automatic{};
 template <typename T>
 class Automatic {
 public:
-  Automatic(AutomaticTag = automatic) {}
+  Automatic(AutomaticTag = automatic) : value_() {}
   Automatic(const T& value) : value_(value), is_given_(true) {}
 
   bool
@@ -62,9 +62,14 @@ public:
   }
 
 private:
-  T value_ = T();
+  T value_;
   bool is_given_ = false;
 };
+
+/** \brief Eigen leaves numbers as they are unless told otherwise. */
+template <>
+inline Automatic<Vector6d>::Automatic(AutomaticTag) : value_(Vector6d::Zero())
+{}
 
 /** \brief How many chains and draws, from which random numbers, on how many threads. */
 struct ChainOptions {
