@@ -1,5 +1,7 @@
 // 1000 draws of Algorithm 1 against the nearest-neighbour queries that they need, on
 // one thread: draws_benchmark source.pcd target.pcd [Google Benchmark options]
+#include <bayesian_icp/random.h>
+
 #include <pcl/io/pcd_io.h>
 #include <pcl/registration/bayesian_icp.h>
 #include <pcl/point_types.h>
@@ -46,10 +48,10 @@ draws(benchmark::State& state, const Cloud::Ptr& source, const Cloud::Ptr& targe
   options.preset = bayesian_icp::Preset::Paper;
   options.chains.num_draws = num_draws;
   options.chains.num_threads = 1;
-  options.mini_batch.batch_size = batch_size;
+  options.paper.batch_size = batch_size;
   // At the usual step the chains stay near the surface no better than the queries do; a
   // small one keeps both on the same kind of query.
-  options.sgld.step_size = 1e-6;
+  options.paper.sgld.step_size = 1e-6;
   for (auto _ : state)
     benchmark::DoNotOptimize(bayesian_icp::estimatePosterior(
         points, search, bayesian_icp::Vector6d::Zero(), options));

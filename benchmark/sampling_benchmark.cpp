@@ -9,6 +9,7 @@
 #include "benchmark_clouds.h"
 
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
 
 #include <pcl/kdtree/kdtree_flann.h>
 
@@ -49,11 +50,12 @@ makeOptions(Preset preset, const Scale& scale, int num_threads = 1)
 {
   Options options;
   options.preset = preset;
-  options.likelihood.measurement_sigma = scale.sigma;
-  options.likelihood.effective_points = scale.effective_points;
+  options.paper.scale = options.exact.scale = {scale.effective_points, scale.sigma};
   options.chains.num_threads = num_threads;
+  Vector6d spread;
+  spread << 0.05, 0.05, 0.05, 0.1, 0.1, 0.1;
   if (scale.sigma < 0.1)
-    options.chains.initial_spread << 0.05, 0.05, 0.05, 0.1, 0.1, 0.1;
+    options.exact.initial_spread = spread;
   return options;
 }
 
@@ -112,12 +114,11 @@ flannQueries(benchmark::State& state, const Pair& pair, const Scale& scale)
 double
 secondsOfSteps(const Pair& pair, Options options)
 {
-  // Values next to the defaults, as the defaults mean automatic: 999 steps are timed,
-  // between the callbacks of the first and the last one.
-  options.mini_batch.batch_size = batch_size + 1;
+  // 999 steps are timed, between the callbacks of the first and the last one.
+  options.exact.batch_size = batch_size;
+  options.exact.thinning = 1;
   options.chains.num_chains = 1;
-  options.chains.thinning = 2;
-  options.chains.num_draws = num_steps / 2;
+  options.chains.num_draws = num_steps;
   double begin = 0.0, end = 0.0;
   estimatePosterior(
       pair.source, *pair.target, pair.guess, options, [&](const Progress& progress) {
@@ -182,7 +183,7 @@ addComparisons(const Pair& pair)
     add("paper/2000_draws/sigma:1,N:6000/alpha:" + std::to_string(step_size),
         [&pair, step_size](benchmark::State& s) {
           Options options = makeOptions(Preset::Paper, scales[1]);
-          options.sgld.step_size = step_size;
+          options.paper.sgld.step_size = step_size;
           draws(s, pair, options);
         });
 }

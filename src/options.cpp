@@ -60,6 +60,50 @@ check(const PriorOptions& prior, Preset preset, Checker& checker)
 }
 
 void
+check(const ChainOptions& chains, Checker& checker)
+{
+  checker.atLeast("num_chains", chains.num_chains, 1);
+  checker.require(chains.num_draws >= chains.num_chains,
+                  "num_draws",
+                  chains.num_draws,
+                  "at least num_chains (one draw a chain)");
+  checker.atLeast("num_threads", chains.num_threads, 0);
+}
+
+void
+check(const LikelihoodScale& scale, Checker& checker)
+{
+  checker.positive("effective_points", scale.effective_points);
+  checker.positive("measurement_sigma", scale.measurement_sigma, " (m)");
+}
+
+/** Automatic values are given as good ones. */
+void
+checkSteps(int num_burn_in, int thinning, Checker& checker)
+{
+  checker.atLeast("num_burn_in", num_burn_in, 0);
+  checker.atLeast("thinning", thinning, 1);
+}
+
+void
+checkSpread(const Vector6d& spread, Checker& checker)
+{
+  checker.require(spread.allFinite() && spread.minCoeff() >= 0.0,
+                  "initial_spread",
+                  spread.transpose(),
+                  "six finite numbers not below zero (m, rad)");
+}
+
+void
+checkGate(double max_distance, Checker& checker)
+{
+  checker.require(max_distance > 0.0,
+                  "max_distance",
+                  max_distance,
+                  "positive (m), infinity is none");
+}
+
+void
 check(const SgldOptions& sgld, Checker& checker)
 {
   checker.positive("step_size", sgld.step_size);
@@ -84,42 +128,46 @@ check(const SgldOptions& sgld, Checker& checker)
 }
 
 void
-check(const ChainOptions& chains, Checker& checker)
+check(const PaperOptions& paper, Checker& checker)
 {
-  checker.atLeast("num_chains", chains.num_chains, 1);
-  checker.require(chains.num_draws >= chains.num_chains,
-                  "num_draws",
-                  chains.num_draws,
-                  "at least num_chains (one draw a chain)");
-  checker.atLeast("num_burn_in", chains.num_burn_in, 0);
-  checker.atLeast("thinning", chains.thinning, 1);
-  checker.require(chains.initial_spread.allFinite() &&
-                      chains.initial_spread.minCoeff() >= 0.0,
-                  "initial_spread",
-                  chains.initial_spread.transpose(),
-                  "six finite numbers not below zero (m, rad)");
-  checker.atLeast("num_threads", chains.num_threads, 0);
+  check(paper.scale, checker);
+  checker.atLeast("batch_size", paper.batch_size, 1);
+  check(paper.sgld, checker);
+  checkGate(paper.max_distance, checker);
+  checkSteps(paper.num_burn_in, paper.thinning, checker);
+  checkSpread(paper.initial_spread, checker);
 }
 
 void
 check(const ExactOptions& exact, Checker& checker)
 {
+  check(exact.scale, checker);
   checker.positive("kernel_width", exact.residual.kernel_width, " (m)");
-  checker.require(exact.residual.max_distance > 0.0,
-                  "max_distance",
-                  exact.residual.max_distance,
-                  "positive (m), infinity is none");
+  checkGate(exact.residual.max_distance, checker);
+  checker.atLeast("batch_size", exact.batch_size.valueOr(1), 1);
+  checker.require(!exact.batch_size.isGiven() ||
+                      exact.metropolis != MetropolisUse::Always,
+                  "metropolis",
+                  toString(exact.metropolis),
+                  "automatic or never with a batch_size: Metropolis steps evaluate the "
+                  "whole source");
+  checker.require(exact.max_step_size > 0.0 && exact.max_step_size <= 1.0,
+                  "max_step_size",
+                  exact.max_step_size,
+                  "in (0, 1] (1 is a Newton step)");
+  checkSteps(exact.num_burn_in.valueOr(0), exact.thinning.valueOr(1), checker);
+  checkSpread(exact.initial_spread.valueOr(Vector6d::Zero()), checker);
   checker.atLeast("max_source_points", exact.max_source_points, 1);
 }
 
 void
 check(const CalibratedOptions& calibrated, Checker& checker)
 {
-  checker.atLeast("calibrated.max_source_points",
-                  calibrated.max_source_points,
-                  min_calibrated_points);
   checker.atLeast(
-      "calibrated.num_mode_points", calibrated.num_mode_points, min_calibrated_points);
+      "max_source_points", calibrated.max_source_points, min_calibrated_points);
+  checker.atLeast("num_mode_points", calibrated.num_mode_points, min_calibrated_points);
+  checkSteps(
+      calibrated.num_burn_in.valueOr(0), calibrated.thinning.valueOr(1), checker);
 }
 
 } // namespace
@@ -134,6 +182,33 @@ toString(Preset preset)
     return "exact";
   case Preset::Calibrated:
     return "calibrated";
+  }
+  return "unknown";
+}
+
+const char*
+toString(MiniBatchSampling sampling)
+{
+  return sampling == MiniBatchSampling::WithReplacement ? "with-replacement"
+                                                        : "shuffled-epochs";
+}
+
+const char*
+toString(Residual residual)
+{
+  return residual == Residual::PointToPoint ? "point-to-point" : "point-to-plane";
+}
+
+const char*
+toString(RobustKernel kernel)
+{
+  switch (kernel) {
+  case RobustKernel::None:
+    return "none";
+  case RobustKernel::Huber:
+    return "huber";
+  case RobustKernel::Tukey:
+    return "tukey";
   }
   return "unknown";
 }
@@ -181,18 +256,19 @@ std::string
 Options::validate() const
 {
   Checker checker;
-  checker.positive("effective_points", likelihood.effective_points);
-  checker.positive("measurement_sigma", likelihood.measurement_sigma, " (m)");
   check(prior, preset, checker);
-  checker.atLeast("batch_size", mini_batch.batch_size, 1);
-  check(sgld, checker);
   check(chains, checker);
-  check(exact, checker);
-  check(calibrated, checker);
-  checker.require(preset != Preset::Exact || sgld.step_size <= 1.0,
-                  "step_size",
-                  sgld.step_size,
-                  "at most 1 (a Newton step) for preset exact");
+  switch (preset) {
+  case Preset::Paper:
+    check(paper, checker);
+    break;
+  case Preset::Exact:
+    check(exact, checker);
+    break;
+  case Preset::Calibrated:
+    check(calibrated, checker);
+    break;
+  }
   return checker.complaint();
 }
 

@@ -77,17 +77,16 @@ samplePaper(const Eigen::Matrix3Xd& source_points,
             const std::function<bool(const Vector6d&)>& has_diverged,
             const ProgressCallback& progress)
 {
-  const MiniBatches mini_batches(
-      static_cast<std::size_t>(source_points.cols()),
-      static_cast<std::size_t>(options.mini_batch.batch_size),
-      options.mini_batch.sampling);
+  const MiniBatches mini_batches(static_cast<std::size_t>(source_points.cols()),
+                                 static_cast<std::size_t>(options.paper.batch_size),
+                                 options.paper.sampling);
   const PosteriorGradient gradient(
-      source_points, search, prior, options.likelihood.weight(), mini_batches);
+      source_points, search, prior, options.paper.scale.weight(), mini_batches);
   SamplerTarget target;
   target.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
   target.has_diverged = has_diverged;
   target.is_thread_safe = search.isThreadSafe();
-  return runChains(initial_pose, target, options.sgld, options.chains, progress);
+  return runChains(initial_pose, target, options.paper, options.chains, progress);
 }
 
 PosteriorEstimate
@@ -113,14 +112,14 @@ estimate(const Eigen::Matrix3Xd& source_points,
     const PoseEnergy energy(sampled_points,
                             target,
                             prior,
-                            options.likelihood.weight(),
+                            options.exact.scale.weight(),
                             options.exact.residual);
-    PosteriorEstimate result =
-        estimateOf(sampleExact(energy, initial_pose, options, has_diverged, progress));
+    PosteriorEstimate result = estimateOf(sampleExact(
+        energy, initial_pose, options.exact, options.chains, has_diverged, progress));
     addDoubts(doubtsAbout(energy,
                           result,
                           thicknessOf(sampled_points),
-                          options.likelihood.measurement_sigma),
+                          options.exact.scale.measurement_sigma),
               result.summary);
     return result;
   }
@@ -172,14 +171,16 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                                        options,
                                        progress);
   const ResidualOptions& residual = options.exact.residual;
-  const bool needs_normals =
-      options.preset == Preset::Exact && residual.residual == Residual::PointToPlane;
+  const bool is_exact = options.preset == Preset::Exact;
+  const bool needs_normals = is_exact && residual.residual == Residual::PointToPlane;
+  const double max_distance =
+      is_exact ? residual.max_distance : options.paper.max_distance;
   const TreeTarget target(target_tree,
-                          residual.max_distance,
+                          max_distance,
                           needs_normals ? patchNormals(target_tree.points())
                                         : Eigen::Matrix3Xf());
   return estimate(source_points,
-                  TreeSearch(target_tree, residual.max_distance),
+                  TreeSearch(target_tree, max_distance),
                   target,
                   initial_pose,
                   options,

@@ -92,7 +92,7 @@ textsOfTheLibrary()
             gtsamText(estimate, formats) + tumLine(estimate, formats) +
             csvText(estimate, formats);
   }
-  options.sgld.step_size = -1234.5;
+  options.paper.sgld.step_size = -1234.5;
   return text + options.validate();
 }
 

@@ -2,6 +2,7 @@
 #include "support/test_support.h"
 
 #include <bayesian_icp/diagnostics.h>
+#include <bayesian_icp/likelihood.h>
 #include <bayesian_icp/pipeline.h>
 
 #include <gtest/gtest.h>
@@ -33,7 +34,7 @@ quickOptions()
   Options options;
   options.preset = Preset::Paper;
   options.chains.num_draws = 200;
-  options.mini_batch.batch_size = 20;
+  options.paper.batch_size = 20;
   return options;
 }
 
@@ -42,18 +43,23 @@ TEST(OptionsValidation, DefaultsAreCalibratedAndElseThePapers)
   const Options options;
   EXPECT_EQ(options.validate(), "");
   EXPECT_EQ(options.preset, Preset::Calibrated);
-  EXPECT_EQ(options.likelihood.effective_points, 6000.0);
-  EXPECT_EQ(options.likelihood.measurement_sigma, 1.0);
+  EXPECT_EQ(options.paper.scale.effective_points, 6000.0);
+  EXPECT_EQ(options.paper.scale.measurement_sigma, 1.0);
   EXPECT_EQ(options.prior.variance, Vector6d(Vector6d::Constant(0.125)));
   EXPECT_EQ(options.prior.frame, PriorFrame::Automatic);
-  EXPECT_EQ(options.mini_batch.batch_size, 160);
-  EXPECT_EQ(options.sgld.step_size, 1e-4);
-  EXPECT_EQ(options.sgld.decay_rate, 0.9);
-  EXPECT_EQ(options.sgld.lambda_rms, 1e-8);
+  EXPECT_EQ(options.paper.batch_size, 160);
+  EXPECT_EQ(options.paper.sgld.step_size, 1e-4);
+  EXPECT_EQ(options.paper.sgld.decay_rate, 0.9);
+  EXPECT_EQ(options.paper.sgld.lambda_rms, 1e-8);
   EXPECT_EQ(options.chains.num_chains, 4);
   EXPECT_EQ(options.chains.num_draws, 2000);
-  EXPECT_EQ(options.chains.num_burn_in, 0);
-  EXPECT_EQ(options.chains.thinning, 1);
+  EXPECT_EQ(options.exact.scale.effective_points, 6000.0);
+  EXPECT_EQ(options.exact.scale.measurement_sigma, 1.0);
+  EXPECT_FALSE(options.exact.batch_size.isGiven());
+  EXPECT_FALSE(options.exact.thinning.isGiven());
+  EXPECT_FALSE(options.calibrated.thinning.isGiven());
+  EXPECT_EQ(options.paper.num_burn_in, 0);
+  EXPECT_EQ(options.paper.thinning, 1);
 }
 
 /** The eight corners of a cube with half an edge of 1 m, 2 m off in y, and a point that
@@ -112,63 +118,92 @@ struct BadOption {
   std::function<void(Options&)> set;
 };
 
+void
+expectRefused(Preset preset, const BadOption& bad)
+{
+  Options options;
+  options.preset = preset;
+  bad.set(options);
+  const std::string complaint = options.validate();
+  EXPECT_NE(complaint.find(bad.field), std::string::npos) << bad.field << complaint;
+  EXPECT_NE(complaint.find(bad.value), std::string::npos) << bad.field << complaint;
+  EXPECT_NE(complaint.find("must be"), std::string::npos) << bad.field << complaint;
+}
+
 TEST(OptionsValidation, NamesFieldValueAndRange)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const BadOption bad_options[] = {
-      {"effective_points", "0", [](Options& o) { o.likelihood.effective_points = 0; }},
+      {"effective_points", "0", [](Options& o) { o.paper.scale.effective_points = 0; }},
       {"measurement_sigma",
        "-1",
-       [](Options& o) { o.likelihood.measurement_sigma = -1; }},
+       [](Options& o) { o.paper.scale.measurement_sigma = -1; }},
       {"prior.variance[z]", "0", [](Options& o) { o.prior.variance[2] = 0; }},
       {"prior.variance[yaw]", "nan", [=](Options& o) { o.prior.variance[5] = nan; }},
       {"prior.mean", "nan", [](Options& o) { o.prior.mean[0] = 0; }},
-      {"batch_size", "0", [](Options& o) { o.mini_batch.batch_size = 0; }},
-      {"step_size", "inf", [](Options& o) { o.sgld.step_size = 1.0 / 0.0; }},
-      {"decay_rate", "1", [](Options& o) { o.sgld.decay_rate = 1; }},
-      {"lambda_rms", "0", [](Options& o) { o.sgld.lambda_rms = 0; }},
-      {"noise_factor", "-2", [](Options& o) { o.sgld.noise_factor = -2; }},
+      {"batch_size", "0", [](Options& o) { o.paper.batch_size = 0; }},
+      {"step_size", "inf", [](Options& o) { o.paper.sgld.step_size = 1.0 / 0.0; }},
+      {"decay_rate", "1", [](Options& o) { o.paper.sgld.decay_rate = 1; }},
+      {"lambda_rms", "0", [](Options& o) { o.paper.sgld.lambda_rms = 0; }},
+      {"noise_factor", "-2", [](Options& o) { o.paper.sgld.noise_factor = -2; }},
       {"block_decay_factor",
        "1.5",
-       [](Options& o) { o.sgld.block_decay_factor = 1.5; }},
+       [](Options& o) { o.paper.sgld.block_decay_factor = 1.5; }},
       {"block_decay_interval",
        "0",
-       [](Options& o) { o.sgld.block_decay_interval = 0; }},
-      {"block_decay_start", "-1", [](Options& o) { o.sgld.block_decay_start = -1; }},
+       [](Options& o) { o.paper.sgld.block_decay_interval = 0; }},
+      {"block_decay_start",
+       "-1",
+       [](Options& o) { o.paper.sgld.block_decay_start = -1; }},
       {"num_chains", "0", [](Options& o) { o.chains.num_chains = 0; }},
       {"num_draws", "3", [](Options& o) { o.chains.num_draws = 3; }},
-      {"num_burn_in", "-1", [](Options& o) { o.chains.num_burn_in = -1; }},
-      {"thinning", "0", [](Options& o) { o.chains.thinning = 0; }},
-      {"initial_spread", "-1", [](Options& o) { o.chains.initial_spread[1] = -1; }},
+      {"num_burn_in", "-1", [](Options& o) { o.paper.num_burn_in = -1; }},
+      {"thinning", "0", [](Options& o) { o.paper.thinning = 0; }},
+      {"initial_spread", "-1", [](Options& o) { o.paper.initial_spread[1] = -1; }},
       {"num_threads", "-4", [](Options& o) { o.chains.num_threads = -4; }},
-      {"calibrated.max_source_points",
+      {"max_distance", "0", [](Options& o) { o.paper.max_distance = 0; }},
+  };
+  for (const auto& bad : bad_options)
+    expectRefused(Preset::Paper, bad);
+  const BadOption bad_calibrated[] = {
+      {"max_source_points",
        "29",
        [](Options& o) { o.calibrated.max_source_points = 29; }},
-      {"calibrated.num_mode_points",
-       "0",
-       [](Options& o) { o.calibrated.num_mode_points = 0; }},
-      {"prior.variance[x]",
-       "inf",
-       [](Options& o) {
-         o.preset = Preset::Calibrated;
-         o.prior.variance[0] = 1.0 / 0.0;
-       }},
+      {"num_mode_points", "0", [](Options& o) { o.calibrated.num_mode_points = 0; }},
+      {"num_burn_in", "-1", [](Options& o) { o.calibrated.num_burn_in = -1; }},
+      {"thinning", "0", [](Options& o) { o.calibrated.thinning = 0; }},
+      {"prior.variance[x]", "inf", [](Options& o) { o.prior.variance[0] = 1.0 / 0.0; }},
   };
-  for (const auto& bad : bad_options) {
-    Options options;
-    bad.set(options);
-    const std::string complaint = options.validate();
-    EXPECT_NE(complaint.find(bad.field), std::string::npos) << bad.field << complaint;
-    EXPECT_NE(complaint.find(bad.value), std::string::npos) << bad.field << complaint;
-    EXPECT_NE(complaint.find("must be"), std::string::npos) << bad.field << complaint;
-  }
+  for (const auto& bad : bad_calibrated)
+    expectRefused(Preset::Calibrated, bad);
+}
+
+TEST(OptionsValidation, LooksAtTheChosenPresetOnly)
+{
+  Options options;
+  options.paper.batch_size = options.exact.max_source_points = 0;
+  EXPECT_EQ(options.validate(), "");
+  options.preset = Preset::Exact;
+  EXPECT_NE(options.validate(), "");
+}
+
+TEST(Automatic, IsAutomaticOrHasAValue)
+{
+  Automatic<int> thinning;
+  EXPECT_FALSE(thinning.isGiven());
+  EXPECT_EQ(thinning.valueOr(7), 7);
+  thinning = 1;
+  EXPECT_TRUE(thinning.isGiven());
+  EXPECT_EQ(thinning.valueOr(7), 1);
+  thinning = automatic;
+  EXPECT_EQ(thinning.valueOr(7), 7);
 }
 
 TEST(Pipeline, BadOptionsAreAStatus)
 {
   const Problem problem = someProblem();
   Options options = quickOptions();
-  options.sgld.step_size = -1.0;
+  options.paper.sgld.step_size = -1.0;
   const auto estimate = estimatePosterior(problem.source,
                                           test::BruteForceSearch(problem.target),
                                           Vector6d::Zero(),
@@ -261,11 +296,11 @@ TEST(Pipeline, PriorMeanIsTheGuessUnlessSet)
   const Problem problem = someProblem();
   const test::BruteForceSearch search(problem.target);
   Options options = quickOptions();
-  options.likelihood.effective_points = 1e-12;
+  options.paper.scale.effective_points = 1e-12;
   options.prior.variance.setConstant(1e-4);
-  options.sgld.step_size = 1e-7;
+  options.paper.sgld.step_size = 1e-7;
   options.chains.num_draws = 8000;
-  options.sgld.block_decay_factor = 1.0;
+  options.paper.sgld.block_decay_factor = 1.0;
   Vector6d guess = Vector6d::Zero();
   guess[0] = 0.3;
   const auto about_guess = estimatePosterior(problem.source, search, guess, options);
@@ -273,7 +308,7 @@ TEST(Pipeline, PriorMeanIsTheGuessUnlessSet)
               0.3,
               4.0 * about_guess.summary.coordinates[0].mcse + 1e-3);
   options.prior.mean = Vector6d::Zero();
-  options.chains.num_burn_in = 4000;
+  options.paper.num_burn_in = 4000;
   const auto about_zero = estimatePosterior(problem.source, search, guess, options);
   EXPECT_LT(std::abs(about_zero.summary.mean[0]), 0.1);
 }
@@ -318,11 +353,11 @@ TEST(Pipeline, TheMeanOfManyDrawsIsNearTheTruth)
   const Vector6d start = problem.truth + Vector6d::Constant(0.01);
   Options options;
   options.preset = Preset::Paper;
-  options.sgld.step_size = 1e-5;
-  options.sgld.block_decay_factor = 1.0;
-  options.mini_batch.batch_size = 40;
+  options.paper.sgld.step_size = 1e-5;
+  options.paper.sgld.block_decay_factor = 1.0;
+  options.paper.batch_size = 40;
   options.chains.num_draws = 12000;
-  options.chains.num_burn_in = 1000;
+  options.paper.num_burn_in = 1000;
   const auto estimate = estimatePosterior(
       problem.source, test::BruteForceSearch(problem.target), start, options);
   ASSERT_EQ(estimate.samples.rows(), 12000);

@@ -4,6 +4,8 @@
 
 #include <boost/program_options/parsers.hpp>
 
+#include <set>
+
 namespace bayesian_icp::io {
 
 namespace po = boost::program_options;
@@ -11,16 +13,21 @@ namespace po = boost::program_options;
 po::variables_map
 splitCommandLine(int argc,
                  const char* const* argv,
-                 po::options_description options,
+                 const po::options_description& options,
                  const char* positional_name)
 {
-  options.add_options()(positional_name, po::value<std::vector<std::string>>());
+  po::options_description known;
+  std::set<std::string> names;
+  for (const auto& option : options.options())
+    if (names.insert(option->long_name()).second)
+      known.add(option);
+  known.add_options()(positional_name, po::value<std::vector<std::string>>());
   po::positional_options_description positional;
   positional.add(positional_name, -1);
   po::variables_map given;
   try {
     po::store(po::command_line_parser(argc, argv)
-                  .options(options)
+                  .options(known)
                   .positional(positional)
                   .style(option_style)
                   .run(),

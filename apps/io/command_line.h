@@ -19,13 +19,14 @@ constexpr int option_style =
     ~boost::program_options::command_line_style::allow_guessing;
 
 /** \brief Take a command line apart; options begin with one dash or two.
+ * \param[in] options those of one name count once
  * \param[in] positional_name option under which the arguments without a dash are found,
  *            as a std::vector<std::string>
  * \throws io::UsageError if there is an option that is not in \p options */
 boost::program_options::variables_map
 splitCommandLine(int argc,
                  const char* const* argv,
-                 boost::program_options::options_description options,
+                 const boost::program_options::options_description& options,
                  const char* positional_name);
 
 /** \brief Value of an option that is a text; empty if the option is not given.

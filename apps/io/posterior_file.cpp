@@ -180,6 +180,8 @@ readPosterior(const std::string& name)
   posterior.target_file = root["target"]["file"].text();
   posterior.status = root["status"]["name"].text();
   posterior.status_message = root["status"]["message"].text();
+  posterior.guess =
+      root["options"]["registration"]["guess_matrix"].matrix<Eigen::Matrix4d>();
   posterior.final_matrix =
       root["final_transformation"]["T_target_source"].matrix<Eigen::Matrix4d>();
   posterior.mean = meanOf(root["posterior"]["mean"]);

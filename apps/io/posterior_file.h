@@ -27,6 +27,8 @@ struct PosteriorFile {
   /** Short name of the Status, and the status in words. */
   std::string status;
   std::string status_message;
+  /** T_target_source at which ICP and the chains started. */
+  Eigen::Matrix4d guess = Eigen::Matrix4d::Identity();
   /** T_target_source that the program decided on: ICP's, or that of the mean. */
   Eigen::Matrix4d final_matrix = Eigen::Matrix4d::Identity();
   /** Posterior mean (x, y, z, roll, pitch, yaw) [m, rad]. */

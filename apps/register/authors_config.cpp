@@ -140,15 +140,15 @@ void
 takeSampler(const json& document, Options& options)
 {
   const std::string method = "preconditioned_sgld";
-  options.sgld.step_size = numberAt(document, method, "step-size");
-  options.sgld.decay_rate = numberAt(document, method, "decay-rate");
-  options.sgld.noise_factor = numberAt(document, method, "adjust_noise");
-  options.sgld.block_decay_factor = 1.0;
-  options.mini_batch.batch_size = countAt(document, "icp", "batch-size");
-  options.mini_batch.sampling = MiniBatchSampling::ShuffledEpochs;
+  SgldOptions& sgld = options.paper.sgld;
+  sgld.step_size = numberAt(document, method, "step-size");
+  sgld.decay_rate = numberAt(document, method, "decay-rate");
+  sgld.noise_factor = numberAt(document, method, "adjust_noise");
+  sgld.block_decay_factor = 1.0;
+  options.paper.batch_size = countAt(document, "icp", "batch-size");
+  options.paper.sampling = MiniBatchSampling::ShuffledEpochs;
   options.chains.num_chains = 1;
   options.chains.num_draws = countAt(document, "icp", "max-iterations");
-  options.chains.num_burn_in = 0;
 }
 
 std::string

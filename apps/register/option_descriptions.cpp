@@ -52,6 +52,14 @@ described(const Field& field, Choice value)
          toString(value) + ")";
 }
 
+template <typename T>
+std::string
+described(const Field& field, const Automatic<T>& value)
+{
+  return value.isGiven() ? described(field, value.valueOr(T()))
+                         : std::string(field.help) + " (default automatic)";
+}
+
 /** Makes an option of every setting. */
 struct Describer {
   po::options_description& group;
@@ -112,18 +120,14 @@ describeSettings(const Settings& defaults, po::options_description& options)
   po::options_description posterior("Posterior");
   Describer describe_posterior{posterior};
   visitPosterior(defaults.options, describe_posterior);
-  po::options_description sampler("Sampler");
-  Describer describe_sampler{sampler};
-  visitSampler(defaults.options, describe_sampler);
-
-  po::options_description exact("Preset exact only");
-  Describer describe_exact{exact};
-  visitExact(defaults.options.exact, describe_exact);
-  po::options_description calibrated("Preset calibrated only");
-  Describer describe_calibrated{calibrated};
-  visitCalibrated(defaults.options.calibrated, describe_calibrated);
-
-  options.add(registration).add(posterior).add(sampler).add(exact).add(calibrated);
+  visitChains(defaults.options.chains, describe_posterior);
+  options.add(registration).add(posterior);
+  for (const Preset preset : choicesOf(Preset())) {
+    po::options_description group(std::string("Preset ") + toString(preset));
+    Describer describe{group};
+    visitPreset(preset, defaults, describe);
+    options.add(group);
+  }
 }
 
 po::options_description
@@ -139,11 +143,7 @@ namespace {
 
 const char* const about_exact = R"(
 Preset exact needs the truth about the sensor: --sigma, and --effective-points,
-the number of independent measurements in the source. It chooses --batch-size,
---thinning, --burn-in and --step-size itself if they have their defaults. Other
-values are obeyed; --step-size in (0, 1] is then the largest step, where 1 is a
-Newton step. Mini-batches are drawn without replacement. The other constants of
-Algorithm 1 have no effect.
+the number of independent measurements in the source.
 )";
 
 const char* const about_calibrated = R"(
@@ -151,8 +151,7 @@ Preset calibrated needs no truth about the sensor. It measures distances to the
 target's surface in units of the noise that it finds there, and it accounts for
 correlations between neighbouring points. It reports how well the clouds
 determine the pose in each direction. Directions that they do not determine
-stay at the prior, which has to be finite. Options of the scale, the
-mini-batches, the starts and the step sizes have no effect and are errors.
+stay at the prior, which has to be finite.
 )";
 
 } // namespace

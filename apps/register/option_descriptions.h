@@ -11,7 +11,7 @@ struct Settings;
 
 /** \brief Add the options that decide the result of a registration, which all programs
  * that register have in common, described with their units and \p defaults. Values are
- * strings. */
+ * strings. Each preset has a group, so that an option can be there several times. */
 void
 describeSettings(const Settings& defaults,
                  boost::program_options::options_description& options);

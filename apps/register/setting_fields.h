@@ -4,10 +4,8 @@
  */
 #pragma once
 
-#include "register/calibrated_fields.h"
-#include "register/exact_fields.h"
 #include "register/field.h"
-#include "register/sampler_fields.h"
+#include "register/preset_fields.h"
 #include "register/settings.h"
 
 #include <limits>
@@ -60,15 +58,6 @@ visitRegistration(SettingsT& settings, Visitor& visit)
          "it, a target point may be in several pairs."},
         settings.is_one_to_one);
   visit({group,
-         "normalize_cloud",
-         "normalize-cloud",
-         "",
-         "Divide both clouds by their largest |x|, |y| or |z| before the registration "
-         "(preset paper only). --sigma (1 unless stated), --step-size and --lambda-rms "
-         "are then in units of that length; everything else and all results are in "
-         "metres. Without it, all lengths are in metres."},
-        settings.is_normalized);
-  visit({group,
          "use_mean",
          "mean",
          "",
@@ -89,19 +78,6 @@ visitPosterior(OptionsT& options, Visitor& visit)
          "Posterior to sample: paper is Algorithm 1, literally; exact draws correctly "
          "from the stated posterior; calibrated estimates the scale from the clouds."},
         options.preset);
-  visit({"posterior",
-         "effective_points",
-         "effective-points",
-         "N",
-         "N of the paper's eq. (5): weight of the likelihood, not the size of the "
-         "cloud."},
-        options.likelihood.effective_points);
-  visit({"posterior",
-         "measurement_sigma_m",
-         "sigma",
-         "M",
-         "Standard deviation of a point-to-point distance [m]."},
-        options.likelihood.measurement_sigma);
   visit({"prior",
          "mean_m_rad",
          "prior-mean",
@@ -131,16 +107,41 @@ visitPosterior(OptionsT& options, Visitor& visit)
       options.prior.frame);
 }
 
-/** \brief Call visit(field, value) for every setting. */
+/** \brief Call visit(field, value) for what the chains of all presets have in common.
+ */
+template <typename ChainsT, typename Visitor>
+void
+visitChains(ChainsT& chains, Visitor& visit)
+{
+  visit({"chains", "num_chains", "chains", "N", "Number of independent chains."},
+        chains.num_chains);
+  visit({"chains",
+         "num_draws",
+         "samples",
+         "N",
+         "Number of draws to keep, over all chains."},
+        chains.num_draws);
+  visit({"chains", "seed", "seed", "N", "Seed of all random numbers, 0 to 2^64-1."},
+        chains.seed);
+  visit({"chains",
+         "num_threads",
+         "threads",
+         "N",
+         "Number of threads. 0 means as many as there are. The draws do not depend on "
+         "it."},
+        chains.num_threads);
+}
+
+/** \brief Call visit(field, value) for every setting that there is with the preset,
+ * which itself comes before those that depend on it. */
 template <typename SettingsT, typename Visitor>
 void
 visitSettings(SettingsT& settings, Visitor& visit)
 {
   visitRegistration(settings, visit);
   visitPosterior(settings.options, visit);
-  visitSampler(settings.options, visit);
-  visitExact(settings.options.exact, visit);
-  visitCalibrated(settings.options.calibrated, visit);
+  visitChains(settings.options.chains, visit);
+  visitPreset(settings.options.preset, settings, visit);
 }
 
 } // namespace bayesian_icp::app

@@ -9,45 +9,21 @@ namespace bayesian_icp::app {
 
 namespace {
 
-/** Finds the command line option of the first field that a complaint of
- * Options::validate() may speak of. */
-struct OptionFinder {
-  std::string complaint;
-  std::string option;
-
-  template <typename T>
-  void
-  operator()(const Field& field, const T&)
-  {
-    const std::string key = field.key;
-    const std::string name = nameInComplaint();
-    const bool names_group = complaint.find('.') < complaint.find(' ');
-    const bool is_in_group =
-        !names_group || complaint.rfind(std::string(field.group) + '.', 0) == 0;
-    // Keys of a configuration file may end in a unit.
-    if (option.empty() && is_in_group &&
-        (key == name || key.rfind(name + "_m", 0) == 0 ||
-         key.rfind(name + "_rad", 0) == 0))
-      option = "--" + longNameOf(field);
-  }
-
-  /** "prior.variance[x] is ..." speaks of "variance". */
-  std::string
-  nameInComplaint() const
-  {
-    const std::string path = complaint.substr(0, complaint.find_first_of(" ["));
-    return path.substr(path.find('.') == std::string::npos ? 0 : path.find('.') + 1);
-  }
-};
-
+/** A complaint of Options::validate() behind the command line option of its field:
+ * "prior.variance[x] is ..." speaks of the key "variance_m2_rad2". */
 std::string
 withOptionName(const Settings& settings, const std::string& complaint)
 {
-  if (complaint.empty())
-    return complaint;
-  OptionFinder finder{complaint, ""};
-  visitSettings(settings, finder);
-  return finder.option.empty() ? complaint : finder.option + ": " + complaint;
+  std::string name = complaint.substr(0, complaint.find_first_of(" ["));
+  name.erase(0, name.find('.') + 1);
+  std::string option;
+  auto find = [&](const Field& field, const auto&) {
+    const std::string key = field.key;
+    if (key == name || key.rfind(name + "_m", 0) == 0)
+      option = "--" + longNameOf(field) + ": ";
+  };
+  visitSettings(settings, find);
+  return option + complaint;
 }
 
 /** Normals are found by the search of preset `exact`, which has no pairs to filter. */
@@ -68,7 +44,7 @@ Settings::scaleLengths(double factor)
   max_distance *= factor;
   options.prior.mean.head<3>() *= factor;
   options.prior.variance.head<3>() *= factor * factor;
-  options.chains.initial_spread.head<3>() *= factor;
+  options.paper.initial_spread.head<3>() *= factor;
 }
 
 void
@@ -79,9 +55,9 @@ Settings::scaleToClouds(std::size_t num_points, double largest_coordinate)
   are_lengths_scaled = false;
   const auto size = static_cast<double>(num_points);
   if (is_step_size_times_points)
-    options.sgld.step_size /= size;
+    options.paper.sgld.step_size /= size;
   if (is_effective_points_source_size)
-    options.likelihood.effective_points = size;
+    options.paper.scale.effective_points = size;
   is_step_size_times_points = is_effective_points_source_size = false;
 }
 
@@ -100,7 +76,8 @@ Settings::validate() const
     return "--residual: is point-to-plane, but must be point-to-point with "
            "--reciprocal "
            "or --one-to-one";
-  return withOptionName(*this, options.validate());
+  const std::string complaint = options.validate();
+  return complaint.empty() ? complaint : withOptionName(*this, complaint);
 }
 
 } // namespace bayesian_icp::app

@@ -4,6 +4,7 @@
 #include "io/motion.h"
 #include "register/choices.h"
 #include "register/json_values.h"
+#include "register/other_presets.h"
 #include "register/setting_fields.h"
 
 #include <set>
@@ -40,6 +41,16 @@ struct SettingsWriter {
       place = nullptr;
     else
       place = jsonOf(value);
+  }
+
+  template <typename T>
+  void
+  operator()(const Field& field, const Automatic<T>& value)
+  {
+    if (value.isGiven())
+      (*this)(field, value.valueOr(T()));
+    else
+      document[field.group][field.key] = "automatic";
   }
 };
 
@@ -101,6 +112,18 @@ public:
     readRow(json_, 6, "six numbers", [&](Eigen::Index k, double x) { value[k] = x; });
   }
 
+  template <typename T>
+  void
+  read(Automatic<T>& value) const
+  {
+    value = automatic;
+    if (json_ == "automatic")
+      return;
+    T given = T();
+    read(given);
+    value = given;
+  }
+
   void
   read(Eigen::Matrix4d& value) const
   {
@@ -153,15 +176,14 @@ private:
 
 struct SettingsReader {
   const json& document;
-  std::set<std::string> known_groups;
-  std::set<std::string> known_paths;
+  std::set<std::string> known;
 
   template <typename T>
   void
   operator()(const Field& field, T& value)
   {
-    known_groups.insert(field.group);
-    known_paths.insert(keyPath(field.group, field.key));
+    known.insert(field.group);
+    known.insert(keyPath(field.group, field.key));
     if (!document.contains(field.group))
       return;
     const json& group = document[field.group];
@@ -172,21 +194,24 @@ struct SettingsReader {
   }
 
   void
-  refuseUnknownKeys() const
+  refuseUnknownKeys(Preset preset) const
   {
     for (const auto& [group, content] : document.items()) {
-      if (known_groups.count(group) == 0)
-        throw io::UsageError("unknown key " + io::quoted(group));
+      refuseIfUnknown(group, preset);
       for (const auto& [key, value] : content.items())
-        refuseIfUnknown(keyPath(group, key));
+        refuseIfUnknown(keyPath(group, key), preset);
     }
   }
 
   void
-  refuseIfUnknown(const std::string& path) const
+  refuseIfUnknown(const std::string& path, Preset preset) const
   {
-    if (known_paths.count(path) == 0)
-      throw io::UsageError("unknown key " + io::quoted(path));
+    if (known.count(path) > 0)
+      return;
+    refuseOfOtherPresets(path, preset, [&](const Field& field) {
+      return path == field.group || path == keyPath(field.group, field.key);
+    });
+    throw io::UsageError("unknown key " + io::quoted(path));
   }
 };
 
@@ -205,10 +230,13 @@ settingsOf(const json& document, const Settings& defaults)
 {
   if (!document.is_object())
     throw io::UsageError("the settings are not a JSON object");
+  if (document.contains("sgld") && document.contains("calibrated"))
+    throw io::UsageError("has settings of several presets, as former versions wrote "
+                         "them: keep those of one");
   Settings settings = defaults;
-  SettingsReader reader{document, {}, {}};
+  SettingsReader reader{document, {}};
   visitSettings(settings, reader);
-  reader.refuseUnknownKeys();
+  reader.refuseUnknownKeys(settings.options.preset);
   if (document.contains(json::json_pointer("/sgld/step_size")))
     settings.is_step_size_times_points = false;
   if (document.contains(json::json_pointer("/posterior/effective_points")))

@@ -9,13 +9,14 @@
 
 namespace bayesian_icp::app {
 
-/** \brief Every setting, in groups; infinite numbers and an absent prior mean are null.
- * settingsOf() makes equal settings of it. */
+/** \brief Every setting of the preset, in groups; infinite numbers and an absent prior
+ * mean are null. settingsOf() makes equal settings of it. */
 nlohmann::ordered_json
 jsonOf(const Settings& settings);
 
 /** \brief Settings from groups of keys; what is not mentioned is as in \p defaults.
- * \throws io::UsageError naming the key if it is unknown or its value malformed */
+ * \throws io::UsageError naming the key if it is unknown or of another preset, or its
+ * value malformed */
 Settings
 settingsOf(const nlohmann::json& document, const Settings& defaults = Settings());
 

@@ -6,8 +6,10 @@
 #include "io/numbers.h"
 #include "register/choices.h"
 #include "register/config_file.h"
+#include "register/other_presets.h"
 #include "register/setting_fields.h"
-#include "register/unused_settings.h"
+
+#include <optional>
 
 namespace bayesian_icp::app {
 
@@ -82,6 +84,18 @@ convert(const std::string& option, const std::string& text, Choice& value)
     refuse(option, text, namesOfChoices(value));
 }
 
+template <typename T>
+void
+convert(const std::string& option, const std::string& text, Automatic<T>& value)
+{
+  value = automatic;
+  if (text == "automatic")
+    return;
+  T given = T();
+  convert(option, text, given);
+  value = given;
+}
+
 /** Reads the settings that the command line has. */
 struct SettingsReader {
   const po::variables_map& given;
@@ -97,22 +111,6 @@ struct SettingsReader {
       value = true;
     else
       convert(name, given[name].as<std::string>(), value);
-  }
-};
-
-/** Refuses options that have no effect with the preset. */
-struct UnusedOptionRefuser {
-  const po::variables_map& given;
-  Preset preset;
-
-  template <typename T>
-  void
-  operator()(const Field& field, const T&) const
-  {
-    const std::string name = longNameOf(field);
-    if (given.count(name) > 0 && isUnused(field, preset))
-      throw io::UsageError("--" + name + ": has no effect with preset " +
-                           toString(preset));
   }
 };
 
@@ -136,8 +134,11 @@ settingsFrom(const po::variables_map& given,
 {
   Settings settings = defaults;
   const std::string config = io::optionText(given, "config");
+  std::optional<Preset> preset;
+  if (given.count("preset") > 0)
+    convert("preset", given["preset"].as<std::string>(), preset.emplace());
   if (!config.empty())
-    settings = readConfigFile(config, note);
+    settings = readConfigFile(config, preset, note);
   SettingsReader reader{given};
   visitSettings(settings, reader);
   if (settings.are_lengths_scaled)
@@ -146,15 +147,14 @@ settingsFrom(const po::variables_map& given,
     settings.is_step_size_times_points = false;
   if (given.count("effective-points") > 0)
     settings.is_effective_points_source_size = false;
+  for (const auto& option : given)
+    refuseOfOtherPresets(
+        "--" + option.first, settings.options.preset, [&option](const Field& field) {
+          return option.first == longNameOf(field);
+        });
   const std::string complaint = settings.validate();
   if (!complaint.empty())
     throw io::UsageError(complaint);
-  const UnusedOptionRefuser refuser{given, settings.options.preset};
-  visitSettings(settings, refuser);
-  const std::string unused = unusedSettings(settings);
-  if (!unused.empty())
-    note += (note.empty() ? "" : "; ") + unused + ": no effect with preset " +
-            toString(settings.options.preset);
   return settings;
 }
 

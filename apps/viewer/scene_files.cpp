@@ -2,7 +2,6 @@
 
 #include "io/errors.h"
 #include "io/posterior_file.h"
-#include "register/config_file.h"
 
 #include <filesystem>
 
@@ -63,8 +62,7 @@ readScene(const std::string& posterior_file,
       is_named ? readNamedCloud(posterior.target_file, posterior_file)
                : io::readCloud(target_file);
   takeClouds(source, target, scene);
-  std::string note;
-  scene.guess = app::readConfigFile(posterior_file, note).guess;
+  scene.guess = posterior.guess;
   scene.final_matrix = posterior.final_matrix;
   scene.draws = io::readSamples((folder / "samples.csv").string());
   scene.status = posterior.status;

@@ -39,11 +39,11 @@ runPaperPreset(const CoverageCase& problem)
 {
   MethodResult result = resultOf(problem, presetEstimate(problem, Preset::Paper));
   const Options options;
-  const ChainOptions& chains = options.chains;
+  const PaperOptions& paper = options.paper;
   result.num_queries =
-      (static_cast<long>(chains.num_chains) * chains.num_burn_in +
-       static_cast<long>(chains.num_draws) * chains.thinning) *
-      std::min<long>(options.mini_batch.batch_size, problem.source.cols());
+      (static_cast<long>(options.chains.num_chains) * paper.num_burn_in +
+       static_cast<long>(options.chains.num_draws) * paper.thinning) *
+      std::min<long>(paper.batch_size, problem.source.cols());
   return result;
 }
 

@@ -42,8 +42,7 @@ bayesianMean(Preset preset, const PaperProblem& problem, const AccuracyStart& st
   options.prior = priorOf(preset);
   options.chains.seed = start.seed;
   options.chains.num_threads = start.num_threads;
-  if (preset == Preset::Paper)
-    options.chains.num_burn_in = num_burn_in;
+  options.paper.num_burn_in = num_burn_in;
   const PosteriorEstimate estimate =
       estimatePosterior(problem.pair.source, problem.tree, start.pose, options);
   AccuracyEstimate result{estimate.summary.mean, toString(estimate.summary.status)};

@@ -72,7 +72,7 @@ private:
     return {key_, problem_.pair.name, variant.name, seedOfRepeat(repeat), value};
   }
 
-  const PaperOptions& options_;
+  const PaperStudyOptions& options_;
   const CurvePlan& plan_;
   const PaperProblem& problem_;
   CurveFile& file_;

@@ -17,7 +17,7 @@ namespace {
 constexpr double main_basin_factor = 2.0;
 
 MonteCarloIcpOptions
-baselineOptions(const PaperOptions& paper)
+baselineOptions(const PaperStudyOptions& paper)
 {
   MonteCarloIcpOptions options;
   options.half_range << Eigen::Vector3d::Constant(paper.start_translation),
@@ -66,7 +66,7 @@ keptBaseline(const PaperStudy& study, const PaperProblem& problem)
 }
 
 std::string
-baselineKey(const PaperOptions& options, const PaperProblem& problem)
+baselineKey(const PaperStudyOptions& options, const PaperProblem& problem)
 {
   const MonteCarloIcpOptions baseline = baselineOptions(options);
   const std::uint64_t numbers[] = {

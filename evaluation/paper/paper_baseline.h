@@ -43,6 +43,6 @@ keptBaseline(const PaperStudy& study, const PaperProblem& problem);
 /** \brief A hash of all that the pair's baseline depends on, as 16 hexadecimal digits.
  */
 std::string
-baselineKey(const PaperOptions& options, const PaperProblem& problem);
+baselineKey(const PaperStudyOptions& options, const PaperProblem& problem);
 
 } // namespace bayesian_icp::evaluate

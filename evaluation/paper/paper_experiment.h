@@ -16,7 +16,7 @@ namespace bayesian_icp::evaluate {
 struct PaperStudy {
   /** The sub-command. */
   std::string command;
-  PaperOptions options;
+  PaperStudyOptions options;
   /** Those that could be read, thinned; at least one. */
   std::vector<ScanPair> pairs;
   /** Pairs that were asked for and could not be read. */

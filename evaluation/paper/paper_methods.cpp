@@ -32,7 +32,7 @@ runPreset(const PaperProblem& problem, const DrawPlan& plan, const OptionChange&
   options.chains.num_draws = plan.num_draws;
   options.chains.seed = plan.seed;
   options.chains.num_threads = plan.num_threads;
-  options.chains.initial_spread.setConstant(plan.initial_spread);
+  options.paper.initial_spread.setConstant(plan.initial_spread);
   change(options);
   const double begin = cpuSeconds();
   PosteriorEstimate estimate =
@@ -115,7 +115,7 @@ paperMethods()
       preset("bayesian-icp-1e-5",
              [](Options& options) {
                options.preset = Preset::Paper;
-               options.sgld.step_size = 1e-5;
+               options.paper.sgld.step_size = 1e-5;
              }),
       preset("exact", [](Options& options) { options.preset = Preset::Exact; }),
       preset("calibrated",

@@ -36,8 +36,8 @@ struct DrawPlan {
   int num_draws = 2000;
   std::uint64_t seed = 1;
   int num_threads = 1;
-  /** Standard deviations of the chains' starts about the guess, six equal numbers
-   * [m, rad]. */
+  /** Standard deviations of the starts of preset `paper` about the guess, six equal
+   * numbers [m, rad]. */
   double initial_spread = 0.0;
 };
 

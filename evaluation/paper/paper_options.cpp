@@ -69,10 +69,10 @@ paperOptionsDescription()
   return options;
 }
 
-PaperOptions
+PaperStudyOptions
 paperOptionsOf(const po::variables_map& given)
 {
-  PaperOptions options;
+  PaperStudyOptions options;
   options.show_help = given.count("help") > 0;
   if (options.show_help)
     return options;
@@ -95,7 +95,7 @@ paperOptionsOf(const po::variables_map& given)
 }
 
 std::vector<ScanPair>
-readPairs(const PaperOptions& options, std::ostream& log, int& num_skipped)
+readPairs(const PaperStudyOptions& options, std::ostream& log, int& num_skipped)
 {
   std::vector<ScanPair> pairs;
   num_skipped = 0;

@@ -16,7 +16,7 @@
 namespace bayesian_icp::evaluate {
 
 /** \brief Defaults are those of the standard report. */
-struct PaperOptions {
+struct PaperStudyOptions {
   bool show_help = false;
   /** Where the pairs are (see scan_pairs.h), and names as given; none: all there are.
    */
@@ -45,7 +45,7 @@ boost::program_options::options_description
 paperOptionsDescription();
 
 /** \throws io::UsageError with a message for the user */
-PaperOptions
+PaperStudyOptions
 paperOptionsOf(const boost::program_options::variables_map& given);
 
 /** \brief The pairs asked for. A missing or broken one is named, with the reason, on
@@ -53,6 +53,6 @@ paperOptionsOf(const boost::program_options::variables_map& given);
  * \param[out] num_skipped how many those were
  * \throws io::FileError if no pair is left, or the manifest is broken */
 std::vector<ScanPair>
-readPairs(const PaperOptions& options, std::ostream& log, int& num_skipped);
+readPairs(const PaperStudyOptions& options, std::ostream& log, int& num_skipped);
 
 } // namespace bayesian_icp::evaluate

@@ -99,7 +99,7 @@ baselineRow(const PairDistribution& distribution)
 } // namespace
 
 NamedDraws
-shownDraws(const PaperProblem& problem, const PaperOptions& options)
+shownDraws(const PaperProblem& problem, const PaperStudyOptions& options)
 {
   DrawPlan plan;
   plan.seed = options.seed;

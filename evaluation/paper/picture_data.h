@@ -17,7 +17,7 @@ using NamedDraws = std::vector<std::pair<std::string, PoseMatrix>>;
 /** \brief A run of each method that is shown: Bayesian ICP, calibrated, exact,
  * Online-ICP, those without draws left out. */
 NamedDraws
-shownDraws(const PaperProblem& problem, const PaperOptions& options);
+shownDraws(const PaperProblem& problem, const PaperStudyOptions& options);
 
 /** \brief Write baseline.csv: number of points and runs, share of the main basin and
  * spread of each pair's baseline.

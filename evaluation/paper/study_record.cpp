@@ -27,7 +27,7 @@ constexpr std::uint64_t max_file_size = 1 << 24;
 std::string
 commandOf(const PaperStudy& study)
 {
-  const PaperOptions& options = study.options;
+  const PaperStudyOptions& options = study.options;
   std::string pairs;
   for (const std::string& name : options.pairs)
     pairs += (pairs.empty() ? " --pairs " : ",") + name;

@@ -42,7 +42,7 @@ Problem::Problem(const Scene& scene, const Cell& cell)
 , energy_(scene.source,
           target_,
           Prior(Vector6d::Zero(), PriorOptions().variance),
-          options(Preset::Exact).likelihood.weight(),
+          options(Preset::Exact).exact.scale.weight(),
           ResidualOptions())
 {}
 
@@ -61,9 +61,9 @@ Problem::options(Preset preset) const
 {
   Options options;
   options.preset = preset;
-  options.likelihood.effective_points = cell_.effective_points;
-  options.likelihood.measurement_sigma = cell_.sigma;
-  options.chains.initial_spread = startSpread();
+  options.paper.scale = options.exact.scale = {cell_.effective_points, cell_.sigma};
+  options.paper.initial_spread = startSpread();
+  options.exact.initial_spread = startSpread();
   return options;
 }
 

@@ -15,7 +15,7 @@ namespace bayesian_icp::evaluate {
 
 /** \brief Scale of the likelihood. */
 struct Cell {
-  /** sigma [m] and N of LikelihoodOptions. */
+  /** sigma [m] and N of LikelihoodScale. */
   double sigma;
   double effective_points;
 

@@ -89,9 +89,9 @@ SamplerRun
 runPaper(const Problem& problem, std::uint64_t seed, int num_threads, double step_size)
 {
   Options options = problem.options(Preset::Paper);
-  options.sgld.step_size = step_size;
-  options.chains.num_burn_in = 1000;
-  options.chains.thinning = 10;
+  options.paper.sgld.step_size = step_size;
+  options.paper.num_burn_in = 1000;
+  options.paper.thinning = 10;
   options.chains.seed = seed;
   options.chains.num_threads = num_threads;
   return runEstimate(problem, options);

@@ -21,8 +21,8 @@ runExactPreset(std::uint64_t seed, MetropolisUse metropolis)
   const FarPointsModel model(random);
   Options options;
   options.preset = Preset::Exact;
-  options.likelihood.effective_points = static_cast<double>(model.source.cols());
-  options.likelihood.measurement_sigma = model.noise;
+  options.exact.scale.effective_points = static_cast<double>(model.source.cols());
+  options.exact.scale.measurement_sigma = model.noise;
   options.prior.mean = model.prior.mean();
   options.prior.variance = model.prior.variance();
   options.exact.metropolis = metropolis;
@@ -43,8 +43,8 @@ runLinearScores(std::uint64_t seed)
   ChainOptions options;
   options.seed = seed;
   options.num_threads = 1;
-  const ChainSet chains =
-      sampleCalibrated(model.score(), model.prior(), {{model.estimate()}}, options);
+  const ChainSet chains = sampleCalibrated(
+      model.score(), model.prior(), {{model.estimate()}}, CalibratedOptions(), options);
   const PosteriorEstimate estimate = {
       summarize(chains), {}, pooledDraws(chains.chains)};
   if (!hasUsableMean(estimate.summary.status))

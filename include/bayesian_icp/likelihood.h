@@ -8,24 +8,6 @@
 
 namespace bayesian_icp {
 
-/** \brief Scale of the likelihood. The energy is N / sigma^2 times the mean of |p -
- * q|^2 / 2 over the source. */
-struct LikelihoodOptions {
-  /** N of eq. (5), which is not the size of the cloud. The paper fixes it "so that a
-   * single step size can be used". Positive, dimensionless. */
-  double effective_points = 6000.0;
-  /** sigma, standard deviation of a point-to-point distance [m]. The paper's scale is
-   * implicitly 1 m. Positive. */
-  double measurement_sigma = 1.0;
-
-  /** \brief N / sigma^2 [1/m^2]. */
-  double
-  weight() const
-  {
-    return effective_points / (measurement_sigma * measurement_sigma);
-  }
-};
-
 /** \brief Move source points into the target frame: column i is R s_i + u [m]. */
 BAYESIAN_ICP_EXPORT void
 movePoints(const Vector6d& pose,

@@ -3,25 +3,12 @@
  */
 #pragma once
 
-#include <bayesian_icp/export.h>
+#include <bayesian_icp/options.h>
 #include <bayesian_icp/random.h>
 
 #include <vector>
 
 namespace bayesian_icp {
-
-/** \brief How the source points of a mini-batch are chosen. */
-enum class MiniBatchSampling {
-  /** Every point of every batch is drawn independently of all others. */
-  WithReplacement,
-  /** The source is shuffled and dealt out in batches; it is shuffled again when fewer
-   * points than a batch are left, so no point comes twice within an epoch. */
-  ShuffledEpochs
-};
-
-/** \brief Short name: "with-replacement" or "shuffled-epochs". */
-BAYESIAN_ICP_EXPORT const char*
-toString(MiniBatchSampling sampling);
 
 /** \brief The stream of mini-batches of one chain: all that a sampler draws from its
  * points is drawn here. */

@@ -58,10 +58,10 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());
 
-/** \brief The same with nearest neighbours in \p target_tree, within
- * options.exact.residual.max_distance. This is the fast overload for preset `exact`,
- * and the only one with Residual::PointToPlane (normals are those of patches of the
- * target). Preset `calibrated` uses the tree's points. */
+/** \brief The same with nearest neighbours in \p target_tree, within the max_distance
+ * of preset `exact` or `paper`. This is the fast overload for preset `exact`, and the
+ * only one with Residual::PointToPlane (normals are those of patches of the target).
+ * Preset `calibrated` uses the tree's points. */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const KdTree& target_tree,
@@ -73,8 +73,8 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
  * message says it, and Ok becomes Doubtful.
  * \param[in] coordinate a typical |x|, |y| or |z| of the clouds, the largest of the
  *            three axes [m]
- * \param[in] options of the estimate; their measurement_sigma is the noise if \p
- *            summary has none
+ * \param[in] options of the estimate; the preset's measurement_sigma is the noise if
+ *            \p summary has none
  * \param[in,out] summary of an estimate; it is unchanged if nothing was sampled */
 BAYESIAN_ICP_EXPORT void
 doubtRounding(double coordinate, const Options& options, Summary& summary);

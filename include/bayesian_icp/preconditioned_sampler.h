@@ -12,30 +12,6 @@
 
 namespace bayesian_icp {
 
-/** \brief Whether chains make Metropolis steps in place of Langevin steps. */
-enum class MetropolisUse {
-  /** Where the gradient of a batch is so noisy that Langevin steps would need (nearly)
-   * all terms. */
-  Automatic,
-  Never,
-  Always
-};
-
-/** \brief Short name: "automatic", "never", "always". */
-BAYESIAN_ICP_EXPORT const char*
-toString(MetropolisUse use);
-
-/** \brief How the steps are made. */
-struct PreconditionedOptions {
-  /** Terms a step; 0 is automatic. Not used by metropolis steps. */
-  std::size_t batch_size = 0;
-  /** Largest step size, in (0, 1]; 1 would be a Newton step. Longer steps bias the
-   * draws of a rough density: docs/performance.md. */
-  double max_step_size = 0.6;
-  /** Steps on StochasticEnergy::fullEnergy(), asymptotically exact. */
-  MetropolisUse metropolis = MetropolisUse::Automatic;
-};
-
 /** \brief Run the chains.
  *
  * Each chain draws a start, burns in and fits a Gaussian on its own. Chains whose
@@ -48,15 +24,14 @@ struct PreconditionedOptions {
  * together from their results in the order of the chains.
  *
  * \param[in] energies one per chain
- * \param[in] sampler how the steps are made
- * \param[in] options num_burn_in 0 and thinning 1 are automatic, so that draws are
- *            nearly independent; initial_spread is not used (the energies draw their
- *            starts)
+ * \param[in] options how the steps are made, and how many; scale, residual and starts
+ *            are the energies'
+ * \param[in] chains how many chains and draws
  * \param[in] progress told of every step; returns false to cancel */
 BAYESIAN_ICP_EXPORT ChainSet
 runPreconditionedChains(std::vector<std::unique_ptr<StochasticEnergy>> energies,
-                        const PreconditionedOptions& sampler,
-                        const ChainOptions& options,
+                        const ExactOptions& options,
+                        const ChainOptions& chains,
                         const ProgressCallback& progress = ProgressCallback());
 
 } // namespace bayesian_icp

@@ -4,35 +4,13 @@
  */
 #pragma once
 
+#include <bayesian_icp/options.h>
 #include <bayesian_icp/random.h>
 #include <bayesian_icp/sampling_chain.h>
 
 #include <functional>
 
 namespace bayesian_icp {
-
-/** \brief Constants of Algorithm 1. */
-struct SgldOptions {
-  /** alpha of eqs. (5), (8), (9); dimensionless, positive. */
-  double step_size = 1e-4;
-  /** beta of eq. (10): share of the old squared gradient that is kept each step, in
-   * [0, 1). */
-  double decay_rate = 0.9;
-  /** lambda of eq. (11), which keeps the preconditioner finite. Added to the root mean
-   * square of the mean gradient, so in its units [m, m^2/rad]. Positive. */
-  double lambda_rms = 1e-8;
-  /** Factor on the variance of the injected noise of eq. (5): "adjust_noise" of the
-   * authors' program. With other than 1 the chain does not sample the posterior. Not
-   * negative. */
-  double noise_factor = 1.0;
-  /** Block decay of the step size "towards the end of sampling": from the step
-   * block_decay_start * (steps of the chain) on, alpha is multiplied by
-   * block_decay_factor every block_decay_interval steps. Factor in (0, 1], 1 is off;
-   * interval in steps, positive; start as a fraction in [0, 1]. */
-  double block_decay_factor = 0.8;
-  int block_decay_interval = 10;
-  double block_decay_start = 0.95;
-};
 
 /** \brief Gradients at a pose with respect to (x, y, z, roll, pitch, yaw). */
 struct EnergyGradient {

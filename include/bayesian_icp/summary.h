@@ -3,15 +3,18 @@
  */
 #pragma once
 
-#include <bayesian_icp/chains.h>
 #include <bayesian_icp/data_report.h>
-#include <bayesian_icp/pose.h>
+#include <bayesian_icp/draws.h>
+#include <bayesian_icp/export.h>
 
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace bayesian_icp {
+
+struct ChainSet;
 
 /** \brief Whether the posterior can be trusted, and if not, why. */
 enum class Status {

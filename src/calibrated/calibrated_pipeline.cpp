@@ -135,8 +135,8 @@ estimateAndDraw(const SurfaceScorer& scorer,
   if (isCancelled(progress))
     return failure(Status::Cancelled, "interrupted before the first draw");
 
-  PosteriorEstimate result = estimateOf(
-      sampleCalibrated(scoresOf(scorer), prior, modes, options.chains, progress));
+  PosteriorEstimate result = estimateOf(sampleCalibrated(
+      scoresOf(scorer), prior, modes, options.calibrated, options.chains, progress));
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data =

@@ -18,11 +18,10 @@ namespace {
 constexpr double max_automatic_spread = 0.5;
 
 Vector6d
-startSpread(const Options& options, const Prior& prior)
+startSpread(const ExactOptions& options, const Prior& prior)
 {
-  if (!options.chains.initial_spread.isZero(0.0))
-    return options.chains.initial_spread;
-  return prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread);
+  return options.initial_spread.valueOr(
+      prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread));
 }
 
 /** Smallest share of Tukey's kernel that the points together must use. A tenth of them
@@ -72,24 +71,6 @@ distanceOfBest(const PoseEnergy& energy, const PosteriorEstimate& estimate)
   return std::sqrt(2.0 * least);
 }
 
-PreconditionedOptions
-samplerOptions(const Options& options)
-{
-  const Options defaults;
-  PreconditionedOptions sampler;
-  sampler.metropolis = options.exact.metropolis;
-  const bool is_langevin_set =
-      options.mini_batch.batch_size != defaults.mini_batch.batch_size ||
-      options.sgld.step_size != defaults.sgld.step_size;
-  if (is_langevin_set && sampler.metropolis == MetropolisUse::Automatic)
-    sampler.metropolis = MetropolisUse::Never;
-  if (options.mini_batch.batch_size != defaults.mini_batch.batch_size)
-    sampler.batch_size = static_cast<std::size_t>(options.mini_batch.batch_size);
-  if (options.sgld.step_size != defaults.sgld.step_size)
-    sampler.max_step_size = options.sgld.step_size;
-  return sampler;
-}
-
 } // namespace
 
 Eigen::Matrix3Xd
@@ -106,7 +87,8 @@ thinned(const Eigen::Matrix3Xd& points, std::size_t max_points)
 ChainSet
 sampleExact(const PoseEnergy& energy,
             const Vector6d& initial_pose,
-            const Options& options,
+            const ExactOptions& options,
+            const ChainOptions& chain_options,
             const std::function<bool(const Vector6d&)>& has_diverged,
             const ProgressCallback& progress)
 {
@@ -116,14 +98,13 @@ sampleExact(const PoseEnergy& energy,
   settings.fixed_batch = evenlySpread(energy.numPoints(), fixed_batch_size);
   settings.has_diverged = has_diverged;
 
-  ChainOptions chains = options.chains;
+  ChainOptions chains = chain_options;
   if (!energy.target().isThreadSafe())
     chains.num_threads = 1;
   std::vector<std::unique_ptr<StochasticEnergy>> energies;
   for (int i = 0; i < chains.num_chains; ++i)
     energies.push_back(std::make_unique<ChainPoseEnergy>(energy, settings));
-  return runPreconditionedChains(
-      std::move(energies), samplerOptions(options), chains, progress);
+  return runPreconditionedChains(std::move(energies), options, chains, progress);
 }
 
 double

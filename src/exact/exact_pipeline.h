@@ -24,7 +24,8 @@ thinned(const Eigen::Matrix3Xd& points, std::size_t max_points);
 ChainSet
 sampleExact(const PoseEnergy& energy,
             const Vector6d& initial_pose,
-            const Options& options,
+            const ExactOptions& options,
+            const ChainOptions& chain_options,
             const std::function<bool(const Vector6d&)>& has_diverged,
             const ProgressCallback& progress);
 

@@ -128,7 +128,7 @@ walkAndJump(int num_steps, PreconditionedRun& run)
 double
 learnTogether(const MetropolisChains& chains, PreconditionedRun& run)
 {
-  Random random(run.options.seed, chains.size());
+  Random random(run.chain_options.seed, chains.size());
   double walk_scale = walk_length, least = 1.0;
   auto proposal = firstProposal(run);
   for (const int num_steps : round_lengths) {

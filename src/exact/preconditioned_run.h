@@ -30,15 +30,15 @@ struct PreconditionedChain {
 /** \brief One run. */
 struct PreconditionedRun {
   PreconditionedRun(std::vector<std::unique_ptr<StochasticEnergy>> energies,
-                    const PreconditionedOptions& the_sampler,
-                    const ChainOptions& the_options,
+                    const ExactOptions& the_options,
+                    const ChainOptions& the_chain_options,
                     const ProgressCallback& progress)
-  : sampler(the_sampler)
-  , options(the_options)
+  : options(the_options)
+  , chain_options(the_chain_options)
   , state(progress)
   {
     for (std::size_t i = 0; i < energies.size(); ++i)
-      chains.push_back({std::move(energies[i]), Random(options.seed, i)});
+      chains.push_back({std::move(energies[i]), Random(chain_options.seed, i)});
     result.chains.resize(chains.size());
   }
 
@@ -47,8 +47,8 @@ struct PreconditionedRun {
   void
   forEachChain(const Work& work)
   {
-    bayesian_icp::forEachChain(options.num_chains,
-                               options.num_threads,
+    bayesian_icp::forEachChain(chain_options.num_chains,
+                               chain_options.num_threads,
                                state,
                                [&](int i) { work(static_cast<std::size_t>(i)); });
   }
@@ -62,19 +62,20 @@ struct PreconditionedRun {
 
   /** \brief Let the sampler of chain \p i make its steps. */
   void
-  advance(std::size_t i, const Schedule& schedule, Path& path)
+  advance(std::size_t i, const Schedule& steps, Path& path)
   {
     bayesian_icp::advance(
-        *chains[i].sampler, schedule, toPoseOf(i), static_cast<int>(i), state, path);
+        *chains[i].sampler, steps, toPoseOf(i), static_cast<int>(i), state, path);
   }
 
   /** \brief Index of the mode that chain \p i is in. */
   std::size_t
   modeOf(std::size_t i) const;
 
-  const PreconditionedOptions& sampler;
-  /** Burn-in and thinning become those that are used. */
-  ChainOptions options;
+  const ExactOptions& options;
+  const ChainOptions& chain_options;
+  /** Of all chains, but that each has its own number of draws. */
+  Schedule schedule;
   RunState state;
   std::vector<PreconditionedChain> chains;
   /** One per mode, in the order of the result's. */

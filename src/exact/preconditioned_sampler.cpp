@@ -18,8 +18,10 @@ constexpr int max_extensions = 3;
 bool
 usesMetropolis(const PreconditionedRun& run)
 {
-  if (run.sampler.metropolis != MetropolisUse::Automatic)
-    return run.sampler.metropolis == MetropolisUse::Always;
+  if (run.options.metropolis != MetropolisUse::Automatic)
+    return run.options.metropolis == MetropolisUse::Always;
+  if (run.options.batch_size.isGiven())
+    return false;
   const auto num_terms = static_cast<double>(run.chains.front().energy->numTerms());
   return std::any_of(run.fits.begin(), run.fits.end(), [&](const GaussianFit& fit) {
     return termNoise(fit).maxCoeff() > num_terms;
@@ -33,10 +35,11 @@ startLangevin(PreconditionedRun& run)
   std::vector<StepPlan> plans;
   Schedule common;
   for (const auto& fit : run.fits) {
-    plans.push_back(planSteps(fit,
-                              run.chains.front().energy->numTerms(),
-                              run.sampler.batch_size,
-                              run.sampler.max_step_size));
+    plans.push_back(
+        planSteps(fit,
+                  run.chains.front().energy->numTerms(),
+                  static_cast<std::size_t>(run.options.batch_size.valueOr(0)),
+                  run.options.max_step_size));
     common.num_burn_in = std::max(common.num_burn_in, plans.back().num_burn_in);
     common.thinning = std::max(common.thinning, plans.back().thinning);
   }
@@ -55,15 +58,13 @@ startLangevin(PreconditionedRun& run)
 void
 startSampling(PreconditionedRun& run)
 {
-  Schedule automatic;
+  Schedule found;
   if (usesMetropolis(run))
-    automatic.thinning = startMetropolis(run);
+    found.thinning = startMetropolis(run);
   else
-    automatic = startLangevin(run);
-  if (run.options.num_burn_in == 0)
-    run.options.num_burn_in = automatic.num_burn_in;
-  if (run.options.thinning == 1)
-    run.options.thinning = automatic.thinning;
+    found = startLangevin(run);
+  run.schedule.num_burn_in = run.options.num_burn_in.valueOr(found.num_burn_in);
+  run.schedule.thinning = run.options.thinning.valueOr(found.thinning);
   std::vector<Gaussian> gaussians;
   for (std::size_t i = 0; i < run.chains.size(); ++i)
     gaussians.push_back(run.fits[run.modeOf(i)].gaussian);
@@ -75,7 +76,9 @@ void
 sample(PreconditionedRun& run)
 {
   const auto scheduleOfChain = [&](std::size_t i) {
-    return scheduleOf(run.options, static_cast<int>(i));
+    Schedule schedule = run.schedule;
+    schedule.num_draws = run.chain_options.numDrawsOf(static_cast<int>(i));
+    return schedule;
   };
   long num_steps = 0;
   for (std::size_t i = 0; i < run.chains.size(); ++i)
@@ -117,8 +120,8 @@ extend(PreconditionedRun& run)
       positions.col(i) = positions.col(2 * i + 1).eval();
     positions.conservativeResize(6, half);
   }
-  run.options.num_burn_in = 0;
-  run.options.thinning *= 2;
+  run.schedule.num_burn_in = 0;
+  run.schedule.thinning *= 2;
   sample(run);
 }
 
@@ -126,17 +129,17 @@ extend(PreconditionedRun& run)
 
 ChainSet
 runPreconditionedChains(std::vector<std::unique_ptr<StochasticEnergy>> energies,
-                        const PreconditionedOptions& sampler,
-                        const ChainOptions& options,
+                        const ExactOptions& options,
+                        const ChainOptions& chains,
                         const ProgressCallback& progress)
 {
-  PreconditionedRun run(std::move(energies), sampler, options, progress);
+  PreconditionedRun run(std::move(energies), options, chains, progress);
   warmUp(run);
   if (!run.state.stopped()) {
     startSampling(run);
     sample(run);
     mergeOverlappingModes(run.result);
-    const int most = options.thinning > 1 ? 0 : max_extensions;
+    const int most = options.thinning.isGiven() ? 0 : max_extensions;
     for (int i = 0; i < most && needsMoreSteps(run); ++i)
       extend(run);
   }

@@ -4,26 +4,6 @@
 
 namespace bayesian_icp {
 
-const char*
-toString(Residual residual)
-{
-  return residual == Residual::PointToPoint ? "point-to-point" : "point-to-plane";
-}
-
-const char*
-toString(RobustKernel kernel)
-{
-  switch (kernel) {
-  case RobustKernel::None:
-    return "none";
-  case RobustKernel::Huber:
-    return "huber";
-  case RobustKernel::Tukey:
-    return "tukey";
-  }
-  return "unknown";
-}
-
 double
 robustEnergy(const ResidualOptions& options, double squared_residual)
 {

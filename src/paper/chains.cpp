@@ -10,17 +10,18 @@ namespace {
 Chain
 runChain(const Vector6d& guess,
          const SamplerTarget& target,
-         const SgldOptions& sgld,
-         const ChainOptions& options,
+         const PaperOptions& options,
+         const ChainOptions& chains,
          int chain_index,
          RunState& run)
 {
-  Random random(options.seed, static_cast<std::uint64_t>(chain_index));
-  const Schedule schedule = scheduleOf(options, chain_index);
+  Random random(chains.seed, static_cast<std::uint64_t>(chain_index));
+  const Schedule schedule = {
+      options.num_burn_in, options.thinning, chains.numDrawsOf(chain_index)};
   Vector6d start = guess;
   if (!options.initial_spread.isZero(0.0))
     start += options.initial_spread.cwiseProduct(random.normal6());
-  SgldChain sgld_chain(sgld,
+  SgldChain sgld_chain(options.sgld,
                        schedule.numSteps(),
                        start,
                        target.make_gradient(chain_index),
@@ -38,19 +39,19 @@ runChain(const Vector6d& guess,
 ChainSet
 runChains(const Vector6d& start,
           const SamplerTarget& target,
-          const SgldOptions& sgld,
-          const ChainOptions& options,
+          const PaperOptions& options,
+          const ChainOptions& chains,
           const ProgressCallback& progress)
 {
   ChainSet result;
-  result.chains.resize(static_cast<std::size_t>(options.num_chains));
-  RunState run(progress, numStepsOf(options));
-  forEachChain(options.num_chains,
-               target.is_thread_safe ? options.num_threads : 1,
+  result.chains.resize(static_cast<std::size_t>(chains.num_chains));
+  RunState run(progress, numStepsOf(chains, options.num_burn_in, options.thinning));
+  forEachChain(chains.num_chains,
+               target.is_thread_safe ? chains.num_threads : 1,
                run,
                [&](int i) {
                  result.chains[static_cast<std::size_t>(i)] =
-                     runChain(start, target, sgld, options, i, run);
+                     runChain(start, target, options, chains, i, run);
                });
   result.cancelled = run.cancelled();
   return result;

@@ -6,13 +6,6 @@
 
 namespace bayesian_icp {
 
-const char*
-toString(MiniBatchSampling sampling)
-{
-  return sampling == MiniBatchSampling::WithReplacement ? "with-replacement"
-                                                        : "shuffled-epochs";
-}
-
 MiniBatches::MiniBatches(std::size_t num_points,
                          std::size_t batch_size,
                          MiniBatchSampling sampling)

@@ -7,7 +7,7 @@
 #include "threads/first_exception.h"
 #include "threads/num_threads.h"
 
-#include <bayesian_icp/chains.h>
+#include <bayesian_icp/draws.h>
 
 #include <atomic>
 #include <mutex>

@@ -4,18 +4,12 @@ namespace bayesian_icp {
 
 using Eigen::Index;
 
-Schedule
-scheduleOf(const ChainOptions& options, int chain)
-{
-  return {options.num_burn_in, options.thinning, options.numDrawsOf(chain)};
-}
-
 long
-numStepsOf(const ChainOptions& options)
+numStepsOf(const ChainOptions& chains, int num_burn_in, int thinning)
 {
   long num_steps = 0;
-  for (int i = 0; i < options.num_chains; ++i)
-    num_steps += scheduleOf(options, i).numSteps();
+  for (int i = 0; i < chains.num_chains; ++i)
+    num_steps += Schedule{num_burn_in, thinning, chains.numDrawsOf(i)}.numSteps();
   return num_steps;
 }
 

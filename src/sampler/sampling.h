@@ -6,6 +6,7 @@
 
 #include "sampler/run_state.h"
 
+#include <bayesian_icp/options.h>
 #include <bayesian_icp/sampling_chain.h>
 
 #include <functional>
@@ -37,13 +38,9 @@ struct Path {
 /** \brief The pose of a position in the sampler's space. */
 using ToPose = std::function<Vector6d(const Vector6d& position)>;
 
-/** \brief The schedule of one chain according to \p options. */
-Schedule
-scheduleOf(const ChainOptions& options, int chain);
-
-/** \brief Steps of all chains. */
+/** \brief Steps of all chains, whose schedules differ in their draws only. */
 long
-numStepsOf(const ChainOptions& options);
+numStepsOf(const ChainOptions& chains, int num_burn_in, int thinning);
 
 /** \brief Let a chain make its steps, until all are made, the chain has diverged or the
  * run is stopped.

@@ -69,8 +69,10 @@ doubtRounding(double coordinate, const Options& options, Summary& summary)
 {
   // Share of the rounding in the variance of a distance from which on it matters.
   constexpr double max_share = 0.1;
-  const double noise = summary.data.is_available ? summary.data.noise_scale
-                                                 : options.likelihood.measurement_sigma;
+  const LikelihoodScale& stated =
+      options.preset == Preset::Exact ? options.exact.scale : options.paper.scale;
+  const double noise =
+      summary.data.is_available ? summary.data.noise_scale : stated.measurement_sigma;
   const auto kept = static_cast<float>(coordinate);
   const double step =
       double(std::nextafter(kept, std::numeric_limits<float>::infinity())) - kept;

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include <bayesian_icp/chains.h>
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/prior.h>
 

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include <bayesian_icp/chains.h>
 #include <bayesian_icp/summary.h>
 
 #include <string>

@@ -59,8 +59,8 @@ TEST(RegisterNormalized, TellsCallbacksInMetres)
 {
   Settings settings;
   settings.options.preset = Preset::Paper;
-  settings.options.sgld.step_size = 1e-7;
-  settings.options.mini_batch.batch_size = 20;
+  settings.options.paper.sgld.step_size = 1e-7;
+  settings.options.paper.batch_size = 20;
   settings.options.chains.num_chains = 1;
   settings.options.chains.num_draws = 20;
   settings.options.chains.num_threads = 1;

@@ -6,6 +6,7 @@
 #include "register/posterior_json.h"
 #include "support/command_helpers.h"
 
+#include <bayesian_icp/chains.h>
 #include <bayesian_icp/summary.h>
 
 #include <nlohmann/json.hpp>
@@ -75,6 +76,7 @@ runWith(const PoseMatrix& draws)
   set.chains = run.result.chains;
   run.result.summary = summarize(set);
   run.result.final_matrix = matrixOf({0.1, -0.2, 0.3, 0.4, -0.5, 0.6});
+  run.settings.guess = matrixOf({0.2, -0.1, 0.3, 0.4, -0.5, 0.6});
   return run;
 }
 
@@ -104,6 +106,7 @@ TEST_F(PosteriorFiles, PosteriorReadsBackWithoutLoss)
   EXPECT_EQ(read.status, toString(run.result.summary.status));
   EXPECT_EQ(read.status_message, run.result.summary.message);
   EXPECT_EQ(read.final_matrix, run.result.final_matrix);
+  EXPECT_EQ(read.guess, run.settings.guess);
   EXPECT_EQ(read.mean, run.result.summary.mean);
   for (const auto convention : {CovarianceConvention::Parameters,
                                 CovarianceConvention::R3xSO3,

@@ -86,8 +86,11 @@ whitenedComponent(const ChainSet& set, const CalibratedEstimate& e, int k)
 ChainSet
 sample(const StandIn& problem, const ChainOptions& options = ChainOptions())
 {
-  return sampleCalibrated(
-      problem.score(), problem.prior, {{problem.estimate}}, options);
+  return sampleCalibrated(problem.score(),
+                          problem.prior,
+                          {{problem.estimate}},
+                          CalibratedOptions(),
+                          options);
 }
 
 /** Standard normal components: mean and second moments within 4.5 Monte Carlo errors,
@@ -193,9 +196,8 @@ TEST(CalibratedDraws, AreStudentsOnlyWhereTheDataHoldThePose)
 TEST(CalibratedDraws, OfTheProductFormAreTheCalibratedGaussian)
 {
   const StandIn problem(StandIn::Options{});
-  expectTheCalibratedGaussian(
-      sampleProductForm(problem.prior, problem.estimate, ChainOptions()),
-      problem.estimate);
+  expectTheCalibratedGaussian(sampleProductForm(problem.prior, problem.estimate),
+                              problem.estimate);
 }
 
 /** The last step of sampleCalibrated() sets the covariance right; here it is looked at
@@ -235,11 +237,8 @@ TEST(CalibratedDraws, AgreeWithTheProductFormHoweverWideThePriorOfAFreeYawIs)
     options.prior_tilt = 0.1;
     const StandIn problem(options);
     EXPECT_EQ(ProductCoordinates(problem.estimate).numPriorOnly(), 1);
-    ChainOptions oracle_options;
-    oracle_options.thinning = 4;
     const ChainSet draws = sample(problem);
-    const ChainSet oracle =
-        sampleProductForm(problem.prior, problem.estimate, oracle_options);
+    const ChainSet oracle = sampleProductForm(problem.prior, problem.estimate, 4);
     EXPECT_EQ(summarize(draws).status, Status::Ok) << summarize(draws).message;
     for (int k = 0; k < 6; ++k) {
       const auto deviation = [&](const Vector6d& pose) {
@@ -332,8 +331,8 @@ TEST(CalibratedDraws, FollowTheShapeOfTheScores)
     total += share * e.curvature.col(0) * sd * 0.25 * (u * u - 1.0);
     return num;
   };
-  const ChainSet set =
-      sampleCalibrated(skewed, problem.prior, {{problem.estimate}}, ChainOptions());
+  const ChainSet set = sampleCalibrated(
+      skewed, problem.prior, {{problem.estimate}}, CalibratedOptions(), ChainOptions());
   const MatrixXd x = ofDraws(set, [&](const Vector6d& pose) {
     return twistBetween(e.mode, isometryOf(pose), e.centre)[0];
   });
@@ -369,8 +368,11 @@ TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
         total.setConstant(std::nan(""));
       return fault == NoPatch ? num / 3 : num;
     };
-    const ChainSet set =
-        sampleCalibrated(faulty, problem.prior, {{problem.estimate}}, ChainOptions());
+    const ChainSet set = sampleCalibrated(faulty,
+                                          problem.prior,
+                                          {{problem.estimate}},
+                                          CalibratedOptions(),
+                                          ChainOptions());
     const MatrixXd radii =
         ofDraws(set, [&](const Vector6d& pose) { return radius(isometryOf(pose)); });
     // The likelihood's drift points back from 6 standard deviations on; 6 more for the
@@ -403,13 +405,18 @@ TEST(CalibratedDraws, DoNotDependOnTheNumberOfThreads)
 TEST(CalibratedDraws, ReportProgressAndCanBeCancelled)
 {
   const StandIn problem(StandIn::Options{});
-  ChainOptions options;
-  options.num_draws = 40;
+  CalibratedOptions options;
   options.num_burn_in = 17;
   options.thinning = 3;
+  ChainOptions chains;
+  chains.num_draws = 40;
   const auto run = [&](const ProgressCallback& progress) {
-    return sampleCalibrated(
-        problem.score(), problem.prior, {{problem.estimate}}, options, progress);
+    return sampleCalibrated(problem.score(),
+                            problem.prior,
+                            {{problem.estimate}},
+                            options,
+                            chains,
+                            progress);
   };
   long num_calls = 0;
   std::vector<Vector6d> last_poses(4);
@@ -432,7 +439,7 @@ TEST(CalibratedDraws, ReportProgressAndCanBeCancelled)
   }
   EXPECT_EQ(num_calls, 4 * (17 + 3 * 10));
   EXPECT_FALSE(complete.cancelled);
-  options.num_threads = 1;
+  chains.num_threads = 1;
   const ChainSet stopped =
       run([](const Progress& progress) { return progress.steps < 17 + 6; });
   EXPECT_TRUE(stopped.cancelled);

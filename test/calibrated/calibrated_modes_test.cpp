@@ -127,8 +127,8 @@ TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
   EXPECT_LE(search.num_queries, num_queries);
   EXPECT_LT(least_distance, 22.5); // exceeded with a probability of 0.1 %
 
-  const ChainSet set =
-      sampleCalibrated(scoresOf(scorer), prior, search.modes, ChainOptions());
+  const ChainSet set = sampleCalibrated(
+      scoresOf(scorer), prior, search.modes, CalibratedOptions(), ChainOptions());
   ASSERT_GE(set.modes.size(), 2u);
   ASSERT_EQ(set.chains.size(), 4 * set.modes.size());
   double sum = 0.0;

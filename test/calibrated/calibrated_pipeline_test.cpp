@@ -1,6 +1,7 @@
 // Preset `calibrated` from end to end: what it finds, and what it says when it cannot.
 #include "support/test_support.h"
 
+#include <bayesian_icp/likelihood.h>
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/random.h>
 

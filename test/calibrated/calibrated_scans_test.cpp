@@ -88,8 +88,8 @@ TEST(CalibratedScans, DrawsMixWithinTheQueriesAllowed)
       num_queries += static_cast<long>(indices.size());
       return scoresOf(c.scorer)(estimate, pose, indices, hints, total);
     };
-    const ChainSet set =
-        sampleCalibrated(counted, c.prior, {{c.estimate}}, ChainOptions());
+    const ChainSet set = sampleCalibrated(
+        counted, c.prior, {{c.estimate}}, CalibratedOptions(), ChainOptions());
     EXPECT_LE(num_queries, 250000);
     const Summary summary = summarize(set);
     EXPECT_EQ(summary.status, Status::Ok) << summary.message;
@@ -97,8 +97,11 @@ TEST(CalibratedScans, DrawsMixWithinTheQueriesAllowed)
       EXPECT_GT(std::min(coordinate.bulk_ess, coordinate.tail_ess), 900.0);
     EXPECT_LT(c.distanceOfTruth(set), chi_square_999);
     // What counts the queries does not change the draws.
-    const ChainSet same =
-        sampleCalibrated(scoresOf(c.scorer), c.prior, {{c.estimate}}, ChainOptions());
+    const ChainSet same = sampleCalibrated(scoresOf(c.scorer),
+                                           c.prior,
+                                           {{c.estimate}},
+                                           CalibratedOptions(),
+                                           ChainOptions());
     EXPECT_EQ(same.chains[3].draws, set.chains[3].draws);
   }
 }
@@ -107,8 +110,8 @@ TEST(CalibratedScans, TheYawOfACanKeepsAWidePrior)
 {
   const double yaw_sd = 0.5;
   const Case c("can", yaw_sd);
-  const ChainSet set =
-      sampleCalibrated(scoresOf(c.scorer), c.prior, {{c.estimate}}, ChainOptions());
+  const ChainSet set = sampleCalibrated(
+      scoresOf(c.scorer), c.prior, {{c.estimate}}, CalibratedOptions(), ChainOptions());
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
   // A von Mises density with 1 / kappa = 0.25 is wider than a Gaussian of this

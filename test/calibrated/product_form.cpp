@@ -10,7 +10,7 @@ namespace test {
 
 namespace {
 
-constexpr int automatic_burn_in = 20;
+constexpr int num_burn_in = 20;
 
 /** Proposals of b alone keep this part of its deviation from the mean. */
 constexpr double kept_deviation = 0.6;
@@ -114,12 +114,9 @@ private:
 } // namespace
 
 ChainSet
-sampleProductForm(const Prior& prior,
-                  const CalibratedEstimate& estimate,
-                  ChainOptions options)
+sampleProductForm(const Prior& prior, const CalibratedEstimate& estimate, int thinning)
 {
-  if (options.num_burn_in == 0)
-    options.num_burn_in = automatic_burn_in;
+  const ChainOptions options;
   const ProductCoordinates coordinates(estimate);
   const auto to_pose = [&](const Vector6d& z) {
     return poseOf(coordinates.pose(z).matrix());
@@ -131,7 +128,8 @@ sampleProductForm(const Prior& prior,
     Random random(options.seed, static_cast<std::uint64_t>(i));
     ProductFormChain chain(coordinates, prior, random);
     Path path;
-    advance(chain, scheduleOf(options, i), to_pose, i, run, path);
+    const Schedule schedule = {num_burn_in, thinning, options.numDrawsOf(i)};
+    advance(chain, schedule, to_pose, i, run, path);
     result.chains.push_back(chainOf(path, to_pose));
   }
   return result;

@@ -16,7 +16,7 @@ namespace test {
 ChainSet
 sampleProductForm(const Prior& prior,
                   const CalibratedEstimate& estimate,
-                  ChainOptions options);
+                  int thinning = 1);
 
 } // namespace test
 } // namespace bayesian_icp

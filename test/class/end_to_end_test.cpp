@@ -44,10 +44,12 @@ load(const std::string& name)
 void
 useSmallSteps(BayesianIcp& icp)
 {
-  icp.setPreset(bayesian_icp::Preset::Paper);
-  icp.setStepSize(1e-5);
-  icp.setBurnIn(500);
-  icp.setNumberOfSamples(4000);
+  bayesian_icp::Options options;
+  options.preset = bayesian_icp::Preset::Paper;
+  options.paper.sgld.step_size = 1e-5;
+  options.paper.num_burn_in = 500;
+  options.chains.num_draws = 4000;
+  icp.setOptions(options);
   icp.setMaximumIterations(100);
 }
 

@@ -124,7 +124,9 @@ TEST_F(PluginTest, AChainThatRunsAwayDoesNotReachThePlugins)
   icp.addCorrespondenceRejector(rejector);
   icp.setPrior(bayesian_icp::Vector6d::Constant(std::nan("")),
                bayesian_icp::Vector6d::Constant(HUGE_VAL));
-  icp.setStepSize(1e40);
+  bayesian_icp::Options options = icp.getOptions();
+  options.paper.sgld.step_size = 1e40;
+  icp.setOptions(options);
   icp.align(output);
   EXPECT_TRUE(icp.hasConverged());
   EXPECT_NE(icp.getSummary().status, bayesian_icp::Status::Ok);
@@ -347,11 +349,14 @@ TEST_F(PluginTest, OwnSearchTreeIsAskedByEveryStep)
 double
 yawErrorOfExact(BayesianIcp& icp, const Cloud::Ptr& target)
 {
-  icp.setPreset(bayesian_icp::Preset::Exact);
-  icp.setNumberOfSamples(200);
-  icp.setMeasurementSigma(0.005);
-  icp.setEffectivePoints(300);
-  icp.setInitialSpread(bayesian_icp::Vector6d::Constant(0.001));
+  bayesian_icp::Options options = icp.getOptions();
+  options.preset = bayesian_icp::Preset::Exact;
+  options.chains.num_draws = 200;
+  options.exact.scale.measurement_sigma = 0.005;
+  options.exact.scale.effective_points = 300;
+  options.exact.initial_spread =
+      bayesian_icp::Vector6d(bayesian_icp::Vector6d::Constant(0.001));
+  icp.setOptions(options);
   icp.setInputTarget(target);
   Cloud output;
   icp.align(output);

@@ -329,7 +329,6 @@ TEST(Posterior, IncludesTheGuessAndHasItAsPriorMean)
   transformPointCloud(*scans.source, *source, away);
   BayesianIcp icp;
   icp.setNumberOfSamples(400);
-  icp.setStepSize(1e-6);
   icp.setInputSource(source);
   icp.setInputTarget(scans.target);
   const QuietConsole quiet;
@@ -345,14 +344,59 @@ TEST(Posterior, IncludesTheGuessAndHasItAsPriorMean)
 void
 useExact(BayesianIcp& icp, const Scans<PointXYZ>& scans)
 {
-  icp.setPreset(bayesian_icp::Preset::Exact);
-  icp.setMeasurementSigma(0.02);
-  icp.setEffectivePoints(100.0);
+  bayesian_icp::Options options;
+  options.preset = bayesian_icp::Preset::Exact;
   bayesian_icp::Vector6d spread;
   spread << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
-  icp.setInitialSpread(spread);
+  options.exact.initial_spread = spread;
+  icp.setOptions(options);
+  icp.setMeasurementSigma(0.02);
+  icp.setEffectivePoints(100.0);
   icp.setInputSource(scans.source);
   icp.setInputTarget(scans.target);
+}
+
+TEST(Calibrated, RefusesAScale)
+{
+  const Scans<PointXYZ> scans;
+  const QuietConsole quiet;
+  Cloud output;
+  BayesianIcp icp;
+  useFewSamples(icp);
+  icp.setInputSource(scans.source);
+  icp.setInputTarget(scans.target);
+  icp.setMeasurementSigma(1.0); // the default, and yet stated
+  icp.align(output);
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
+  EXPECT_NE(icp.getSummary().message.find("measurement_sigma"), std::string::npos);
+  EXPECT_EQ(icp.getSamples().rows(), 0);
+  EXPECT_TRUE(icp.hasConverged());
+  icp.setOptions(icp.getOptions());
+  icp.align(output);
+  EXPECT_EQ(icp.getSamples().rows(), 40);
+}
+
+TEST(Paper, HasAGateThatIsTheSmallerOfItsOwnAndPcls)
+{
+  const Scans<PointXYZ> scans;
+  Cloud output;
+  const auto draws = [&](double gate, double pcl_gate) {
+    BayesianIcp icp;
+    usePaper(icp);
+    auto options = icp.getOptions();
+    options.paper.sgld.step_size = 1e-7;
+    options.paper.max_distance = gate;
+    icp.setOptions(options);
+    icp.setMaximumIterations(1);
+    icp.setMaxCorrespondenceDistance(pcl_gate);
+    icp.setInputSource(scans.source);
+    icp.setInputTarget(scans.target);
+    icp.align(output);
+    return (icp.getSamples());
+  };
+  const auto gated = draws(0.03, 100.0);
+  EXPECT_EQ(gated, draws(100.0, 0.03));
+  EXPECT_NE(gated, draws(100.0, 100.0));
 }
 
 TEST(Exact, GivesTheSameDrawsForEveryNumberOfThreadsAndAMeanNearTheTruth)

@@ -70,7 +70,10 @@ casesOfOptions()
     return [value](Options& options) { options.prior.variance.setConstant(value); };
   };
   const auto batch = [](int size) {
-    return [size](Options& options) { options.mini_batch.batch_size = size; };
+    return [size](Options& options) {
+      options.paper.batch_size = size;
+      options.exact.batch_size = size;
+    };
   };
   const auto usual = [] { return usualPair(); };
   return {
@@ -103,19 +106,19 @@ casesOfOptions()
        "mini-batches of 0 points",
        usual,
        batch(0),
-       {refused(Status::InvalidOptions, "batch_size is 0"),
+       {no_such_option,
         refused(Status::InvalidOptions, "batch_size is 0"),
         refused(Status::InvalidOptions, "batch_size is 0")}},
       {"BatchOne",
        "mini-batches of 1 point",
        usual,
        batch(1),
-       {unused, not_mixed, not_mixed}},
+       {no_such_option, not_mixed, not_mixed}},
       {"BatchHuge",
        "mini-batches of 2^31 - 1 points",
        usual,
        batch(std::numeric_limits<int>::max()),
-       {unused, right, not_mixed}},
+       {no_such_option, right, not_mixed}},
       {"NoDraws",
        "zero draws",
        usual,
@@ -166,8 +169,8 @@ tortureOptions(Preset preset)
   options.prior.variance.setConstant(0.01);
   options.prior.frame = PriorFrame::SourceCentroid;
   if (preset == Preset::Exact) {
-    options.likelihood.measurement_sigma = 0.005;
-    options.likelihood.effective_points = 150.0;
+    options.exact.scale.measurement_sigma = 0.005;
+    options.exact.scale.effective_points = 150.0;
     options.exact.max_source_points = 500;
     options.chains.num_draws = 1000;
   }
@@ -180,12 +183,12 @@ Options
 smallStepOptions()
 {
   Options options = tortureOptions(Preset::Paper);
-  options.likelihood.measurement_sigma = 0.03;
-  options.sgld.step_size = 3e-9;
-  options.mini_batch.batch_size = 40;
+  options.paper.scale.measurement_sigma = 0.03;
+  options.paper.sgld.step_size = 3e-9;
+  options.paper.batch_size = 40;
+  options.paper.thinning = 10;
+  options.paper.num_burn_in = 200;
   options.chains.num_draws = 2000;
-  options.chains.thinning = 10;
-  options.chains.num_burn_in = 200;
   return options;
 }
 

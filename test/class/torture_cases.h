@@ -27,8 +27,8 @@ enum class Verdict {
   RightButWarned,
   /** No draws: a status and a message that says why. */
   Refused,
-  /** The case's options change nothing: the draws are those without them. */
-  Unused,
+  /** The preset does not have the option that the case changes. */
+  NoSuchOption,
   /** The case is not tried. */
   NotTried
 };

@@ -15,7 +15,8 @@ std::function<void(Options&)>
 scaledOptions(double scale)
 {
   return [scale](Options& options) {
-    options.likelihood.measurement_sigma *= scale;
+    options.paper.scale.measurement_sigma *= scale;
+    options.exact.scale.measurement_sigma *= scale;
     options.prior.variance.head<3>() *= scale * scale;
   };
 }

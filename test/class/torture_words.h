@@ -43,7 +43,7 @@ refused(Status status, const char* reason)
   return {Verdict::Refused, {{status, reason}}};
 }
 
-static const Expectation unused = {Verdict::Unused, {}};
+static const Expectation no_such_option = {Verdict::NoSuchOption, {}};
 
 static const Expectation not_mixed = warned(Status::NotMixed, "did not mix");
 

@@ -191,6 +191,7 @@ class BatchRefused(BatchTest):
             ([{**good, "gues": "x"}], "unknown key 'gues'"),
             ([{**good, "guess": [1, 2]}], "six numbers"),
             ([{**good, "settings": {"chains": {"sed": 1}}}], "chains.sed"),
+            ([{**good, "settings": {"exact": {"kernel": "huber"}}}], "exact belongs to preset"),
             ([{**good, "settings": {"chains": {"num_draws": -1}}}], "num_draws", "-1"),
         ):
             with self.subTest(content=content):

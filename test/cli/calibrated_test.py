@@ -115,28 +115,6 @@ class DataSection(ToolTest):
 
 
 class CalibratedOptions(ToolTest):
-    def test_options_without_effect_are_refused(self):
-        for word in (
-            "sigma=0.01",
-            "effective-points=100",
-            "batch-size=10",
-            "batch-sampling=shuffled-epochs",
-            "step-size=0.1",
-            "lambda-rms=0.1",
-            "initial-spread=0.1",
-            "residual=point-to-plane",
-            "kernel=huber",
-            "metropolis=always",
-            "max-source-points=100",
-        ):
-            with self.subTest(option=word):
-                result = run("a.pcd", "b.pcd", "--preset=calibrated", f"--{word}")
-                name = word.split("=")[0]
-                self.assert_refused(2, result, f"--{name}: has no effect with preset calibrated")
-        for name in ("calibrated-points", "mode-points"):
-            result = run("a.pcd", "b.pcd", "--preset=exact", f"--{name}=100")
-            self.assert_refused(2, result, f"--{name}: has no effect with preset exact")
-
     def test_bad_values(self):
         for words, *reason in (
             (["--prior-variance=inf"], "--prior-variance: prior.variance[x] is inf", "finite"),
@@ -169,14 +147,6 @@ class CalibratedOptions(ToolTest):
         samples, repeated = self.run_to_files(*pair, "--config", config)
         self.assertEqual(samples, expected)
         self.assertEqual(repeated["options"], document["options"])
-
-    def test_settings_of_a_file_without_effect_are_noted(self):
-        settings = {"posterior": {"measurement_sigma_m": 0.01}, "exact": {"kernel": "huber"}}
-        config = self.file("config.json", json.dumps(settings))
-        result = run(*scans("mug"), "--config", config, *PRESET)
-        self.assert_ran(result)
-        note = "note: posterior.measurement_sigma_m, exact.kernel: no effect with preset calibrated"
-        self.assertIn(note, result.stderr)
 
     def test_a_target_without_a_surface_is_a_status(self):
         points = [(0.1, 0.2, 0.3)] * 100

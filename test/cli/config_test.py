@@ -98,6 +98,41 @@ class OwnLayout(ConfigTest):
         self.refuse(2, {"chain": {}}, "unknown key 'chain'")
         self.refuse(2, {"chains": {"sed": 5}}, "unknown key 'chains.sed'")
 
+    def test_keys_of_another_preset(self):
+        belongs = "belongs to preset exact, and the preset is "
+        self.refuse(2, {"exact": {"kernel": "huber"}}, f"exact {belongs}paper")
+        path = self.config({"posterior": {"preset": "exact"}, "exact": {"kernel": "huber"}})
+        result = run(*self.small_pair(), "--config", path, "--preset=calibrated")
+        self.assert_refused(2, result, f"{path}: exact {belongs}calibrated")
+        path = self.config({"posterior": {"measurement_sigma_m": 0.1}})
+        result = run(*self.small_pair(), "--config", path)
+        self.assert_refused(2, result, "posterior.measurement_sigma_m belongs to presets paper and exact")
+        result = run(*self.small_pair(), "--config", self.config(AUTHORS_CONFIG), "--preset=exact")
+        self.assert_refused(2, result, "is for preset paper, and the preset is exact")
+
+    def test_the_preset_of_the_command_line_comes_before_the_files(self):
+        for content in ({"mini_batch": {"batch_size": 9}}, {"posterior": {"preset": "exact"}}):
+            options, _ = self.options(content, *FAST)
+            self.assertEqual(options["posterior"]["preset"], "paper")
+
+    def test_settings_of_former_versions(self):
+        self.refuse(2, {"sgld": {}, "exact": {}, "calibrated": {}}, "as former versions wrote them")
+
+    def test_automatic_values(self):
+        content = {
+            "posterior": {"preset": "exact"},
+            "chains": {"num_burn_in": 5, "thinning": "automatic", "initial_spread_m_rad": "automatic"},
+        }
+        options, _ = self.options(content, "--samples=60")
+        self.assertEqual(options["chains"]["num_burn_in"], 5)
+        for group, key in (
+            ("chains", "thinning"),
+            ("chains", "initial_spread_m_rad"),
+            ("mini_batch", "batch_size"),
+        ):
+            self.assertEqual(options[group][key], "automatic")
+        self.refuse(2, {"chains": {"thinning": "automatic"}}, "chains.thinning is '\"automatic\"'")
+
     def test_malformed_values(self):
         bad = [
             ("chains", "num_draws", "9"),
@@ -121,7 +156,7 @@ class OwnLayout(ConfigTest):
 
     def test_values_out_of_range(self):
         path = self.config({"sgld": {"decay_rate": 2}})
-        result = run(*self.small_pair(), "--config", path)
+        result = run(*self.small_pair(), "--config", path, "--preset=paper")
         self.assert_refused(2, result, "--decay-rate: decay_rate is 2")
 
     def test_other_schemas(self):

@@ -112,10 +112,10 @@ class Normalize(ToolTest):
 
     def test_refusals(self):
         pair = self.pair(1.0)
-        result = run(*pair, "--preset=calibrated", "--normalize-cloud")
-        self.assert_refused(2, result, "--normalize-cloud: has no effect with preset calibrated")
-        result = run(*pair, "--preset=exact", "--normalize-cloud")
-        self.assert_refused(2, result, "--normalize-cloud: has no effect with preset exact")
+        for preset in ("calibrated", "exact"):
+            result = run(*pair, f"--preset={preset}", "--normalize-cloud")
+            message = f"--normalize-cloud belongs to preset paper, and the preset is {preset}"
+            self.assert_refused(2, result, message)
         result = run(*pair, "--config", self.configs()[1], "--max-distance=1")
         self.assert_refused(2, result, "--max-distance: is in metres")
 

@@ -40,6 +40,7 @@ class Usage(ToolTest):
             "kernel": "none",
             "kernel-width": "0.01",
             "metropolis": "automatic",
+            "max-step-size": "0.6",
             "max-source-points": "4000",
             "initial-spread": "0",
             "seed": "1",
@@ -51,6 +52,8 @@ class Usage(ToolTest):
             self.assertRegex(
                 text, rf"--{name}[ \]][^(]*(\([^)d]*\)[^(]*)*\(default {re.escape(default)}\)"
             )
+        for name in ("burn-in", "thinning", "batch-size", "initial-spread"):
+            self.assertRegex(text, rf"--{name} [^(]*\(default automatic\)")
         for name in ("guess", "prior-mean", "reciprocal", "mean", "config", "json", "quiet"):
             self.assertIn(f"--{name} ", text)
 
@@ -88,7 +91,8 @@ class Usage(ToolTest):
         ]
         for name, value in bad:
             with self.subTest(option=name, value=value):
-                result = run("a.pcd", "b.pcd", f"--{name}={value}" if value else f"--{name}=")
+                preset = [] if name == "preset" else ["--preset=paper"]
+                result = run("a.pcd", "b.pcd", *preset, f"--{name}={value}")
                 self.assert_refused(2, result, name, value)
 
     def test_values_out_of_range(self):
@@ -118,7 +122,7 @@ class Usage(ToolTest):
         ]
         for name, value, complaint in bad:
             with self.subTest(option=name, value=value):
-                result = run("a.pcd", "b.pcd", f"--{name}", value)
+                result = run("a.pcd", "b.pcd", "--preset=paper", f"--{name}", value)
                 self.assert_refused(2, result, f"--{name}: ", complaint)
 
     def test_quiet_and_json_exclude_each_other(self):
@@ -171,15 +175,25 @@ class Values(ToolTest):
         prior = self.options("--prior-variance", "1,2,3,4,5,inf")["prior"]
         self.assertEqual(prior["variance_m2_rad2"], [1, 2, 3, 4, 5, None])
 
-    def test_every_option_arrives(self):
-        given = {
-            "chains": ("chains", "num_chains", 3),
-            "samples": ("chains", "num_draws", 61),
-            "burn-in": ("chains", "num_burn_in", 7),
-            "thinning": ("chains", "thinning", 2),
-            "seed": ("chains", "seed", 18446744073709551615),
-            "threads": ("chains", "num_threads", 2),
-            "batch-size": ("mini_batch", "batch_size", 31),
+    SHARED = {
+        "chains": ("chains", "num_chains", 3),
+        "samples": ("chains", "num_draws", 61),
+        "seed": ("chains", "seed", 18446744073709551615),
+        "threads": ("chains", "num_threads", 2),
+        "prior-frame": ("prior", "frame", "source-centroid"),
+        "iterations": ("registration", "icp_iterations", 3),
+        "burn-in": ("chains", "num_burn_in", 7),
+        "thinning": ("chains", "thinning", 2),
+    }
+    SCALE = {
+        "effective-points": ("posterior", "effective_points", 500),
+        "sigma": ("posterior", "measurement_sigma_m", 0.5),
+        "batch-size": ("mini_batch", "batch_size", 31),
+        "initial-spread": ("chains", "initial_spread_m_rad", [0.25] * 6),
+    }
+    OF_PRESETS = {
+        "paper": {
+            **SCALE,
             "batch-sampling": ("mini_batch", "sampling", "shuffled-epochs"),
             "step-size": ("sgld", "step_size", 2e-6),
             "decay-rate": ("sgld", "decay_rate", 0.8),
@@ -188,27 +202,59 @@ class Values(ToolTest):
             "block-decay-factor": ("sgld", "block_decay_factor", 0.7),
             "block-decay-interval": ("sgld", "block_decay_interval", 5),
             "block-decay-start": ("sgld", "block_decay_start", 0.25),
-            "effective-points": ("posterior", "effective_points", 500),
-            "sigma": ("posterior", "measurement_sigma_m", 0.5),
-            "preset": ("posterior", "preset", "paper"),
-            "prior-frame": ("prior", "frame", "source-centroid"),
+        },
+        "exact": {
+            **SCALE,
+            "max-step-size": ("exact", "max_step_size", 0.5),
+            "metropolis": ("exact", "metropolis", "never"),
             "residual": ("exact", "residual", "point-to-plane"),
             "kernel": ("exact", "kernel", "tukey"),
             "kernel-width": ("exact", "kernel_width_m", 0.125),
-            "metropolis": ("exact", "metropolis", "always"),
             "max-source-points": ("exact", "max_source_points", 77),
-            "iterations": ("registration", "icp_iterations", 3),
-        }
-        words = [f"--{name}={value}" for name, (_, _, value) in given.items()]
-        words += ["--reciprocal", "--one-to-one", "--mean"]
-        # FAST has some of them already.
-        result = run(*self.small_pair(), "--json", *words)
-        self.assert_ran(result)
-        options = strict_json(result.stdout)["options"]
-        for group, key, value in given.values():
-            self.assertEqual(options[group][key], value)
-        for key in ("reciprocal", "one_to_one", "use_mean"):
-            self.assertIs(options["registration"][key], True)
+        },
+        "calibrated": {
+            "calibrated-points": ("calibrated", "max_source_points", 200),
+            "mode-points": ("calibrated", "num_mode_points", 100),
+        },
+    }
+
+    def test_every_option_arrives(self):
+        for preset, own in self.OF_PRESETS.items():
+            given = {**self.SHARED, **own, "preset": ("posterior", "preset", preset)}
+            words = [
+                f"--{name}={value[0] if isinstance(value, list) else value}"
+                for name, (_, _, value) in given.items()
+            ]
+            # No pair is filtered where normals are needed.
+            flags = ["use_mean"] if preset == "exact" else ["reciprocal", "one_to_one", "use_mean"]
+            words += [f"--{name.replace('use_', '').replace('_', '-')}" for name in flags]
+            result = run(*self.small_pair(), "--json", *words)
+            self.assert_ran(result)
+            options = strict_json(result.stdout)["options"]
+            for group, key, value in given.values():
+                self.assertEqual(options[group][key], value)
+            for key in flags:
+                self.assertIs(options["registration"][key], True)
+
+    def test_options_of_other_presets_are_refused(self):
+        for preset, own in self.OF_PRESETS.items():
+            for owner, options in self.OF_PRESETS.items():
+                for name in options.keys() - own.keys():
+                    result = run("a.pcd", "b.pcd", f"--preset={preset}", f"--{name}=0.5")
+                    self.assert_refused(2, result, f"--{name} belongs to preset", owner)
+                    self.assert_refused(2, result, f", and the preset is {preset}")
+
+    def test_settings_have_the_groups_of_the_preset_only(self):
+        shared = {"registration", "posterior", "prior", "chains"}
+        for preset, groups in (
+            ("paper", {"mini_batch", "sgld"}),
+            ("exact", {"mini_batch", "exact"}),
+            ("calibrated", {"calibrated"}),
+        ):
+            result = run(*self.small_pair(), "--json", f"--preset={preset}", "--samples=60")
+            options = strict_json(result.stdout)["options"]
+            self.assertEqual(set(options), shared | groups)
+            self.assertEqual(options["chains"]["thinning"], 1 if preset == "paper" else "automatic")
 
 
 class GuessFiles(ToolTest):

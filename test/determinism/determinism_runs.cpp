@@ -116,8 +116,8 @@ exactRun(const RunSettings& settings, MetropolisUse metropolis)
 {
   const Scans scans = makeScans(settings.is_nudged);
   Options options = quickOptions(Preset::Exact, settings.num_threads);
-  options.likelihood.effective_points = 100.0;
-  options.likelihood.measurement_sigma = 0.02;
+  options.exact.scale.effective_points = 100.0;
+  options.exact.scale.measurement_sigma = 0.02;
   options.exact.metropolis = metropolis;
   return recordOf(
       estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));

@@ -133,7 +133,7 @@ TEST_F(ScanPairs, BrokenPairsAreNamedAndLeftOut)
   writeScanPair(folder_, "good");
   writeScanPair(folder_, "broken");
   fs::resize_file(folder_ / "broken/target.pcd", 200);
-  PaperOptions options;
+  PaperStudyOptions options;
   options.data_folder = folder_.string();
   options.pairs = {"broken", "good", "missing"};
   std::ostringstream log;

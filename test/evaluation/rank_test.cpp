@@ -79,8 +79,8 @@ TEST(SimulationBasedCalibration, RanksOfNarrowDrawsAreNot)
     ChainOptions options;
     options.seed = seed;
     options.num_threads = 1;
-    const ChainSet chains =
-        sampleCalibrated(model.score(), model.prior(), {{narrow}}, options);
+    const ChainSet chains = sampleCalibrated(
+        model.score(), model.prior(), {{narrow}}, CalibratedOptions(), options);
     runs.push_back(ranksOf(model.truth(), pooledDraws(chains.chains), model.prior()));
   }
   EXPECT_GT(largestChiSquare(runs), 2.0 * max_rank_chi_square);

@@ -1,6 +1,7 @@
 // Preset `exact` on a cube started wide: 24 poses fit equally well. Whatever chains
 // find has to be reported as what it is, a share of the symmetric poses.
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
 
@@ -52,12 +53,14 @@ TEST_P(Cube, StartedWideIsFoundInSymmetricPosesAndNeverCalledMixed)
   Options options;
   options.preset = Preset::Exact;
   options.exact.metropolis = GetParam();
-  options.likelihood.effective_points = 300.0;
-  options.likelihood.measurement_sigma = 0.003;
+  options.exact.scale.effective_points = 300.0;
+  options.exact.scale.measurement_sigma = 0.003;
   options.prior.variance << 0.01, 0.01, 0.01, 1.0, 1.0, 1.0;
   options.chains.num_chains = 8;
   options.chains.num_draws = 400;
-  options.chains.initial_spread << 0.02, 0.02, 0.02, 1.0, 1.0, 1.0;
+  Vector6d spread;
+  spread << 0.02, 0.02, 0.02, 1.0, 1.0, 1.0;
+  options.exact.initial_spread = spread;
   const auto estimate =
       estimatePosterior(source, KdTree(target), Vector6d::Zero(), options);
 

@@ -1,5 +1,6 @@
 // Preset `exact` where the posterior has several modes.
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
 
@@ -47,12 +48,14 @@ estimateGroove(MetropolisUse metropolis, int num_shifts, int num_draws)
   const Groove groove(num_shifts);
   Options options;
   options.preset = Preset::Exact;
-  options.likelihood.effective_points = 300.0;
-  options.likelihood.measurement_sigma = 0.003;
+  options.exact.scale.effective_points = 300.0;
+  options.exact.scale.measurement_sigma = 0.003;
   options.exact.metropolis = metropolis;
   options.chains.num_chains = 8;
   options.chains.num_draws = num_draws;
-  options.chains.initial_spread << 0.08, 0.01, 0.01, 0.01, 0.01, 0.01;
+  Vector6d spread;
+  spread << 0.08, 0.01, 0.01, 0.01, 0.01, 0.01;
+  options.exact.initial_spread = spread;
   return estimatePosterior(
       groove.source, KdTree(groove.target), Vector6d::Zero(), options);
 }

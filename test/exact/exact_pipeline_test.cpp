@@ -2,6 +2,7 @@
 #include "exact/pose_energy.h"
 #include "support/test_support.h"
 
+#include <bayesian_icp/likelihood.h>
 #include <bayesian_icp/pipeline.h>
 
 #include <gtest/gtest.h>
@@ -59,9 +60,11 @@ exactOptions()
 {
   Options options;
   options.preset = Preset::Exact;
-  options.likelihood.effective_points = 100.0;
-  options.likelihood.measurement_sigma = 0.01;
-  options.chains.initial_spread << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
+  options.exact.scale.effective_points = 100.0;
+  options.exact.scale.measurement_sigma = 0.01;
+  Vector6d spread;
+  spread << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
+  options.exact.initial_spread = spread;
   return options;
 }
 
@@ -130,7 +133,7 @@ TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
     const PoseEnergy energy(scans.source,
                             target,
                             Prior(Vector6d::Zero(), options.prior.variance),
-                            options.likelihood.weight(),
+                            options.exact.scale.weight(),
                             options.exact.residual);
     const Moments draws = momentsOf(estimate.samples);
     const Moments reference = momentsOf(randomWalk(energy, draws, 10000));
@@ -239,7 +242,17 @@ TEST(Exact, OptionsAreChecked)
   expect("kernel_width", [](Options& o) { o.exact.residual.kernel_width = 0.0; });
   expect("max_distance", [](Options& o) { o.exact.residual.max_distance = -1.0; });
   expect("max_source_points", [](Options& o) { o.exact.max_source_points = 0; });
-  expect("step_size", [](Options& o) { o.sgld.step_size = 1.5; });
+  expect("max_step_size", [](Options& o) { o.exact.max_step_size = 1.5; });
+  expect("batch_size", [](Options& o) { o.exact.batch_size = 0; });
+  expect("num_burn_in", [](Options& o) { o.exact.num_burn_in = -1; });
+  expect("thinning", [](Options& o) { o.exact.thinning = 0; });
+  expect("initial_spread", [](Options& o) {
+    o.exact.initial_spread = Vector6d(Vector6d::Constant(-1.0));
+  });
+  expect("metropolis is always", [](Options& o) {
+    o.exact.batch_size = 10;
+    o.exact.metropolis = MetropolisUse::Always;
+  });
 }
 
 } // namespace

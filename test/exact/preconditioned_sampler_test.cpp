@@ -66,7 +66,7 @@ TEST(PreconditionedSampler, GaussiansWellAndBadlyConditioned)
     const Matrix6d precision = randomPrecision(30.0, 30.0 * condition);
     const auto energy = gaussianEnergy(mean, precision);
     for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
-      PreconditionedOptions sampler;
+      ExactOptions sampler;
       sampler.metropolis = metropolis;
       const ChainSet set = sample(energy, sampler, chainOptions(4000));
       expectMoments(set, mean, precision.inverse());
@@ -86,8 +86,8 @@ TEST(PreconditionedSampler, NoiseOfTheGradientDoesNotWidenTheDraws)
   scale << 1.0, 5.0, 2.0, 0.5, 3.0, 1.0;
   const Matrix6d root = Eigen::LLT<Matrix6d>(precision).matrixL();
   energy.term_noise = std::sqrt(160.0) * root * scale.asDiagonal();
-  for (const std::size_t batch_size : {0, 160}) {
-    PreconditionedOptions sampler;
+  for (const Automatic<int>& batch_size : {Automatic<int>(), Automatic<int>(160)}) {
+    ExactOptions sampler;
     sampler.batch_size = batch_size;
     const ChainSet set = sample(energy, sampler, chainOptions(4000));
     expectMoments(set, Vector6d::Zero(), precision.inverse());
@@ -101,7 +101,7 @@ TEST(PreconditionedSampler, ADirectionWithoutLikelihoodKeepsItsPrior)
   auto energy = gaussianEnergy(Vector6d::Zero(), precision.asDiagonal());
   energy.prior_precision.setConstant(4.0); // sd 0.5
   energy.start_spread = 0.5;
-  const ChainSet set = sample(energy, PreconditionedOptions(), chainOptions(4000));
+  const ChainSet set = sample(energy, ExactOptions(), chainOptions(4000));
   const Vector6d total = precision + energy.prior_precision;
   expectMoments(set, Vector6d::Zero(), total.cwiseInverse().asDiagonal());
 }
@@ -111,7 +111,7 @@ TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
   const double bend = 0.6;
   Vector6d variance = Vector6d::Constant(0.09);
   variance[1] = 0.05 * 0.05 + 2.0 * bend * bend * std::pow(0.3, 4);
-  PreconditionedOptions sampler;
+  ExactOptions sampler;
   sampler.metropolis = MetropolisUse::Always;
   const Summary exact = summarize(sample(banana(bend), sampler, chainOptions(8000)));
   // Langevin steps of one length do not resolve a narrow bend: a milder one.
@@ -119,7 +119,7 @@ TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
   Vector6d mild_variance = variance;
   mild_variance[1] = 0.05 * 0.05 + 2.0 * mild_bend * mild_bend * std::pow(0.3, 4);
   const Summary langevin =
-      summarize(sample(banana(mild_bend), PreconditionedOptions(), chainOptions(8000)));
+      summarize(sample(banana(mild_bend), ExactOptions(), chainOptions(8000)));
   EXPECT_EQ(exact.status, Status::Ok) << exact.message;
   for (std::size_t k = 0; k < 6; ++k) {
     const auto& c = exact.coordinates[k];
@@ -136,7 +136,7 @@ TEST(Modes, ThatRemainAreReportedWithWeightMeanAndChains)
 {
   auto options = chainOptions(2000);
   options.num_chains = 8;
-  const ChainSet set = sample(mixture(1.0), PreconditionedOptions(), options);
+  const ChainSet set = sample(mixture(1.0), ExactOptions(), options);
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
   EXPECT_NE(summary.message.find("2 modes"), std::string::npos) << summary.message;
@@ -156,7 +156,7 @@ TEST(Modes, ThatAreClearlyWorseLoseTheirChains)
 {
   auto options = chainOptions(2000);
   options.num_chains = 8;
-  const ChainSet set = sample(mixture(30.0), PreconditionedOptions(), options);
+  const ChainSet set = sample(mixture(30.0), ExactOptions(), options);
   EXPECT_GT(set.num_moved_chains, 0);
   EXPECT_NEAR(set.moved_by_nats, 30.0, 2.0);
   const Summary summary = summarize(set);
@@ -172,7 +172,7 @@ TEST(PreconditionedSampler, DrawsDoNotDependOnTheNumberOfThreads)
   energy.num_terms = 1000;
   energy.term_noise = 20.0 * Matrix6d::Identity();
   for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
-    PreconditionedOptions sampler;
+    ExactOptions sampler;
     sampler.metropolis = metropolis;
     auto options = chainOptions(100);
     options.num_threads = 1;
@@ -188,15 +188,15 @@ TEST(PreconditionedSampler, DrawsDoNotDependOnTheNumberOfThreads)
 
 TEST(PreconditionedSampler, ObeysBurnInAndThinningAndReportsThem)
 {
-  auto options = chainOptions(40);
+  ExactOptions options;
   options.num_burn_in = 17;
   options.thinning = 3;
   long warm_up_calls = 0, steps = 0, total = 0;
   std::vector<Vector6d> kept;
   const ChainSet set =
       sample(gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity()),
-             PreconditionedOptions(),
              options,
+             chainOptions(40),
              [&](const Progress& p) {
                p.steps == 0 ? ++warm_up_calls : ++steps;
                total = p.total_steps;
@@ -218,16 +218,14 @@ TEST(PreconditionedSampler, CanBeCancelledInWarmUpAndInSampling)
 {
   const TestEnergy target =
       gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity());
-  const ChainSet early =
-      sample(target, PreconditionedOptions(), chainOptions(400), [](const Progress&) {
-        return false;
-      });
+  const ChainSet early = sample(
+      target, ExactOptions(), chainOptions(400), [](const Progress&) { return false; });
   EXPECT_TRUE(early.cancelled);
   for (const auto& chain : early.chains)
     EXPECT_EQ(chain.draws.rows(), 0);
   EXPECT_EQ(summarize(early).status, Status::Cancelled);
   const ChainSet late =
-      sample(target, PreconditionedOptions(), chainOptions(400), [](const Progress& p) {
+      sample(target, ExactOptions(), chainOptions(400), [](const Progress& p) {
         return p.steps < 300;
       });
   EXPECT_TRUE(late.cancelled);
@@ -241,8 +239,7 @@ TEST(PreconditionedSampler, ExceptionsReachTheCaller)
   energy.likelihood_gradient = [](const Vector6d&) -> Vector6d {
     throw std::runtime_error("broken");
   };
-  EXPECT_THROW(sample(energy, PreconditionedOptions(), chainOptions(40)),
-               std::runtime_error);
+  EXPECT_THROW(sample(energy, ExactOptions(), chainOptions(40)), std::runtime_error);
 }
 
 } // namespace

@@ -34,7 +34,8 @@ LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
       fuzz::writeInput(evaluate::manifest_name, fuzz::textOf(data, size));
   app::Settings settings;
   std::string note;
-  if (fuzz::isAccepted([&] { settings = app::readConfigFile(file, note); }))
+  if (fuzz::isAccepted(
+          [&] { settings = app::readConfigFile(file, std::nullopt, note); }))
     checkSettings(settings);
   for (const bool use_suggested_prior : {false, true})
     fuzz::isAccepted([&] {

@@ -133,25 +133,32 @@ public:
   , fields_(bytes.ConsumeIntegral<std::uint32_t>())
   {}
 
-  void
+  /** \return whether it is changed */
+  bool
   operator()(double& number)
   {
-    if (isNext())
+    const bool is_changed = isNext();
+    if (is_changed)
       number = oddNumber(bytes_);
+    return is_changed;
   }
 
-  void
+  bool
   operator()(Vector6d& vector)
   {
-    if (isNext())
+    const bool is_changed = isNext();
+    if (is_changed)
       vector = oddVector(bytes_);
+    return is_changed;
   }
 
-  void
+  bool
   operator()(int& count, int least, int most)
   {
-    if (isNext())
+    const bool is_changed = isNext();
+    if (is_changed)
       count = oddCount(bytes_, least, most);
+    return is_changed;
   }
 
 private:
@@ -173,7 +180,7 @@ optionsOf(Bytes& bytes)
   Options options;
   options.preset = choiceOf<Preset>(bytes, 3);
   options.prior.frame = choiceOf<PriorFrame>(bytes, 2);
-  options.mini_batch.sampling = choiceOf<MiniBatchSampling>(bytes, 2);
+  options.paper.sampling = choiceOf<MiniBatchSampling>(bytes, 2);
   options.exact.metropolis = choiceOf<MetropolisUse>(bytes, 3);
   options.exact.residual.residual = choiceOf<Residual>(bytes, 2);
   options.exact.residual.kernel = choiceOf<RobustKernel>(bytes, 3);
@@ -182,23 +189,33 @@ optionsOf(Bytes& bytes)
   options.chains.seed = bytes.ConsumeIntegral<std::uint8_t>();
   options.chains.num_threads = 1;
   FieldChanger change(bytes);
-  change(options.likelihood.effective_points);
-  change(options.likelihood.measurement_sigma);
+  LikelihoodScale scale;
+  change(scale.effective_points);
+  change(scale.measurement_sigma);
+  options.paper.scale = options.exact.scale = scale;
   change(options.prior.mean);
   change(options.prior.variance);
-  change(options.mini_batch.batch_size, 1, 100);
-  change(options.sgld.step_size);
-  change(options.sgld.decay_rate);
-  change(options.sgld.lambda_rms);
-  change(options.sgld.noise_factor);
-  change(options.sgld.block_decay_factor);
-  change(options.sgld.block_decay_start);
-  change(options.sgld.block_decay_interval, 1, 100);
-  change(options.chains.num_burn_in, 1, 50);
-  change(options.chains.thinning, 1, 20);
-  change(options.chains.initial_spread);
+  SgldOptions& sgld = options.paper.sgld;
+  if (change(options.paper.batch_size, 1, 100))
+    options.exact.batch_size = options.paper.batch_size;
+  if (change(sgld.step_size))
+    options.exact.max_step_size = sgld.step_size;
+  change(sgld.decay_rate);
+  change(sgld.lambda_rms);
+  change(sgld.noise_factor);
+  change(sgld.block_decay_factor);
+  change(sgld.block_decay_start);
+  change(sgld.block_decay_interval, 1, 100);
+  if (change(options.paper.num_burn_in, 1, 50))
+    options.exact.num_burn_in = options.calibrated.num_burn_in =
+        options.paper.num_burn_in;
+  if (change(options.paper.thinning, 1, 20))
+    options.exact.thinning = options.calibrated.thinning = options.paper.thinning;
+  if (change(options.paper.initial_spread))
+    options.exact.initial_spread = options.paper.initial_spread;
   change(options.exact.residual.kernel_width);
-  change(options.exact.residual.max_distance);
+  if (change(options.exact.residual.max_distance))
+    options.paper.max_distance = options.exact.residual.max_distance;
   change(options.exact.max_source_points, 1, 100);
   change(options.calibrated.max_source_points, min_calibrated_points, 100);
   change(options.calibrated.num_mode_points, min_calibrated_points, 100);

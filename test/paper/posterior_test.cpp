@@ -77,7 +77,7 @@ TEST(Likelihood, WithoutCorrespondencesTheGradientIsZero)
 
 TEST(Likelihood, WeightIsEffectivePointsOverSquaredSigma)
 {
-  LikelihoodOptions options;
+  LikelihoodScale options;
   EXPECT_DOUBLE_EQ(options.weight(), 6000.0);
   options.effective_points = 50.0;
   options.measurement_sigma = 0.01;

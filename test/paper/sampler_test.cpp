@@ -42,12 +42,12 @@ unitGaussian()
   return gaussianTarget(Vector6d::Ones(), Vector6d::Ones());
 }
 
-SgldOptions
-plainSgld(double step_size)
+PaperOptions
+withSteps(double step_size)
 {
-  SgldOptions options;
-  options.step_size = step_size;
-  options.block_decay_factor = 1.0;
+  PaperOptions options;
+  options.sgld.step_size = step_size;
+  options.sgld.block_decay_factor = 1.0;
   return options;
 }
 
@@ -124,12 +124,12 @@ TEST(Chains, SampleAGaussianWithTheBiasOfTheStepSize)
   Vector6d precision;
   precision << 10.0, 20.0, 60.0, 40.0, 80.0, 100.0;
   const double alpha = 0.02;
-  auto options = chainOptions(4, 80000);
+  auto options = withSteps(alpha);
   options.num_burn_in = 500;
   const ChainSet set = runChains(Vector6d::Zero(),
                                  gaussianTarget(precision, Vector6d::Ones()),
-                                 plainSgld(alpha),
-                                 options);
+                                 options,
+                                 chainOptions(4, 80000));
   for (int k = 0; k < 6; ++k) {
     Eigen::MatrixXd draws(20000, 4), squares(20000, 4);
     for (int c = 0; c < 4; ++c)
@@ -143,11 +143,12 @@ TEST(Chains, SampleAGaussianWithTheBiasOfTheStepSize)
 
 TEST(Chains, AreBitIdenticalForEveryNumberOfThreads)
 {
-  auto options = chainOptions(5, 503);
+  auto options = withSteps(0.1);
   options.initial_spread = Vector6d::Constant(0.1);
   const auto run = [&](int num_threads) {
-    options.num_threads = num_threads;
-    return runChains(Vector6d::Zero(), unitGaussian(), plainSgld(0.1), options);
+    auto chains = chainOptions(5, 503);
+    chains.num_threads = num_threads;
+    return runChains(Vector6d::Zero(), unitGaussian(), options, chains);
   };
   const ChainSet reference = run(1);
   for (const int num_threads : {2, 3, 8, 0}) {
@@ -162,7 +163,7 @@ TEST(Chains, DependOnSeedAndChainOnly)
   auto options = chainOptions(2, 20);
   const auto draws = [&](std::uint64_t seed, std::size_t chain) {
     options.seed = seed;
-    return runChains(Vector6d::Zero(), unitGaussian(), plainSgld(0.1), options)
+    return runChains(Vector6d::Zero(), unitGaussian(), withSteps(0.1), options)
         .chains[chain]
         .draws;
   };
@@ -174,7 +175,7 @@ TEST(Chains, DependOnSeedAndChainOnly)
 TEST(Chains, EarlierChainsTakeTheRemainder)
 {
   const ChainSet set =
-      runChains(Vector6d::Zero(), unitGaussian(), plainSgld(0.1), chainOptions(4, 10));
+      runChains(Vector6d::Zero(), unitGaussian(), withSteps(0.1), chainOptions(4, 10));
   const Eigen::Index expected[] = {3, 3, 2, 2};
   for (std::size_t c = 0; c < 4; ++c)
     EXPECT_EQ(set.chains[c].draws.rows(), expected[c]);
@@ -183,10 +184,11 @@ TEST(Chains, EarlierChainsTakeTheRemainder)
 TEST(Chains, BurnInAndThinningSelectFromTheSameChain)
 {
   const auto draws = [](int num_draws, int num_burn_in, int thinning) {
-    auto options = chainOptions(1, num_draws);
+    auto options = withSteps(0.1);
     options.num_burn_in = num_burn_in;
     options.thinning = thinning;
-    return runChains(Vector6d::Zero(), unitGaussian(), plainSgld(0.1), options)
+    return runChains(
+               Vector6d::Zero(), unitGaussian(), options, chainOptions(1, num_draws))
         .chains[0]
         .draws;
   };
@@ -200,15 +202,16 @@ TEST(Chains, BurnInAndThinningSelectFromTheSameChain)
 TEST(Chains, StartAtTheGuessPlusTheirSpread)
 {
   const int num_chains = 4000;
-  auto options = chainOptions(num_chains, num_chains);
+  auto options = withSteps(0.1);
   Vector6d start;
   start << 1, -2, 3, 0.1, 0.2, -0.3;
   options.initial_spread << 0.5, 0.1, 0.2, 0.01, 0.02, 0.0;
   // A flat target and no noise: the first draw is the start.
-  auto sgld = plainSgld(0.1);
-  sgld.noise_factor = 0.0;
-  const ChainSet set = runChains(
-      start, gaussianTarget(Vector6d::Zero(), Vector6d::Ones()), sgld, options);
+  options.sgld.noise_factor = 0.0;
+  const ChainSet set = runChains(start,
+                                 gaussianTarget(Vector6d::Zero(), Vector6d::Ones()),
+                                 options,
+                                 chainOptions(num_chains, num_chains));
   Vector6d mean = Vector6d::Zero(), mean_square = Vector6d::Zero();
   for (const auto& chain : set.chains) {
     const Vector6d deviation = chain.draws.row(0).transpose() - start;
@@ -227,11 +230,11 @@ TEST(Chains, KeepCanonicalPoses)
   Vector6d start = Vector6d::Zero();
   start[4] = 2.0; // beyond pi / 2
   start[5] = 10.0;
-  auto sgld = plainSgld(0.1);
-  sgld.noise_factor = 0.0;
+  auto options = withSteps(0.1);
+  options.sgld.noise_factor = 0.0;
   const ChainSet set = runChains(start,
                                  gaussianTarget(Vector6d::Zero(), Vector6d::Ones()),
-                                 sgld,
+                                 options,
                                  chainOptions(1, 1));
   EXPECT_EQ(Vector6d(set.chains[0].draws.row(0).transpose()), canonicalPose(start));
 }
@@ -246,7 +249,7 @@ TEST(Chains, ThatRunAwayAreStoppedAndMarked)
     };
   };
   const ChainSet set =
-      runChains(Vector6d::Ones(), target, plainSgld(0.1), chainOptions(3, 300));
+      runChains(Vector6d::Ones(), target, withSteps(0.1), chainOptions(3, 300));
   EXPECT_FALSE(set.chains[0].diverged);
   EXPECT_TRUE(set.chains[1].diverged);
   EXPECT_FALSE(set.chains[2].diverged);
@@ -262,7 +265,7 @@ TEST(Chains, ThatAreWhiteNoiseOnTheCircleAreMarked)
   auto target = gaussianTarget(Vector6d::Zero(), Vector6d::Zero());
   target.has_diverged = [](const Vector6d&) { return false; };
   const ChainSet set =
-      runChains(Vector6d::Zero(), target, plainSgld(1e-4), chainOptions(2, 200));
+      runChains(Vector6d::Zero(), target, withSteps(1e-4), chainOptions(2, 200));
   EXPECT_TRUE(set.chains[0].diverged);
   EXPECT_TRUE(set.chains[1].diverged);
 }
@@ -278,41 +281,39 @@ TEST(Chains, ThatBecomeNonFiniteAreStoppedAndMarked)
     };
   };
   const ChainSet set =
-      runChains(Vector6d::Zero(), target, plainSgld(0.1), chainOptions(1, 10));
+      runChains(Vector6d::Zero(), target, withSteps(0.1), chainOptions(1, 10));
   EXPECT_TRUE(set.chains[0].diverged);
   EXPECT_EQ(set.chains[0].draws.rows(), 0);
 }
 
 TEST(Progress, IsToldOfEveryStepOfEveryChain)
 {
-  auto options = chainOptions(3, 30);
+  auto options = withSteps(0.1);
   options.num_burn_in = 5;
   options.thinning = 2;
-  options.num_threads = 2;
+  auto chains = chainOptions(3, 30);
+  chains.num_threads = 2;
   long calls = 0, last_total = 0;
-  runChains(Vector6d::Zero(),
-            unitGaussian(),
-            plainSgld(0.1),
-            options,
-            [&](const Progress& progress) {
-              EXPECT_EQ(progress.steps, ++calls);
-              last_total = progress.total_steps;
-              return true;
-            });
+  runChains(
+      Vector6d::Zero(), unitGaussian(), options, chains, [&](const Progress& progress) {
+        EXPECT_EQ(progress.steps, ++calls);
+        last_total = progress.total_steps;
+        return true;
+      });
   EXPECT_EQ(calls, 3 * (5 + 2 * 10));
   EXPECT_EQ(last_total, calls);
 }
 
 TEST(Progress, TellsThePoseThatIsKept)
 {
-  auto options = chainOptions(2, 20);
+  auto options = withSteps(0.1);
   options.num_burn_in = 5;
   options.thinning = 2;
   std::vector<std::vector<Vector6d>> kept(2);
   const ChainSet set = runChains(Vector6d::Zero(),
                                  unitGaussian(),
-                                 plainSgld(0.1),
                                  options,
+                                 chainOptions(2, 20),
                                  [&](const Progress& progress) {
                                    const long sampled = progress.chain_steps - 5;
                                    if (sampled > 0 && sampled % 2 == 0)
@@ -333,7 +334,7 @@ TEST(Progress, CanCancelAndWhatWasDrawnStays)
     options.num_threads = num_threads;
     const ChainSet set = runChains(Vector6d::Zero(),
                                    unitGaussian(),
-                                   plainSgld(0.1),
+                                   withSteps(0.1),
                                    options,
                                    [](const Progress& p) { return p.steps < 100; });
     EXPECT_TRUE(set.cancelled);
@@ -350,7 +351,7 @@ TEST(Progress, AnExceptionReachesTheCaller)
     options.num_threads = num_threads;
     EXPECT_THROW(runChains(Vector6d::Zero(),
                            unitGaussian(),
-                           plainSgld(0.1),
+                           withSteps(0.1),
                            options,
                            [](const Progress& p) -> bool {
                              if (p.steps == 50)
@@ -371,7 +372,7 @@ TEST(Threads, AThrowingGradientReachesTheCaller)
   };
   auto options = chainOptions(4, 40);
   options.num_threads = 2;
-  EXPECT_THROW(runChains(Vector6d::Zero(), target, plainSgld(0.1), options),
+  EXPECT_THROW(runChains(Vector6d::Zero(), target, withSteps(0.1), options),
                std::runtime_error);
 }
 
@@ -400,7 +401,7 @@ largestConcurrency(bool is_thread_safe,
   };
   auto options = chainOptions(4, 4000);
   options.num_threads = num_threads;
-  runChains(Vector6d::Zero(), target, plainSgld(0.1), options);
+  runChains(Vector6d::Zero(), target, withSteps(0.1), options);
   return largest;
 }
 

@@ -138,7 +138,7 @@ TEST(Metropolis, ModesThatChainsTravelBetweenAreOnePosterior)
 {
   auto options = chainOptions(4000);
   options.num_chains = 8;
-  PreconditionedOptions sampler;
+  ExactOptions sampler;
   sampler.metropolis = MetropolisUse::Always;
   const ChainSet set = sample(mixture(2.0), sampler, options);
   const Summary summary = summarize(set);
@@ -160,7 +160,7 @@ TEST(Metropolis, IsChosenWhereBatchesAreTooNoisy)
   energy.num_terms = 500;
   const auto drawsWith = [&](MetropolisUse use, double noise) {
     energy.term_noise = std::sqrt(100.0 * noise) * Matrix6d::Identity();
-    PreconditionedOptions sampler;
+    ExactOptions sampler;
     sampler.metropolis = use;
     return pooledDraws(sample(energy, sampler, chainOptions(40)).chains);
   };

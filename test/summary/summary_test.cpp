@@ -1,6 +1,7 @@
 // Mean, covariances, quantiles and status of draws whose distribution is known.
 #include "support/test_support.h"
 
+#include <bayesian_icp/chains.h>
 #include <bayesian_icp/summary.h>
 
 #include <gtest/gtest.h>

@@ -64,8 +64,10 @@ template <typename Registration>
 void
 useFewSamples(Registration& registration)
 {
-  registration.setNumberOfSamples(40);
-  registration.setMiniBatchSize(20);
+  auto options = registration.getOptions();
+  options.chains.num_draws = 40;
+  options.paper.batch_size = 20;
+  registration.setOptions(options);
 }
 
 /** Algorithm 1, which takes its correspondences from what PCL was given. */

@@ -109,14 +109,14 @@ public:
 /** Angles of poses are wrapped: densities are kept well within +-pi there. */
 inline ChainSet
 sample(const TestEnergy& energy,
-       const PreconditionedOptions& sampler,
-       const ChainOptions& options,
+       const ExactOptions& options,
+       const ChainOptions& chains,
        const ProgressCallback& progress = ProgressCallback())
 {
   std::vector<std::unique_ptr<StochasticEnergy>> energies;
-  for (int i = 0; i < options.num_chains; ++i)
+  for (int i = 0; i < chains.num_chains; ++i)
     energies.push_back(std::make_unique<TestEnergy>(energy));
-  return runPreconditionedChains(std::move(energies), sampler, options, progress);
+  return runPreconditionedChains(std::move(energies), options, chains, progress);
 }
 
 /** N(mean, precision^-1) and a flat prior; the warm-up is told a wrong curvature. */

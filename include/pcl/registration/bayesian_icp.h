@@ -124,11 +124,12 @@ public:
    * value out of range is reported by align() as Status::InvalidOptions.
    * \{ */
 
-  /** \brief All options at once. */
+  /** \brief All options at once, also those that have no setter here. */
   void
   setOptions(const bayesian_icp::Options& options)
   {
     options_ = options;
+    is_scale_stated_ = false;
     this->own_tree_->seeded->num_threads = options.chains.num_threads;
   }
 
@@ -138,8 +139,8 @@ public:
     return (options_);
   }
 
-  /** \brief Which posterior, and how it is sampled. Options that a preset does not use
-   * have no effect with it: see bayesian_icp::Options. */
+  /** \brief Which posterior is sampled. Each preset has options of its own: see
+   * bayesian_icp::Options. */
   void
   setPreset(bayesian_icp::Preset preset)
   {
@@ -157,40 +158,6 @@ public:
   setNumberOfSamples(int num_draws)
   {
     options_.chains.num_draws = num_draws;
-  }
-
-  /** \brief Steps at the start of each chain that are not kept. */
-  void
-  setBurnIn(int num_burn_in)
-  {
-    options_.chains.num_burn_in = num_burn_in;
-  }
-
-  /** \brief Steps per kept draw. */
-  void
-  setThinning(int thinning)
-  {
-    options_.chains.thinning = thinning;
-  }
-
-  /** \brief m of Algorithm 1: source points per step. */
-  void
-  setMiniBatchSize(int batch_size)
-  {
-    options_.mini_batch.batch_size = batch_size;
-  }
-
-  void
-  setMiniBatchSampling(bayesian_icp::MiniBatchSampling sampling)
-  {
-    options_.mini_batch.sampling = sampling;
-  }
-
-  /** \brief alpha of eqs. (5), (8), (9). */
-  void
-  setStepSize(double step_size)
-  {
-    options_.sgld.step_size = step_size;
   }
 
   /** \brief Prior mean pose [m, rad] and variances [m^2, rad^2], in the order of the
@@ -211,25 +178,24 @@ public:
     options_.prior.frame = frame;
   }
 
-  /** \brief Standard deviation of the chains' starts about the guess [m, rad]. */
-  void
-  setInitialSpread(const Vector6d& standard_deviation)
-  {
-    options_.chains.initial_spread = standard_deviation;
-  }
-
-  /** \brief N of eq. (5). */
+  /** \brief N of eq. (5), of presets `paper` and `exact`. With preset `calibrated`,
+   * which finds its scale itself, align() then reports Status::InvalidOptions. */
   void
   setEffectivePoints(double effective_points)
   {
-    options_.likelihood.effective_points = effective_points;
+    options_.paper.scale.effective_points = effective_points;
+    options_.exact.scale.effective_points = effective_points;
+    is_scale_stated_ = true;
   }
 
-  /** \brief sigma, standard deviation of a point-to-point distance [m]. */
+  /** \brief sigma, standard deviation of a point-to-point distance [m]; for the same
+   * presets as setEffectivePoints(). */
   void
   setMeasurementSigma(double sigma)
   {
-    options_.likelihood.measurement_sigma = sigma;
+    options_.paper.scale.measurement_sigma = sigma;
+    options_.exact.scale.measurement_sigma = sigma;
+    is_scale_stated_ = true;
   }
 
   void
@@ -330,6 +296,8 @@ private:
   moveToMean(const PointCloudSource& source);
 
   bayesian_icp::Options options_;
+  /** Whether a setter has changed the scale that options_ was given with. */
+  bool is_scale_stated_ = false;
   bayesian_icp::ProgressCallback progress_callback_;
   bayesian_icp::PosteriorEstimate estimate_;
   bool use_mean_as_final_transformation_ = false;

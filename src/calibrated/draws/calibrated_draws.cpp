@@ -19,8 +19,9 @@ struct ModeRun {
   /** Chains have copies of it. */
   WeightedScore score;
   int degrees_of_freedom;
-  /** With the mode's draws, and the burn-in and thinning that are used. */
-  ChainOptions options;
+  /** With the mode's draws. */
+  ChainOptions chains;
+  /** With the burn-in and thinning that are used. */
   StepPlan steps;
   /** One a chain. */
   std::vector<Path> paths;
@@ -34,17 +35,19 @@ hasGaussian(const ModeRun& mode)
 
 /** Finds out how the mode's chains make their steps. */
 void
-plan(std::uint64_t stream, ModeRun& mode, RunState& run)
+plan(const CalibratedOptions& options,
+     std::uint64_t stream,
+     ModeRun& mode,
+     RunState& run)
 {
   if (!hasGaussian(mode))
     return;
-  Random random(mode.options.seed, stream);
-  mode.steps = planDraws(mode.score, random);
-  if (mode.options.num_burn_in == 0)
-    mode.options.num_burn_in = mode.steps.num_burn_in;
-  if (mode.options.thinning == 1)
-    mode.options.thinning = mode.steps.thinning;
-  run.addSteps(numStepsOf(mode.options));
+  Random random(mode.chains.seed, stream);
+  StepPlan& steps = mode.steps;
+  steps = planDraws(mode.score, random);
+  steps.num_burn_in = options.num_burn_in.valueOr(steps.num_burn_in);
+  steps.thinning = options.thinning.valueOr(steps.thinning);
+  run.addSteps(numStepsOf(mode.chains, steps.num_burn_in, steps.thinning));
 }
 
 ToPose
@@ -63,13 +66,13 @@ sampleChain(int index, int chain, ModeRun& mode, RunState& run)
   path.has_diverged = !hasGaussian(mode);
   if (path.has_diverged)
     return;
-  Random random(mode.options.seed, static_cast<std::uint64_t>(index));
+  Random random(mode.chains.seed, static_cast<std::uint64_t>(index));
   WeightedScore score = mode.score;
   const ProductCoordinates& coordinates = score.coordinates();
   LangevinChain langevin(
       mode.steps, coordinates.gaussian().draw(random), score, random);
   advance(langevin,
-          scheduleOf(mode.options, chain),
+          {mode.steps.num_burn_in, mode.steps.thinning, mode.chains.numDrawsOf(chain)},
           toPoseOf(coordinates),
           index,
           run,
@@ -78,21 +81,22 @@ sampleChain(int index, int chain, ModeRun& mode, RunState& run)
 
 ChainSet
 sample(std::vector<ModeRun>& modes,
-       const ChainOptions& options,
+       const CalibratedOptions& options,
+       const ChainOptions& chains,
        const ProgressCallback& progress)
 {
   RunState run(progress);
   for (std::size_t m = 0; m < modes.size(); ++m)
-    plan(plan_stream - m, modes[m], run);
-  const int num_chains = options.num_chains * static_cast<int>(modes.size());
-  forEachChain(num_chains, options.num_threads, run, [&](int i) {
+    plan(options, plan_stream - m, modes[m], run);
+  const int num_chains = chains.num_chains * static_cast<int>(modes.size());
+  forEachChain(num_chains, chains.num_threads, run, [&](int i) {
     sampleChain(i,
-                i % options.num_chains,
-                modes[static_cast<std::size_t>(i / options.num_chains)],
+                i % chains.num_chains,
+                modes[static_cast<std::size_t>(i / chains.num_chains)],
                 run);
   });
   ChainSet result;
-  Random random(options.seed, scale_stream);
+  Random random(chains.seed, scale_stream);
   for (ModeRun& mode : modes) {
     const ProductCoordinates& coordinates = mode.score.coordinates();
     spreadAsEstimated(coordinates, mode.paths);
@@ -144,20 +148,21 @@ ChainSet
 sampleCalibrated(const BatchScore& score,
                  const Prior& prior,
                  const std::vector<CalibratedMode>& modes,
-                 const ChainOptions& options,
+                 const CalibratedOptions& options,
+                 const ChainOptions& chains,
                  const ProgressCallback& progress)
 {
   const std::vector<double> shares = sharesOf(modes);
   std::vector<ModeRun> runs;
   std::vector<ChainMode> sampled;
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    ChainOptions of_mode = options;
-    of_mode.num_draws = static_cast<int>(std::lround(shares[m] * options.num_draws));
-    if (of_mode.num_draws < options.num_chains)
+    ChainOptions of_mode = chains;
+    of_mode.num_draws = static_cast<int>(std::lround(shares[m] * chains.num_draws));
+    if (of_mode.num_draws < chains.num_chains)
       continue;
     ChainMode mode;
-    for (int i = 0; i < options.num_chains; ++i)
-      mode.members.push_back(static_cast<int>(runs.size()) * options.num_chains + i);
+    for (int i = 0; i < chains.num_chains; ++i)
+      mode.members.push_back(static_cast<int>(runs.size()) * chains.num_chains + i);
     mode.log_evidence = modes[m].log_weight;
     sampled.push_back(mode);
     const CalibratedEstimate& estimate = modes[m].estimate;
@@ -165,9 +170,9 @@ sampleCalibrated(const BatchScore& score,
                     estimate.degrees_of_freedom,
                     of_mode,
                     StepPlan(),
-                    std::vector<Path>(static_cast<std::size_t>(options.num_chains))});
+                    std::vector<Path>(static_cast<std::size_t>(chains.num_chains))});
   }
-  ChainSet result = sample(runs, options, progress);
+  ChainSet result = sample(runs, options, chains, progress);
   if (modes.size() > 1)
     result.modes = sampled;
   return result;

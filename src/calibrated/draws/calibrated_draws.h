@@ -44,20 +44,20 @@ sharesOf(const std::vector<CalibratedMode>& modes);
 /** \brief Draw by stochastic gradient Langevin dynamics over mini-batches of the source
  * (the guarded pre-weighted score of docs/calibration.md).
  *
- * Every mode has options.num_chains chains, one mode after another in the result, and a
- * part of options.num_draws by its weight. A mode that would get less than one draw a
+ * Every mode has chains.num_chains chains, one mode after another in the result, and a
+ * part of chains.num_draws by its weight. A mode that would get less than one draw a
  * chain gets none and is left out. With one mode ChainSet::modes stays empty.
  *
  * Chains have their own random streams, so that draws are bit-identical for every
- * number of threads. options.num_burn_in 0 and thinning 1 are automatic, and
- * initial_spread is not used: chains start from draws of the calibrated Gaussian. A
- * chain has diverged if a pose is not finite: the data and the prior leave a motion
- * free. */
+ * number of threads. They start from draws of the calibrated Gaussian. A chain has
+ * diverged if a pose is not finite: the data and the prior leave a motion free. Of \p
+ * options burn-in and thinning are used. */
 ChainSet
 sampleCalibrated(const BatchScore& score,
                  const Prior& prior,
                  const std::vector<CalibratedMode>& modes,
-                 const ChainOptions& options,
+                 const CalibratedOptions& options,
+                 const ChainOptions& chains,
                  const ProgressCallback& progress = ProgressCallback());
 
 } // namespace bayesian_icp

@@ -38,23 +38,23 @@ printNumbers(const char* what, Numbers... numbers)
 static void
 reportOptionsLayout()
 {
-  SIZE(LikelihoodOptions);
+  SIZE(Automatic<int>);
+  SIZE(Automatic<Vector6d>);
+  SIZE(LikelihoodScale);
   SIZE(PriorOptions);
-  SIZE(MiniBatchOptions);
   SIZE(SgldOptions);
   SIZE(ChainOptions);
   SIZE(ResidualOptions);
+  SIZE(PaperOptions);
   SIZE(ExactOptions);
   SIZE(CalibratedOptions);
   SIZE(Options);
   SIZE(StochasticGradientIcpOptions);
   SIZE(ExportOptions);
   OFFSET(Options, preset);
-  OFFSET(Options, likelihood);
   OFFSET(Options, prior);
-  OFFSET(Options, mini_batch);
-  OFFSET(Options, sgld);
   OFFSET(Options, chains);
+  OFFSET(Options, paper);
   OFFSET(Options, exact);
   OFFSET(Options, calibrated);
 }
@@ -111,7 +111,8 @@ reportComplaints()
   options.calibrated.num_mode_points = 7;
   std::cout << "complaint: " << options.validate() << '\n';
   options = Options();
-  options.chains.initial_spread[5] = -0.25;
+  options.preset = Preset::Exact;
+  options.exact.initial_spread = Vector6d(-0.25 * Vector6d::Unit(5));
   std::cout << "complaint: " << options.validate() << '\n';
 }
 

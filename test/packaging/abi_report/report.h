@@ -59,11 +59,11 @@ reportOptions(bayesian_icp::Preset preset)
 {
   bayesian_icp::Options options;
   options.preset = preset;
-  options.likelihood.measurement_sigma = 0.02;
-  options.likelihood.effective_points = 100.0;
+  options.exact.scale.measurement_sigma = 0.02;
+  options.exact.scale.effective_points = 100.0;
+  options.paper.scale = options.exact.scale;
+  options.paper.sgld.step_size = 1e-8;
   options.chains.num_draws = 40;
-  if (preset == bayesian_icp::Preset::Paper)
-    options.sgld.step_size = 1e-8;
   options.chains.num_threads = 2;
   return options;
 }

@@ -146,9 +146,16 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
 {
   const auto points = bayesian_icp_detail::pointMatrix(*source);
   bayesian_icp::Options options = options_;
-  options.exact.residual.max_distance = bayesian_icp_detail::smallerGate(
-      options.exact.residual.max_distance, corr_dist_threshold_);
   if (options.preset == bayesian_icp::Preset::Calibrated) {
+    if (is_scale_stated_) {
+      bayesian_icp::PosteriorEstimate refusal;
+      refusal.summary.status = bayesian_icp::Status::InvalidOptions;
+      refusal.summary.message =
+          "measurement_sigma and effective_points belong to presets paper and exact, "
+          "but "
+          "one of them was set with preset calibrated, which finds its scale itself";
+      return (refusal);
+    }
     if (!hasPlainCorrespondences())
       PCL_WARN("[pcl::%s::computeTransformation] Rejectors, reciprocal pairs and "
                "searches of the user's own are for ICP alone with preset calibrated, "
@@ -157,16 +164,18 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
     return (bayesian_icp::estimatePosterior(
         points, searchedTargetPoints(), start, options, progress_callback_));
   }
-  if (options.preset == bayesian_icp::Preset::Exact && hasPlainCorrespondences() &&
-      isTreeOfWholeTarget()) {
+  const bool is_exact = options.preset == bayesian_icp::Preset::Exact;
+  double& gate =
+      is_exact ? options.exact.residual.max_distance : options.paper.max_distance;
+  gate = bayesian_icp_detail::smallerGate(gate, corr_dist_threshold_);
+  if (is_exact && hasPlainCorrespondences() && isTreeOfWholeTarget()) {
     return (bayesian_icp::estimatePosterior(
         points, *targetTree(), start, options, progress_callback_));
   }
-  return (bayesian_icp::estimatePosterior(points,
-                                          *this->makeCorrespondenceSearch(source),
-                                          start,
-                                          options,
-                                          progress_callback_));
+  const auto search =
+      this->makeCorrespondenceSearch(source, std::min(gate, corr_dist_threshold_));
+  return (bayesian_icp::estimatePosterior(
+      points, *search, start, options, progress_callback_));
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

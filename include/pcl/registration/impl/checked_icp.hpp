@@ -285,9 +285,9 @@ protected:
   hasDefaultEstimation() const;
 
   /** A search among the pairs that the estimation and the rejectors would find for
-   * points of \p source. */
+   * points of \p source within \p max_distance [m]. */
   std::unique_ptr<PairSearch<PointTarget>>
-  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source);
+  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source, double max_distance);
 
   /** The transformation next to \p to that the transformation estimation allows: a
    * user's own may know some motions only (2-D, translation), so it is asked for the
@@ -448,14 +448,15 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::hasDefaultEstima
 template <typename PointSource, typename PointTarget, typename Scalar>
 std::unique_ptr<PairSearch<PointTarget>>
 CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    makeCorrespondenceSearch(const PointCloudSourceConstPtr& source)
+    makeCorrespondenceSearch(const PointCloudSourceConstPtr& source,
+                             double max_distance)
 {
   std::unique_ptr<KdTreeSearch<PointSource, PointTarget>> default_search;
   if (hasDefaultEstimation())
     default_search.reset(new KdTreeSearch<PointSource, PointTarget>(
         tree_,
         target_,
-        corr_dist_threshold_,
+        max_distance,
         use_reciprocal_correspondence_ ? source : PointCloudSourceConstPtr()));
   if (default_search && correspondence_rejectors_.empty())
     return default_search;
@@ -464,7 +465,7 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::
   plugins.default_search = std::move(default_search);
   plugins.estimation = correspondence_estimation_;
   plugins.rejectors = correspondence_rejectors_;
-  plugins.max_distance = corr_dist_threshold_;
+  plugins.max_distance = max_distance;
   plugins.is_reciprocal = use_reciprocal_correspondence_;
   plugins.source_has_normals = source_has_normals_;
   plugins.transform = [this](const PointCloudSource& in,

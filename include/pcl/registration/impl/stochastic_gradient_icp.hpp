@@ -77,7 +77,8 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
   const Options options = getOptions();
   if (bayesian_icp_detail::isRigid(initial) && options.validate().empty()) {
     giveTargetToPlugins();
-    const auto search = this->makeCorrespondenceSearch(source);
+    const auto search =
+        this->makeCorrespondenceSearch(source, this->corr_dist_threshold_);
     bool is_in_range = true;
     result_ = bayesian_icp::stochasticGradientIcp(
         bayesian_icp_detail::pointMatrix(*source),
