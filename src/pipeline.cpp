@@ -1,6 +1,6 @@
-#include "calibrated/calibrated_pipeline.h"
-#include "exact/exact_pipeline.h"
-#include "paper/posterior_gradient.h"
+#include "calibrated/calibrated.h"
+#include "exact/exact.h"
+#include "paper/paper.h"
 #include "summary/estimates.h"
 
 #include <bayesian_icp/pipeline.h>
@@ -67,28 +67,6 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   return checked;
 }
 
-/** Algorithm 1. */
-ChainSet
-samplePaper(const Eigen::Matrix3Xd& source_points,
-            const CorrespondenceSearch& search,
-            const Prior& prior,
-            const Vector6d& initial_pose,
-            const Options& options,
-            const std::function<bool(const Vector6d&)>& has_diverged,
-            const ProgressCallback& progress)
-{
-  const MiniBatches mini_batches(static_cast<std::size_t>(source_points.cols()),
-                                 static_cast<std::size_t>(options.paper.batch_size),
-                                 options.paper.sampling);
-  const PosteriorGradient gradient(
-      source_points, search, prior, options.paper.scale.weight(), mini_batches);
-  SamplerTarget target;
-  target.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
-  target.has_diverged = has_diverged;
-  target.is_thread_safe = search.isThreadSafe();
-  return runChains(initial_pose, target, options.paper, options.chains, progress);
-}
-
 PosteriorEstimate
 estimate(const Eigen::Matrix3Xd& source_points,
          const CorrespondenceSearch& search,
@@ -123,8 +101,14 @@ estimate(const Eigen::Matrix3Xd& source_points,
               result.summary);
     return result;
   }
-  return estimateOf(samplePaper(
-      source_points, search, prior, initial_pose, options, has_diverged, progress));
+  return estimateOf(samplePaper(source_points,
+                                search,
+                                prior,
+                                initial_pose,
+                                options.paper,
+                                options.chains,
+                                has_diverged,
+                                progress));
 }
 
 } // namespace

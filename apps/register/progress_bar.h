@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/chains.h>
+#include <bayesian_icp/draws.h>
 
 #include <atomic>
 #include <condition_variable>

@@ -5,7 +5,7 @@
 
 #include "register/settings.h"
 
-#include <bayesian_icp/chains.h>
+#include <bayesian_icp/draws.h>
 #include <bayesian_icp/summary.h>
 
 #include <functional>

@@ -5,7 +5,7 @@
 #include "io/program.h"
 #include "register/progress_bar.h"
 
-#include <bayesian_icp/likelihood.h>
+#include <bayesian_icp/pose.h>
 #include <bayesian_icp/tree_search.h>
 
 #include <chrono>

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/chains.h>
+#include <bayesian_icp/draws.h>
 
 #include <atomic>
 #include <mutex>

@@ -3,9 +3,8 @@
  */
 #pragma once
 
+#include "sampler/chain_set.h"
 #include "samplers/sampler_problem.h"
-
-#include <bayesian_icp/chains.h>
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,7 @@
 #include "samplers/score.h"
 
 #include "study/draw_statistics.h"
+#include "summary/estimates.h"
 
 #include <algorithm>
 #include <cmath>

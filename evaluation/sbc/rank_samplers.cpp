@@ -4,6 +4,7 @@
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_methods.h"
 #include "sbc/rank_models.h"
+#include "summary/estimates.h"
 
 #include <bayesian_icp/pipeline.h>
 

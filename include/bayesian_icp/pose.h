@@ -80,6 +80,12 @@ matrixOf(const Vector6d& pose);
 BAYESIAN_ICP_EXPORT Vector6d
 poseOf(const Eigen::Matrix4d& T_target_source);
 
+/** \brief Move source points into the target frame: column i is R s_i + u [m]. */
+BAYESIAN_ICP_EXPORT void
+movePoints(const Vector6d& pose,
+           const Eigen::Matrix3Xd& source_points,
+           Eigen::Matrix3Xd& moved_points);
+
 /** \brief The matrix [v]x with [v]x a = v x a. */
 BAYESIAN_ICP_EXPORT Eigen::Matrix3d
 crossMatrix(const Eigen::Vector3d& v);

@@ -14,8 +14,6 @@
 
 namespace bayesian_icp {
 
-struct ChainSet;
-
 /** \brief Whether the posterior can be trusted, and if not, why. */
 enum class Status {
   /** Nothing has been estimated yet. */
@@ -157,11 +155,5 @@ BAYESIAN_ICP_EXPORT Matrix6d
 covarianceAbout(const Vector6d& mean,
                 const PoseMatrix& draws,
                 CovarianceConvention convention);
-
-/** \brief Summarise a run. Diverged chains are reported and left out. Diagnostics use
- * the draws' errors about the coordinateMeans(), over the first draws that all chains
- * have. */
-BAYESIAN_ICP_EXPORT Summary
-summarize(const ChainSet& chain_set);
 
 } // namespace bayesian_icp

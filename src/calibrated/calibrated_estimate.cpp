@@ -240,6 +240,7 @@ estimateCalibrated(const SurfaceScorer& scorer,
 {
   const Index num_points = scorer.sourcePoints().cols();
   const double noise = scorer.model().medianSigma();
+  // Numbers are those of the sections of docs/calibration.md. 3: the mode.
   const Ends ends = followStarts(scorer, prior, options, start);
   RobustFitOptions fit;
   fit.max_steps = max_mode_steps;
@@ -247,11 +248,13 @@ estimateCalibrated(const SurfaceScorer& scorer,
   const RobustFit mode = fitRobustly(scorer, prior, ends.best.pose, fit);
   CalibratedEstimate e = atMode(scorer, prior, ends, mode);
 
+  // 4: J.
   const double tau = e.residual_scale;
   const ScoreCovariance J = scoreCovariance(
       activeScores(e.scores, scorer.sourcePoints()), tau * tau * e.prior.precision);
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
+  // 5: H; 6: what noise explains of it; 7: mean and covariance.
   const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
   e.num_queries =
       ends.num_queries + num_points * (mode.num_evaluations + 1 + num_evaluations);

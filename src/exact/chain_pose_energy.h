@@ -5,9 +5,8 @@
 #pragma once
 
 #include "exact/pose_energy.h"
-
-#include <bayesian_icp/mini_batch.h>
-#include <bayesian_icp/stochastic_energy.h>
+#include "sampler/mini_batch.h"
+#include "sampler/stochastic_energy.h"
 
 #include <functional>
 

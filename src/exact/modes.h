@@ -3,9 +3,8 @@
  */
 #pragma once
 
+#include "sampler/chain_set.h"
 #include "sampler/gaussian_fit.h"
-
-#include <bayesian_icp/chains.h>
 
 #include <vector>
 

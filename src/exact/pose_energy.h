@@ -3,10 +3,10 @@
  */
 #pragma once
 
+#include "exact/residual.h"
 #include "search/target.h"
 
 #include <bayesian_icp/prior.h>
-#include <bayesian_icp/residual.h>
 
 namespace bayesian_icp {
 

@@ -5,10 +5,9 @@
  */
 #pragma once
 
+#include "exact/preconditioned_sampler.h"
 #include "sampler/gaussian_fit.h"
 #include "sampler/sampling.h"
-
-#include <bayesian_icp/preconditioned_sampler.h>
 
 #include <memory>
 #include <utility>

@@ -1,6 +1,7 @@
 #include "exact/modes.h"
 #include "exact/preconditioned_run.h"
 #include "sampler/langevin.h"
+#include "summary/estimates.h"
 
 #include <bayesian_icp/summary.h>
 

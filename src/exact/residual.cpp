@@ -1,4 +1,4 @@
-#include <bayesian_icp/residual.h>
+#include "exact/residual.h"
 
 #include <cmath>
 

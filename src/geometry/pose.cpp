@@ -219,6 +219,15 @@ poseError(const Vector6d& pose, const Vector6d& mean, CovarianceConvention conve
   return error;
 }
 
+void
+movePoints(const Vector6d& pose,
+           const Eigen::Matrix3Xd& source_points,
+           Eigen::Matrix3Xd& moved_points)
+{
+  moved_points.noalias() = rotationOf(pose) * source_points;
+  moved_points.colwise() += pose.head<3>();
+}
+
 Vector6d
 poseFromError(const Vector6d& error,
               const Vector6d& mean,

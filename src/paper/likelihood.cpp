@@ -1,15 +1,6 @@
-#include <bayesian_icp/likelihood.h>
+#include "paper/likelihood.h"
 
 namespace bayesian_icp {
-
-void
-movePoints(const Vector6d& pose,
-           const Eigen::Matrix3Xd& source_points,
-           Eigen::Matrix3Xd& moved_points)
-{
-  moved_points.noalias() = rotationOf(pose) * source_points;
-  moved_points.colwise() += pose.head<3>();
-}
 
 double
 meanEnergy(const Vector6d& pose,

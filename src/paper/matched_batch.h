@@ -3,9 +3,10 @@
  */
 #pragma once
 
+#include "paper/likelihood.h"
+#include "sampler/mini_batch.h"
+
 #include <bayesian_icp/correspondence.h>
-#include <bayesian_icp/likelihood.h>
-#include <bayesian_icp/mini_batch.h>
 
 namespace bayesian_icp {
 

@@ -2,8 +2,6 @@
 
 namespace bayesian_icp {
 
-CorrespondenceSearch::~CorrespondenceSearch() = default;
-
 PosteriorGradient::PosteriorGradient(const Eigen::Matrix3Xd& source_points,
                                      const CorrespondenceSearch& search,
                                      const Prior& prior,

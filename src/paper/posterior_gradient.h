@@ -5,9 +5,9 @@
 #pragma once
 
 #include "paper/matched_batch.h"
+#include "paper/sgld.h"
 
 #include <bayesian_icp/prior.h>
-#include <bayesian_icp/sgld.h>
 
 namespace bayesian_icp {
 

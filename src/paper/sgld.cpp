@@ -1,4 +1,4 @@
-#include <bayesian_icp/sgld.h>
+#include "paper/sgld.h"
 
 #include <cmath>
 #include <utility>

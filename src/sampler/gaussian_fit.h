@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/stochastic_energy.h>
+#include "sampler/stochastic_energy.h"
 
 #include <functional>
 

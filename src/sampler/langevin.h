@@ -6,8 +6,7 @@
 #pragma once
 
 #include "sampler/gaussian_fit.h"
-
-#include <bayesian_icp/sampling_chain.h>
+#include "sampler/sampling_chain.h"
 
 namespace bayesian_icp {
 

@@ -3,10 +3,9 @@
  */
 #pragma once
 
+#include "sampler/sampling_chain.h"
+#include "sampler/stochastic_energy.h"
 #include "sampler/t_mixture.h"
-
-#include <bayesian_icp/sampling_chain.h>
-#include <bayesian_icp/stochastic_energy.h>
 
 #include <memory>
 

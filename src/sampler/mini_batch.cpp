@@ -1,4 +1,4 @@
-#include <bayesian_icp/mini_batch.h>
+#include "sampler/mini_batch.h"
 
 #include <algorithm>
 #include <numeric>

@@ -5,9 +5,9 @@
 #pragma once
 
 #include "sampler/run_state.h"
+#include "sampler/sampling_chain.h"
 
 #include <bayesian_icp/options.h>
-#include <bayesian_icp/sampling_chain.h>
 
 #include <functional>
 

@@ -4,6 +4,8 @@
 
 namespace bayesian_icp {
 
+CorrespondenceSearch::~CorrespondenceSearch() = default;
+
 TreeSearch::TreeSearch(const KdTree& target, double max_distance)
 : target_(target)
 , max_squared_distance_(squaredGate(max_distance))

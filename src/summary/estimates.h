@@ -3,7 +3,8 @@
  */
 #pragma once
 
-#include <bayesian_icp/chains.h>
+#include "sampler/chain_set.h"
+
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/prior.h>
 
@@ -11,6 +12,12 @@
 #include <vector>
 
 namespace bayesian_icp {
+
+/** \brief Summarise a run. Diverged chains are reported and left out. Diagnostics use
+ * the draws' errors about the coordinateMeans(), over the first draws that all chains
+ * have. */
+Summary
+summarize(const ChainSet& chain_set);
 
 /** \brief An estimate without draws, whose status says why. */
 PosteriorEstimate

@@ -1,3 +1,4 @@
+#include "summary/estimates.h"
 #include "summary/plain_text.h"
 #include "summary/summary_modes.h"
 

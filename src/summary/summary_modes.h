@@ -3,7 +3,8 @@
  */
 #pragma once
 
-#include <bayesian_icp/chains.h>
+#include "sampler/chain_set.h"
+
 #include <bayesian_icp/summary.h>
 
 #include <string>

@@ -4,9 +4,10 @@
 #include "io/posterior_file.h"
 #include "register/output_files.h"
 #include "register/posterior_json.h"
+#include "sampler/chain_set.h"
+#include "summary/estimates.h"
 #include "support/command_helpers.h"
 
-#include <bayesian_icp/chains.h>
 #include <bayesian_icp/summary.h>
 
 #include <nlohmann/json.hpp>

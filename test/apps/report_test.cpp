@@ -3,6 +3,7 @@
 #include "html/inline_svg.h"
 #include "report/draw_set.h"
 #include "report/verdict.h"
+#include "summary/estimates.h"
 
 #include <gtest/gtest.h>
 

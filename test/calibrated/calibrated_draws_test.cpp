@@ -3,6 +3,7 @@
 #include "calibrated/draws/draw_plan.h"
 #include "calibrated/draws/product_coordinates.h"
 #include "calibrated/product_form.h"
+#include "summary/estimates.h"
 #include "support/test_support.h"
 
 #include <bayesian_icp/diagnostics.h>

@@ -3,6 +3,7 @@
 #include "calibrated/modes/calibrated_modes.h"
 
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
 

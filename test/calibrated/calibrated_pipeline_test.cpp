@@ -1,8 +1,8 @@
 // Preset `calibrated` from end to end: what it finds, and what it says when it cannot.
 #include "support/test_support.h"
 
-#include <bayesian_icp/likelihood.h>
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>

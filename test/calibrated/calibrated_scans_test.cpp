@@ -1,8 +1,10 @@
 // Draws of preset `calibrated` on simulated scans of things with and without an axis.
 #include "calibrated/draws/calibrated_draws.h"
 #include "simulator/simulation.h"
+#include "summary/estimates.h"
 
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
 

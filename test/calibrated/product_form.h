@@ -2,8 +2,7 @@
 #pragma once
 
 #include "calibrated/calibrated_estimate.h"
-
-#include <bayesian_icp/chains.h>
+#include "sampler/chain_set.h"
 
 namespace bayesian_icp {
 namespace test {

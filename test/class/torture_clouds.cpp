@@ -1,6 +1,6 @@
 #include "class/torture_clouds.h"
 
-#include <bayesian_icp/likelihood.h>
+#include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
 
 #include <Eigen/LU>

@@ -3,9 +3,10 @@
 // table in docs/reliability.md is made here (with BAYESIAN_ICP_WRITE_TABLE set,
 // written).
 #include "class/torture_cases.h"
+#include "sampler/chain_set.h"
+#include "summary/estimates.h"
 #include "support/registration_support.h"
 
-#include <bayesian_icp/chains.h>
 #include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 #include "exact/pose_energy.h"
 #include "support/test_support.h"
 
-#include <bayesian_icp/likelihood.h>
 #include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/pose.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // The sampler of preset `exact` on densities whose moments are known: no point clouds.
+#include "summary/estimates.h"
 #include "support/test_energies.h"
 
 #include <bayesian_icp/summary.h>

@@ -19,7 +19,7 @@ ROOMS = {
     "geometry": [],
     "search": ["threads"],
     "sampler": ["threads"],
-    "summary": [],
+    "summary": ["sampler"],
     "exports": ["geometry"],
     "paper": ["sampler"],
     "exact": ["sampler", "search", "summary"],

@@ -1,10 +1,10 @@
 // Likelihood, prior and mini-batches: gradients against finite differences, scales, and
 // the stochastic gradient they add up to.
+#include "paper/likelihood.h"
 #include "paper/posterior_gradient.h"
+#include "sampler/mini_batch.h"
 #include "support/test_support.h"
 
-#include <bayesian_icp/likelihood.h>
-#include <bayesian_icp/mini_batch.h>
 #include <bayesian_icp/prior.h>
 
 #include <gtest/gtest.h>

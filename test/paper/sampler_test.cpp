@@ -1,8 +1,9 @@
 // The sampler on its own: steps against the paper's formulas, chains on a Gaussian, and
 // how chains start, burn in, thin, stop and share threads. No point clouds.
-#include <bayesian_icp/chains.h>
+#include "paper/paper.h"
+#include "paper/sgld.h"
+
 #include <bayesian_icp/diagnostics.h>
-#include <bayesian_icp/sgld.h>
 
 #include <gtest/gtest.h>
 

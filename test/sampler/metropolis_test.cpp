@@ -1,5 +1,6 @@
 // Proposals and steps of the Metropolis chains, on densities whose moments are known.
 #include "sampler/metropolis.h"
+#include "summary/estimates.h"
 #include "support/test_energies.h"
 
 #include <bayesian_icp/diagnostics.h>

@@ -1,7 +1,8 @@
 // Mean, covariances, quantiles and status of draws whose distribution is known.
+#include "sampler/chain_set.h"
+#include "summary/estimates.h"
 #include "support/test_support.h"
 
-#include <bayesian_icp/chains.h>
 #include <bayesian_icp/summary.h>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Densities in six dimensions whose moments are known, as the sampler sees them.
 #pragma once
 
-#include <bayesian_icp/preconditioned_sampler.h>
+#include "exact/preconditioned_sampler.h"
 
 #include <Eigen/Cholesky>
 

@@ -5,8 +5,9 @@
 #pragma once
 
 #include "calibrated/calibrated_estimate.h"
+#include "sampler/chain_set.h"
 
-#include <bayesian_icp/chains.h>
+#include <bayesian_icp/options.h>
 
 namespace bayesian_icp {
 
@@ -41,12 +42,12 @@ struct CalibratedMode {
 std::vector<double>
 sharesOf(const std::vector<CalibratedMode>& modes);
 
-/** \brief Draw by stochastic gradient Langevin dynamics over mini-batches of the source
- * (the guarded pre-weighted score of docs/calibration.md).
+/** \brief Draw by stochastic gradient Langevin dynamics over mini-batches of the
+ * source (the guarded pre-weighted score of docs/calibration.md).
  *
- * Every mode has chains.num_chains chains, one mode after another in the result, and a
- * part of chains.num_draws by its weight. A mode that would get less than one draw a
- * chain gets none and is left out. With one mode ChainSet::modes stays empty.
+ * Every mode has chains.num_chains chains, one mode after another in the result, and
+ * a part of chains.num_draws by its weight. A mode that would get less than one draw
+ * a chain gets none and is left out. With one mode ChainSet::modes stays empty.
  *
  * Chains have their own random streams, so that draws are bit-identical for every
  * number of threads. They start from draws of the calibrated Gaussian. A chain has

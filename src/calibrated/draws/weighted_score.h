@@ -6,9 +6,8 @@
 
 #include "calibrated/draws/calibrated_draws.h"
 #include "calibrated/draws/product_coordinates.h"
-
-#include <bayesian_icp/mini_batch.h>
-#include <bayesian_icp/stochastic_energy.h>
+#include "sampler/mini_batch.h"
+#include "sampler/stochastic_energy.h"
 
 #include <vector>
 

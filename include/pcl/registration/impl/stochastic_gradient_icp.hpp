@@ -1,6 +1,6 @@
 #pragma once
 
-#include <bayesian_icp/likelihood.h>
+#include <bayesian_icp/pose.h>
 
 #include <pcl/registration/stochastic_gradient_icp.h>
 

@@ -1,4 +1,6 @@
-#include "calibrated/calibrated_pipeline.h"
+// The method from top to bottom; numbers are those of the sections of
+// docs/calibration.md.
+#include "calibrated/calibrated.h"
 
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibrated_report.h"
@@ -127,6 +129,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
   ModeSearchOptions search;
   search.seed = options.chains.seed;
   search.estimate.num_mode_points = options.calibrated.num_mode_points;
+  // 3 to 7, in estimateCalibrated() for each mode.
   const std::vector<CalibratedMode> modes = calibratedModes(scorer, prior, search);
   const CalibratedEstimate& heaviest = modes.front().estimate;
   const std::string complaint = complaintAbout(heaviest, num_points);
@@ -135,8 +138,10 @@ estimateAndDraw(const SurfaceScorer& scorer,
   if (isCancelled(progress))
     return failure(Status::Cancelled, "interrupted before the first draw");
 
+  // 8: draws.
   PosteriorEstimate result = estimateOf(sampleCalibrated(
       scoresOf(scorer), prior, modes, options.calibrated, options.chains, progress));
+  // 9: report.
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data =
@@ -167,11 +172,13 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                    "the target has no surface: only " +
                        std::to_string(distinct_points.cols()) +
                        " of its points differ");
+  // 1: the target as a surface.
   const SurfaceModel model(
       distinct_points, SurfaceModelOptions(), options.chains.num_threads);
   const std::string no_surface = complaintAbout(model, distinct_points);
   if (!no_surface.empty())
     return failure(Status::TooFewCorrespondences, no_surface);
+  // 2: what source points say.
   const SurfaceScorer scorer(evenSource(source_points,
                                         options.calibrated.max_source_points,
                                         options.chains.seed),

@@ -4,8 +4,10 @@
  */
 #pragma once
 
-#include <bayesian_icp/chains.h>
-#include <bayesian_icp/stochastic_energy.h>
+#include "sampler/chain_set.h"
+#include "sampler/stochastic_energy.h"
+
+#include <bayesian_icp/options.h>
 
 #include <memory>
 #include <vector>
@@ -15,10 +17,10 @@ namespace bayesian_icp {
 /** \brief Run the chains.
  *
  * Each chain draws a start, burns in and fits a Gaussian on its own. Chains whose
- * Gaussians agree form a mode; those of modes more than 10 nats worse than the best are
- * moved to it. The chains of a mode refine its Gaussian together, then sample with
- * Langevin steps; or all chains together learn a proposal of Metropolis steps, for all
- * modes, then freeze it and sample.
+ * Gaussians agree form a mode; those of modes more than 10 nats worse than the best
+ * are moved to it. The chains of a mode refine its Gaussian together, then sample
+ * with Langevin steps; or all chains together learn a proposal of Metropolis steps,
+ * for all modes, then freeze it and sample.
  *
  * Draws are bit-identical for every number of threads: what the chains share is put
  * together from their results in the order of the chains.
@@ -28,7 +30,7 @@ namespace bayesian_icp {
  *            are the energies'
  * \param[in] chains how many chains and draws
  * \param[in] progress told of every step; returns false to cancel */
-BAYESIAN_ICP_EXPORT ChainSet
+ChainSet
 runPreconditionedChains(std::vector<std::unique_ptr<StochasticEnergy>> energies,
                         const ExactOptions& options,
                         const ChainOptions& chains,

@@ -4,9 +4,10 @@
  */
 #pragma once
 
+#include "sampler/sampling_chain.h"
+
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/random.h>
-#include <bayesian_icp/sampling_chain.h>
 
 #include <functional>
 
@@ -25,7 +26,7 @@ struct EnergyGradient {
 using MiniBatchGradient = std::function<EnergyGradient(const Vector6d&, Random&)>;
 
 /** \brief Diagonal preconditioner of the paper, eqs. (10) and (11). */
-class BAYESIAN_ICP_EXPORT RmsPropPreconditioner {
+class RmsPropPreconditioner {
 public:
   explicit RmsPropPreconditioner(const SgldOptions& options);
 
@@ -42,7 +43,7 @@ private:
 
 /** \brief Step size of step \p step (counted from 0) of \p num_steps under block decay.
  */
-BAYESIAN_ICP_EXPORT double
+double
 stepSizeAt(const SgldOptions& options, long step, long num_steps);
 
 /** \brief One Langevin step, eqs. (5), (8), (9): pose - alpha/2 A gradient + eta with
@@ -53,7 +54,7 @@ stepSizeAt(const SgldOptions& options, long step, long num_steps);
  * \param[in] step_size alpha of this step
  * \param[in] noise_factor 1 by the paper, 0 for a descent
  * \param[in] random generator of the chain */
-BAYESIAN_ICP_EXPORT Vector6d
+Vector6d
 sgldStep(const Vector6d& pose,
          const Vector6d& energy_gradient,
          const Vector6d& preconditioner,
@@ -65,7 +66,7 @@ sgldStep(const Vector6d& pose,
 using RunsAway = std::function<bool(const Vector6d& pose)>;
 
 /** \brief One chain of Algorithm 1. */
-class BAYESIAN_ICP_EXPORT SgldChain : public SamplingChain {
+class SgldChain : public SamplingChain {
 public:
   /** \param[in] options constants of Algorithm 1; must outlive this object
    * \param[in] num_steps length of the chain, for the block decay of the step size

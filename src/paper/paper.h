@@ -1,11 +1,14 @@
 /** \file
- * \brief Independent chains on several threads: starts, burn-in, thinning, progress.
+ * \brief Preset `paper`: Algorithm 1 in several independent chains.
  */
 #pragma once
 
-#include <bayesian_icp/draws.h>
-#include <bayesian_icp/export.h>
-#include <bayesian_icp/sgld.h>
+#include "paper/sgld.h"
+#include "sampler/chain_set.h"
+
+#include <bayesian_icp/correspondence.h>
+#include <bayesian_icp/options.h>
+#include <bayesian_icp/prior.h>
 
 #include <functional>
 #include <vector>
@@ -22,38 +25,30 @@ struct SamplerTarget {
   bool is_thread_safe = true;
 };
 
-/** \brief Chains that ended up in one mode of the density. */
-struct ChainMode {
-  /** Indices of the chains. */
-  std::vector<int> members;
-  /** log of the mode's share of the density, up to a constant common to all modes; an
-   * estimate from a Gaussian. */
-  double log_evidence = 0.0;
-};
-
-/** \brief Chains of one run. */
-struct ChainSet {
-  std::vector<Chain> chains;
-  bool cancelled = false;
-  /** Modes that were told apart; empty if nobody looked (preset `paper`) or, with
-   * preset `calibrated`, if there is one. */
-  std::vector<ChainMode> modes;
-  /** Chains whose own mode was clearly worse and that were moved to another one, and
-   * how much worse the nearest of those modes was [nats]. */
-  int num_moved_chains = 0;
-  double moved_by_nats = 0.0;
-};
-
 /** \brief Run Algorithm 1 in chains.num_chains chains, as \p options has it.
  *
  * Draws are bit-identical for every number of threads, because a thread owns whole
  * chains and each chain its own generator. Inside a parallel region of the caller it
  * runs on the calling thread. */
-BAYESIAN_ICP_EXPORT ChainSet
+ChainSet
 runChains(const Vector6d& start,
           const SamplerTarget& target,
           const PaperOptions& options,
           const ChainOptions& chains,
           const ProgressCallback& progress = ProgressCallback());
+
+/** \brief Run Algorithm 1 on a pair of clouds.
+ * \param[in] source_points 3 x n, finite, source frame [m]
+ * \param[in] search finds correspondences in the target, within its gate
+ * \param[in] initial_pose the chains start there, or about it [m, rad] */
+ChainSet
+samplePaper(const Eigen::Matrix3Xd& source_points,
+            const CorrespondenceSearch& search,
+            const Prior& prior,
+            const Vector6d& initial_pose,
+            const PaperOptions& options,
+            const ChainOptions& chains,
+            const RunsAway& has_diverged,
+            const ProgressCallback& progress);
 
 } // namespace bayesian_icp

@@ -4,7 +4,6 @@
  */
 #pragma once
 
-#include <bayesian_icp/export.h>
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
 
@@ -23,7 +22,7 @@ struct SplitGradient {
 /** \brief Interface of a density for Langevin steps: noisy gradients of -log density.
  * The part of the likelihood comes from a batch of its terms. Each chain has its own
  * object. */
-class BAYESIAN_ICP_EXPORT StochasticGradient {
+class StochasticGradient {
 public:
   virtual ~StochasticGradient() = default;
 
@@ -44,7 +43,7 @@ public:
 /** \brief Energy U(x) = likelihood + prior. The likelihood is a mean of n terms, and a
  * batch of them may be used. Each chain has its own object: it may keep buffers and
  * remember what makes it faster, but its results must depend on the arguments alone. */
-class BAYESIAN_ICP_EXPORT StochasticEnergy : public StochasticGradient {
+class StochasticEnergy : public StochasticGradient {
 public:
   /** \brief n, at least 1. A batch of n terms has no noise. */
   virtual std::size_t

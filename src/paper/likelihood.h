@@ -8,16 +8,10 @@
 
 namespace bayesian_icp {
 
-/** \brief Move source points into the target frame: column i is R s_i + u [m]. */
-BAYESIAN_ICP_EXPORT void
-movePoints(const Vector6d& pose,
-           const Eigen::Matrix3Xd& source_points,
-           Eigen::Matrix3Xd& moved_points);
-
 /** \brief Mean energy of a mini-batch, (1/m) sum |R s_i + u - q_i|^2 / 2 [m^2]: half of
  * eq. (1). m is the number of columns. Points without a correspondence count as zero.
  */
-BAYESIAN_ICP_EXPORT double
+double
 meanEnergy(const Vector6d& pose,
            const Eigen::Matrix3Xd& source_points,
            const Correspondences& correspondences);
@@ -29,7 +23,7 @@ meanEnergy(const Vector6d& pose,
  * \param[in] source_points 3 x m, source frame [m]
  * \param[in] moved_points 3 x m, the same points in the target frame [m]
  * \param[in] correspondences of the moved points */
-BAYESIAN_ICP_EXPORT Vector6d
+Vector6d
 meanGradient(const Vector6d& pose,
              const Eigen::Matrix3Xd& source_points,
              const Eigen::Matrix3Xd& moved_points,

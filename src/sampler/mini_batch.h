@@ -12,7 +12,7 @@ namespace bayesian_icp {
 
 /** \brief The stream of mini-batches of one chain: all that a sampler draws from its
  * points is drawn here. */
-class BAYESIAN_ICP_EXPORT MiniBatches {
+class MiniBatches {
 public:
   /** \param[in] num_points size n of the source, positive
    * \param[in] batch_size m of Algorithm 1; more than n is taken as n

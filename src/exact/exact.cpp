@@ -1,9 +1,8 @@
-#include "exact/exact_pipeline.h"
+#include "exact/exact.h"
 
 #include "exact/chain_pose_energy.h"
+#include "exact/preconditioned_sampler.h"
 #include "summary/plain_text.h"
-
-#include <bayesian_icp/preconditioned_sampler.h>
 
 #include <Eigen/Eigenvalues>
 

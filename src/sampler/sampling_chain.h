@@ -5,13 +5,12 @@
  */
 #pragma once
 
-#include <bayesian_icp/export.h>
 #include <bayesian_icp/pose.h>
 
 namespace bayesian_icp {
 
 /** \brief State of a Markov chain. */
-class BAYESIAN_ICP_EXPORT SamplingChain {
+class SamplingChain {
 public:
   virtual ~SamplingChain() = default;
 

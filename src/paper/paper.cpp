@@ -1,12 +1,13 @@
-#include "sampler/sampling.h"
+#include "paper/paper.h"
 
-#include <bayesian_icp/chains.h>
+#include "paper/posterior_gradient.h"
+#include "sampler/sampling.h"
 
 namespace bayesian_icp {
 
 namespace {
 
-/** Algorithm 1 for one chain. */
+/** Algorithm 1 for one chain: SgldChain::step() is its loop's body. */
 Chain
 runChain(const Vector6d& guess,
          const SamplerTarget& target,
@@ -55,6 +56,29 @@ runChains(const Vector6d& start,
                });
   result.cancelled = run.cancelled();
   return result;
+}
+
+ChainSet
+samplePaper(const Eigen::Matrix3Xd& source_points,
+            const CorrespondenceSearch& search,
+            const Prior& prior,
+            const Vector6d& initial_pose,
+            const PaperOptions& options,
+            const ChainOptions& chains,
+            const RunsAway& has_diverged,
+            const ProgressCallback& progress)
+{
+  const MiniBatches mini_batches(static_cast<std::size_t>(source_points.cols()),
+                                 static_cast<std::size_t>(options.batch_size),
+                                 options.sampling);
+  // Eqs. (2) and (3), weighted as in (5), and the prior's (6) and (7).
+  const PosteriorGradient gradient(
+      source_points, search, prior, options.scale.weight(), mini_batches);
+  SamplerTarget target;
+  target.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
+  target.has_diverged = has_diverged;
+  target.is_thread_safe = search.isThreadSafe();
+  return runChains(initial_pose, target, options, chains, progress);
 }
 
 } // namespace bayesian_icp

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "exact/pose_energy.h"
+#include "sampler/chain_set.h"
 
-#include <bayesian_icp/chains.h>
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/pipeline.h>
 

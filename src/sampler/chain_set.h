@@ -1,0 +1,34 @@
+/** \file
+ * \brief The chains of one run, and the modes that they are in.
+ */
+#pragma once
+
+#include <bayesian_icp/draws.h>
+
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief Chains that ended up in one mode of the density. */
+struct ChainMode {
+  /** Indices of the chains. */
+  std::vector<int> members;
+  /** log of the mode's share of the density, up to a constant common to all modes; an
+   * estimate from a Gaussian. */
+  double log_evidence = 0.0;
+};
+
+/** \brief Chains of one run. */
+struct ChainSet {
+  std::vector<Chain> chains;
+  bool cancelled = false;
+  /** Modes that were told apart; empty if nobody looked (preset `paper`) or, with
+   * preset `calibrated`, if there is one. */
+  std::vector<ChainMode> modes;
+  /** Chains whose own mode was clearly worse and that were moved to another one, and
+   * how much worse the nearest of those modes was [nats]. */
+  int num_moved_chains = 0;
+  double moved_by_nats = 0.0;
+};
+
+} // namespace bayesian_icp
