@@ -3,6 +3,7 @@
 // is one.
 #include "report.h"
 
+#include <bayesian_icp/chains.h>
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/tree_search.h>
 
