@@ -3,7 +3,7 @@
 // is one.
 #include "report.h"
 
-#include <bayesian_icp/chains.h>
+#include <bayesian_icp/draws.h>
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/tree_search.h>
 
@@ -65,8 +65,6 @@ reportResultsLayout()
 {
   SIZE(Progress);
   SIZE(Chain);
-  SIZE(ChainMode);
-  SIZE(ChainSet);
   SIZE(CoordinateSummary);
   SIZE(Mode);
   SIZE(DataDirection);
