@@ -8,10 +8,12 @@ tools=(pcl_bayesian_icp pcl_bayesian_icp_batch pcl_bayesian_icp_evaluate
 [[ ! -e $prefix/bin/pcl_bayesian_icp_viewer ]] || tools+=(pcl_bayesian_icp_viewer)
 for tool in "${tools[@]}"; do
   env -i "$prefix/bin/$tool" --help >/dev/null
-  libraries=$(env -i "$(command -v ldd)" "$prefix/bin/$tool" | grep libpcl_bayesian_icp)
+  libraries=$(env -i "$(command -v ldd)" "$prefix/bin/$tool" | grep libpcl_bayesian_icp || true)
   echo "$tool: $libraries"
+  # The studies have the objects of the libraries in them.
+  [[ $tool == *_evaluate || $libraries ]]
   # The tool's own rpath, not the build folder's.
-  if grep -v -F "$prefix/" <<<"$libraries"; then
+  if [[ $libraries ]] && grep -v -F "$prefix/" <<<"$libraries"; then
     exit 1
   fi
 done
