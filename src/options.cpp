@@ -163,9 +163,11 @@ check(const ExactOptions& exact, Checker& checker)
 void
 check(const CalibratedOptions& calibrated, Checker& checker)
 {
+  checker.atLeast("calibrated.max_source_points",
+                  calibrated.max_source_points,
+                  min_calibrated_points);
   checker.atLeast(
-      "max_source_points", calibrated.max_source_points, min_calibrated_points);
-  checker.atLeast("num_mode_points", calibrated.num_mode_points, min_calibrated_points);
+      "calibrated.num_mode_points", calibrated.num_mode_points, min_calibrated_points);
   checkSteps(
       calibrated.num_burn_in.valueOr(0), calibrated.thinning.valueOr(1), checker);
 }
