@@ -124,8 +124,8 @@ chainChart(const DrawSet& draws, int k)
   chart.caption = name + ": trace, and ranks.";
   chart.description =
       "Above, the draws of " + name +
-      " in their order, a line a chain; below, how often each chain has "
-      "the ranks among all draws, in units of what is expected.";
+      " in their order, one line for each chain; below, how often each chain "
+      "has the ranks among all draws, in units of what is expected.";
   chart.drawing = {340, 350, 12, chainScript(draws, k)};
   return chart;
 }

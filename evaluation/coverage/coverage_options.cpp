@@ -22,38 +22,38 @@ description()
   // clang-format off
   options.add_options()
     ("scenes", textOption(""),
-     "simulated scenes: tuned (on which the method was tuned), new (not tuned on), lidar (a car's "
-     "or robot's spinning lidar of up to 64 rings, 80 m), or names with commas between; with "
-     "--real, names of pairs or recordings. Without it, tuned and new, or all that is real")
+     "simulated scenes: tuned (on which the method was tuned), new (not used in tuning), lidar (a "
+     "spinning lidar of up to 64 rings and 80 m on a car or robot), or names separated by commas. "
+     "With --real: names of pairs or recordings. The default is tuned and new, or all that is real")
     ("conditions", textOption(""),
-     "conditions with commas between, of which every scene takes its own: lidar scenes have "
-     "lidar16, lidar32, lidar64 (rings) and lidar64_sweep (moving during each scan); without it, "
-     "those of a depth camera or lidar that is near, but for far (a true pose 1 m and 0.8 rad "
-     "off, which the prior knows), points_quarter, points_x4, points_x16 and points_x64 (that "
-     "many times the points in both clouds)")
-    ("methods", textOption(""), "methods with commas between; without it, all")
-    ("seeds", intOption(20), "cases of each scene and condition")
-    ("first-seed", intOption(1), "seed of the first of them; of recordings, of all guesses")
+     "conditions, separated by commas; every scene takes those that it has. Lidar scenes have "
+     "lidar16, lidar32, lidar64 (rings) and lidar64_sweep (the sensor moves during each scan). "
+     "The default is all conditions of the scenes except far (the true pose is 1 m and 0.8 rad "
+     "off, and the prior is as wide), points_quarter, points_x4, points_x16 and points_x64 (both "
+     "clouds have that many times the points)")
+    ("methods", textOption(""), "methods, separated by commas; the default is all")
+    ("seeds", intOption(20), "number of cases of each scene and condition")
+    ("first-seed", intOption(1), "seed of the first case; with recordings, seed of all guesses")
     ("real", textOption(""),
-     "folder of real scans, in place of the simulated scenes. With a manifest.json it has pairs: "
-     "every seed is another random part of the source and another pose drawn from the pair's "
-     "prior. Otherwise it has recordings, a folder each with set.json, poses.txt and "
-     "scan_0000.pcd, scan_0001.pcd, ... (docs/calibration.md)")
-    ("step", intOption(1), "of recordings: the source is so many scans after the target")
-    ("pairs", intOption(0), "at most so many pairs of a recording, evenly spread; 0: all")
+     "folder of real scans, which replace the simulated scenes. If it has a manifest.json, it has "
+     "pairs, and each seed takes another random part of the source and another pose from the "
+     "pair's prior. Otherwise it has recordings: one folder for each, with set.json, poses.txt "
+     "and scan_0000.pcd, scan_0001.pcd, ... (docs/calibration.md)")
+    ("step", intOption(1), "with recordings: number of scans from the target to the source")
+    ("pairs", intOption(0), "largest number of pairs of each recording, evenly spread; 0 means all")
     ("guess-sd", textOption("0.1,0.03"),
-     "standard deviations of a recording's guesses along and about each axis of the sensor "
-     "[m, rad]")
+     "with recordings: standard deviations of the guesses, along and about each axis of the "
+     "sensor [m, rad]")
     ("rows", textOption(""),
-     "file with pairs of recordings, their guesses and truths, in place of random guesses: a "
-     "JSON object a line with set, pair (the target's number), guess and truth (3x4, of a source "
-     "that is turned as the truth asks for)")
+     "file with pairs of recordings, their guesses and truths, which replace random guesses. "
+     "Each line is a JSON object with set, pair (the target's number), guess and truth (3x4; the "
+     "source is turned as the truth requires)")
     ("output", textOption("results/coverage.csv"),
-     "results, a row a run; runs that are there are not made again")
+     "CSV file of the results, one row for each run. Runs that it already has are skipped")
     ("report", "also make a report, with figures, of all results in that folder")
-    ("threads", intOption(0), "cases at a time; 0: as many as there are cores")
+    ("threads", intOption(0), "number of cases that run at the same time; 0 means as many as there are cores")
     ("quick",
-     "two scenes, pairs or recordings, one condition, three seeds or pairs, unless they are given")
+     "two scenes, pairs or recordings, one condition, and three seeds or pairs, unless given")
     ("help", "show this text");
   // clang-format on
   return options;
@@ -68,8 +68,8 @@ deviationOf(const std::string& text)
       !io::readNumber(items[1], sd.rotation) || !(sd.translation >= 0.0) ||
       !(sd.rotation >= 0.0) || std::isinf(sd.translation + sd.rotation))
     throw io::UsageError("--guess-sd is " + io::quoted(text) +
-                         ", but must be two numbers [m, rad], not negative, with a "
-                         "comma between");
+                         ", but must be two numbers [m, rad], not negative, separated "
+                         "by a comma");
   return sd;
 }
 

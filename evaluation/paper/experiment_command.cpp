@@ -18,12 +18,13 @@ printHelp(const std::string& name, const std::string& summary)
   std::cout
       << "Usage: pcl_bayesian_icp_evaluate " << name << " [options]\n\n"
       << summary
-      << "\n\nResults are in the output folder: a CSV file with a row a run, "
-         "and what pictures\nshow. report.md, report.html and the pictures are "
-         "made of these by Python with\npandas and matplotlib; medians are printed "
-         "without it. An interrupted run goes\non where it stopped. A pair that is "
-         "missing or broken is named and left out.\nResults of another build of the "
-         "methods have to be deleted by hand.\n"
+      << "\n\nThe output folder gets a CSV file with one row for each run, and the "
+         "data "
+         "of the\npictures. Python with pandas and matplotlib makes report.md, "
+         "report.html and the\npictures from these; the tool prints medians without "
+         "it. An interrupted run\ncontinues where it stopped. A pair that is missing "
+         "or broken is named and skipped.\nDelete the results of another build of the "
+         "methods yourself.\n"
          "Exit codes: 0 good, 2 usage, 3 cannot read or write a file, left a pair "
          "out, or\nmade no report.\n\n"
       << paperOptionsDescription();

@@ -46,24 +46,26 @@ paperOptionsDescription()
   // clang-format off
   options.add_options()
     ("data", textOption("data"),
-     "folder of pairs: NAME/source.pcd, target.pcd and T_target_source.txt, or whatever its "
+     "folder of pairs: NAME/source.pcd, target.pcd and T_target_source.txt, or as its "
      "manifest.json says")
     ("pairs", textOption(""),
-     "names with commas between; without it, all of the manifest, or the paper's six objects")
+     "names of pairs, separated by commas; the default is all of the manifest, or the paper's "
+     "six objects")
     ("output", textOption("results/paper"),
-     "folder of the results; runs that are there are not made again")
+     "folder of the results. Runs that it already has are skipped")
     ("baseline-runs", intOption(1000),
-     "runs of Monte Carlo ICP a pair (the paper: 10000); more later only adds to them")
+     "number of runs of Monte Carlo ICP for each pair (the paper has 10000). A larger number "
+     "later only adds runs")
     ("start-translation", po::value<double>()->default_value(1.0, "1"),
-     "they start within this on each axis [m] ...")
+     "these runs start within this distance on each axis [m] ...")
     ("start-rotation", po::value<double>()->default_value(1.0, "1"),
      "... and within this of each angle [rad]")
-    ("repeats", intOption(10), "runs of each method behind a mean and its deviation")
-    ("points", intOption(0), "source points, chosen at random; 0: all")
+    ("repeats", intOption(10), "number of runs of each method behind a mean and its deviation")
+    ("points", intOption(0), "number of source points, chosen at random; 0 means all")
     ("seed", intOption(1), "seed of all random numbers")
-    ("threads", intOption(0), "0: as many as there are cores")
-    ("quick", "60 baseline runs, 3 repeats and 500 points, unless they are given")
-    ("no-report", "CSV files only; the sub-command report makes the report of them")
+    ("threads", intOption(0), "number of threads; 0 means as many as there are cores")
+    ("quick", "60 baseline runs, 3 repeats and 500 points, unless given")
+    ("no-report", "write CSV files only; the sub-command report makes the report from them")
     ("help", "show this text");
   // clang-format on
   return options;

@@ -1,6 +1,7 @@
 #include "samplers/samplers_options.h"
 
 #include "io/errors.h"
+#include "io/numbers.h"
 #include "study/option_values.h"
 
 #include <boost/program_options.hpp>
@@ -31,27 +32,27 @@ description()
   po::options_description options("Options", 88);
   // clang-format off
   options.add_options()
-    ("data", textOption("data"), "folder with a folder a scene: source.pcd, target.pcd [m]")
-    ("scenes", textOption("can,bowl,mug,table,corridor"), "names of scenes, with commas between")
+    ("data", textOption("data"), "folder with one folder for each scene: source.pcd, target.pcd [m]")
+    ("scenes", textOption("can,bowl,mug,table,corridor"), "names of scenes, separated by commas")
     ("cells", textOption("1:6000,0.0015:100,0.0015:1000,0.005:300"),
-     "scales of the likelihood, sigma [m] and effective points N, as sigma:N")
+     "scales of the likelihood as sigma:N, separated by commas: sigma [m], effective points N")
     ("samplers", textOption("exact,exact-metropolis,paper,walk,mala"),
-     "which ones to compare: exact (preset exact), exact-metropolis (the same with "
-     "Metropolis steps), paper (Algorithm 1 at several step sizes; all seeds at the best), "
-     "walk and mala (full batch, covariance and starts from the gold standard)")
+     "samplers to compare: exact (preset exact), exact-metropolis (the same with Metropolis "
+     "steps), paper (Algorithm 1 at several step sizes; all seeds at the best one), walk and "
+     "mala (full batch; covariance and starts from the gold standard)")
     ("step-sizes", textOption("1e-3,1e-4,1e-5,1e-6"),
-     "step sizes alpha of Algorithm 1; each is also tried times 6000 sigma^2 / N, what it "
-     "would be at the paper's scale, and smaller ones as long as they are better")
-    ("seeds", intOption(5), "runs of each sampler, seeds 1, 2, ...")
-    ("points", intOption(2000), "source points, the same for all samplers and the gold standard")
-    ("threads", intOption(1), "threads of the gold standard and the presets")
+     "step sizes alpha of Algorithm 1. Each is also tried times 6000 sigma^2 / N, which is its "
+     "value at the paper's scale. Smaller ones are tried as long as they are better")
+    ("seeds", intOption(5), "number of runs of each sampler, with seeds 1, 2, ...")
+    ("points", intOption(2000), "number of source points, the same for all samplers and the gold standard")
+    ("threads", intOption(1), "number of threads of the gold standard and the presets")
     ("gold-seconds", po::value<double>()->default_value(60.0),
-     "CPU time after which a gold standard ends, converged or not [s]")
+     "CPU time after which a gold standard ends, even if it has not converged [s]")
     ("cache", textOption("results"), "folder of the gold standards")
     ("output", textOption("results/samplers.csv"),
-     "results, a row a run; runs that are there are not made again")
+     "CSV file of the results, one row for each run. Runs that it already has are skipped")
     ("report", "also make a report of all results in that folder")
-    ("quick", "one scene (can), two seeds, 500 points, unless they are given")
+    ("quick", "one scene (can), two seeds and 500 points, unless given")
     ("help", "show this text");
   // clang-format on
   return options;
@@ -60,14 +61,8 @@ description()
 double
 positiveNumber(const std::string& text, const std::string& option)
 {
-  std::size_t used = 0;
   double number = 0.0;
-  try {
-    number = std::stod(text, &used);
-  }
-  catch (const std::exception&) {
-  }
-  if (used == 0 || used != text.size() || !(number > 0.0) || !std::isfinite(number))
+  if (!io::readNumber(text, number) || !(number > 0.0) || !std::isfinite(number))
     throw io::UsageError("--" + option + ": " + io::quoted(text) +
                          " is not a positive number");
   return number;

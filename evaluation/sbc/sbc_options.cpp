@@ -21,14 +21,14 @@ description()
   // clang-format off
   options.add_options()
     ("sampler", textOption(""),
-     "exact-langevin, exact-metropolis, calibrated, calibrated-scans, or several with commas "
-     "between; exact: the first two; without it, all")
-    ("runs", intOption(500), "runs of each sampler")
-    ("seed", intOption(1), "seed of the first of them")
+     "exact-langevin, exact-metropolis, calibrated, calibrated-scans, or several of them, "
+     "separated by commas; exact means the first two. The default is all")
+    ("runs", intOption(500), "number of runs of each sampler")
+    ("seed", intOption(1), "seed of the first run")
     ("output", textOption("results/sbc.csv"),
-     "results, a row a run; runs that are there are not made again")
+     "CSV file of the results, one row for each run. Runs that it already has are skipped")
     ("report", "also make a report, with figures, of all results in that folder")
-    ("threads", intOption(0), "runs at a time; 0: as many as there are cores")
+    ("threads", intOption(0), "number of runs at the same time; 0 means as many as there are cores")
     ("help", "show this text");
   // clang-format on
   return options;
