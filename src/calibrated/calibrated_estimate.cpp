@@ -44,7 +44,7 @@ constexpr double min_step_to_noise = 0.5;
 
 /** Directions with less information, in units of the prior's, are held by the prior
  * only. */
-constexpr double min_relative_information = 0.02;
+constexpr double smallest_information_share = 0.02;
 
 /** Along a free motion the score is as unknown as the axis is. Its variance grows with
  * the square of the motion, up to this number of squared steps: then new patches are
@@ -185,7 +185,7 @@ debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
   e.score_covariance = J;
   for (int pass = 0; pass < 2; ++pass) {
     debited = debitedInformation(
-        secants, e.score_covariance, e.prior.precision, min_relative_information);
+        secants, e.score_covariance, e.prior.precision, smallest_information_share);
     e.covariance = (debited.information + e.prior.precision).inverse();
     if (pass == 0)
       e.score_covariance = withUnheldNoise(J, secants, debited, e.covariance);
