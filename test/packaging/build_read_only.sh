@@ -20,5 +20,5 @@ fi
     exit 1
   fi
   "$@" -S "$work/tree" -B "$work/build"
-  make -C "$work/build/src" pose.o
+  make -C "$work/build/src" geometry/pose.o
 ' bash "$tree" "$work" "$@"
