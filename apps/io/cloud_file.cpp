@@ -207,6 +207,12 @@ finitePoints(const CloudFile& cloud)
   return finite;
 }
 
+Eigen::Matrix3Xf
+readFinitePoints(const std::string& name)
+{
+  return finitePoints(readCloud(name));
+}
+
 CloudFile
 movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion)
 {

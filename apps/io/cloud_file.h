@@ -44,6 +44,10 @@ readCloud(const std::string& name);
 Eigen::Matrix3Xf
 finitePoints(const CloudFile& cloud);
 
+/** \brief As readCloud(), but the finite points alone. */
+Eigen::Matrix3Xf
+readFinitePoints(const std::string& name);
+
 /** \brief The same cloud in another frame: x, y, z are moved and normal_x, normal_y,
  * normal_z turned where they are finite, and the viewpoint with them. All other fields
  * and the order of the points are kept. */

@@ -53,10 +53,8 @@ RealPairs::cloudsOf(const ManifestEntry& entry) const
     const Eigen::Isometry3d T_target_source =
         readTransform(folder_ + entry.ground_truth);
     read.source_in_target =
-        T_target_source *
-        io::finitePoints(io::readCloud(folder_ + entry.source)).cast<double>();
-    read.target =
-        io::finitePoints(io::readCloud(folder_ + entry.target)).cast<double>();
+        T_target_source * io::readFinitePoints(folder_ + entry.source).cast<double>();
+    read.target = io::readFinitePoints(folder_ + entry.target).cast<double>();
     clouds = std::make_shared<const Clouds>(std::move(read));
   }
   return clouds;

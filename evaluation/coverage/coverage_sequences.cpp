@@ -156,9 +156,8 @@ SequencePairs::makeCase(const std::string& name, std::uint64_t pair) const
   made.condition = condition(name);
   made.seed = ChainOptions().seed;
   made.source =
-      T_turned_sensor *
-      io::finitePoints(io::readCloud(sequence.scanFile(source))).cast<double>();
-  made.target = io::finitePoints(io::readCloud(sequence.scanFile(pair))).cast<double>();
+      T_turned_sensor * io::readFinitePoints(sequence.scanFile(source)).cast<double>();
+  made.target = io::readFinitePoints(sequence.scanFile(pair)).cast<double>();
   made.truth = poses.truth;
   made.prior_mean = poseOf(poses.guess.matrix());
   made.prior_sd = PriorOptions().variance.cwiseSqrt();

@@ -15,19 +15,18 @@ constexpr int incomplete_exit_code = 3;
 void
 printHelp(const std::string& name, const std::string& summary)
 {
-  std::cout
-      << "Usage: pcl_bayesian_icp_evaluate " << name << " [options]\n\n"
-      << summary
-      << "\n\nThe output folder gets a CSV file with one row for each run, and the "
-         "data "
-         "of the\npictures. Python with pandas and matplotlib makes report.md, "
-         "report.html and the\npictures from these; the tool prints medians without "
-         "it. An interrupted run\ncontinues where it stopped. A pair that is missing "
-         "or broken is named and skipped.\nDelete the results of another build of the "
-         "methods yourself.\n"
-         "Exit codes: 0 good, 2 usage, 3 cannot read or write a file, left a pair "
-         "out, or\nmade no report.\n\n"
-      << paperOptionsDescription();
+  std::cout << "Usage: pcl_bayesian_icp_evaluate " << name << " [options]\n\n"
+            << summary << R"(
+
+The output folder gets a CSV file with one row for each run, and the data of the
+pictures. Python with pandas and matplotlib makes report.md, report.html and the
+pictures from these; the tool prints medians without it. An interrupted run
+continues where it stopped. A pair that is missing or broken is named and skipped.
+Delete the results of another build of the methods yourself.
+Exit codes: 0 good, 2 usage, 3 cannot read or write a file, left a pair out, or
+made no report.
+
+)" << paperOptionsDescription();
 }
 
 } // namespace

@@ -31,8 +31,8 @@ readScene(const std::string& folder, const std::string& name, std::size_t max_po
 {
   const std::string path = folder + "/" + name + "/";
   return {name,
-          thinned(io::finitePoints(io::readCloud(path + "source.pcd")), max_points),
-          KdTree(io::finitePoints(io::readCloud(path + "target.pcd")))};
+          thinned(io::readFinitePoints(path + "source.pcd"), max_points),
+          KdTree(io::readFinitePoints(path + "target.pcd"))};
 }
 
 Problem::Problem(const Scene& scene, const Cell& cell)

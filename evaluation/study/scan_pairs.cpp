@@ -35,10 +35,8 @@ readFiles(const std::string& folder, const ManifestEntry& entry)
 {
   ScanPair pair;
   pair.name = entry.name;
-  pair.source =
-      io::finitePoints(io::readCloud(folder + "/" + entry.source)).cast<double>();
-  pair.target =
-      io::finitePoints(io::readCloud(folder + "/" + entry.target)).cast<double>();
+  pair.source = io::readFinitePoints(folder + "/" + entry.source).cast<double>();
+  pair.target = io::readFinitePoints(folder + "/" + entry.target).cast<double>();
   pair.truth = readTransform(folder + "/" + entry.ground_truth);
   pair.truth_sd = entry.truth_sd;
   return pair;

@@ -152,8 +152,8 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
       refusal.summary.status = bayesian_icp::Status::InvalidOptions;
       refusal.summary.message =
           "measurement_sigma and effective_points belong to presets paper and exact, "
-          "but "
-          "one of them was set with preset calibrated, which finds its scale itself";
+          "but one of them was set with preset calibrated, which finds its scale "
+          "itself";
       return (refusal);
     }
     if (!hasPlainCorrespondences())
