@@ -23,12 +23,12 @@ struct CalibratedEstimate {
   SurfaceScores scores;
   /** J: covariance of the total score. */
   Matrix6d score_covariance = Matrix6d::Zero();
-  /** H: curvature of the total score with correspondences made anew, symmetric. */
+  /** H: curvature of the total score with correspondences searched again, symmetric. */
   Matrix6d curvature = Matrix6d::Zero();
   /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
   Matrix6d displacement_metric = Matrix6d::Identity();
-  /** V: columns are twists of unit root mean squared displacement, along which the
-   * curvature was measured. */
+  /** V: columns are the twists along which the curvature was measured, of unit root
+   * mean squared displacement. */
   Matrix6d directions = Matrix6d::Identity();
   /** Share of the information along each direction that is above its noise, in [0, 1];
    * 0: the direction is held by the prior only. */
@@ -42,20 +42,21 @@ struct CalibratedEstimate {
   Matrix6d covariance = Matrix6d::Identity();
   /** Twist from the mode to the posterior mean. */
   Vector6d mean = Vector6d::Zero();
-  /** nu: along the directions that the data hold, the posterior is Student's t with so
-   * many degrees of freedom and the covariance above, since the information is itself
-   * an estimate. At least 3, or 0 for a Gaussian. */
+  /** nu: degrees of freedom. Along the directions that the data hold, the posterior is
+   * Student's t with the covariance above, because the information is itself an
+   * estimate. At least 3, or 0 for a Gaussian. */
   int degrees_of_freedom = 0;
-  /** Ratio of the score's covariance to that of independent points: for patches of
-   * about 1/48 of the source, and extrapolated to patches that are independent. */
+  /** Ratio of the score's covariance to that of independent points: for clusters of
+   * about 1/48 of the source, and extrapolated to clusters that are independent. */
   double kappa_48 = 1.0;
   double kappa_inf = 1.0;
   /** meanCappedResidual() at the mode. */
   double cost = 0.0;
-  /** Twist from the mode to the other start's end; zero if both ended in one place. */
+  /** Twist from the mode to where the other start ended; zero if both ended in one
+   * place. */
   Vector6d other_end = Vector6d::Zero();
-  /** meanCappedResidual() at the other start's end, in units of that at the better one;
-   * at least 1. */
+  /** meanCappedResidual() where the worse start ended over that where the better one
+   * ended; at least 1. */
   double other_cost_ratio = 1.0;
   /** Nearest-neighbour queries used. */
   long num_queries = 0;
@@ -69,13 +70,12 @@ struct EstimateOptions {
   int num_rounds = 3;
 };
 
-/** \brief The source points that the estimate is made of: they cover the source evenly,
- * since near the sensor most points repeat each other, and rotations are held by those
- * that are far.
+/** \brief The source points that the estimate uses. They cover the source evenly: near
+ * the sensor most points repeat each other, but the far points hold rotations.
  * \param[in] points 3 x n, finite [m]
  * \param[in] max_points how many, at most
- * \param[in] seed of their order, which is random: any part of them, the first ones
- * for the search of the mode, is a random choice */
+ * \param[in] seed of their order. The order is random, so that the first points, which
+ *            the search of the mode uses, are a random choice. */
 Eigen::Matrix3Xd
 evenSource(const Eigen::Matrix3Xd& points, Eigen::Index max_points, std::uint64_t seed);
 

@@ -1,6 +1,7 @@
 /** \file
- * \brief Curvature of the surface likelihood with correspondences made anew, and how
- * much of it is above its noise.
+ * \brief Curvature of the surface likelihood, and how much of it is above its noise.
+ *
+ * Correspondences are searched again at each end of a step.
  */
 #pragma once
 
@@ -12,18 +13,19 @@ namespace bayesian_icp {
 
 /** \brief Where and how far the curvature is measured. Twists about \p centre. */
 struct SecantPlan {
-  /** Directions are the principal axes of this covariance in the displacement metric,
-   * and three of its standard deviations the length of the steps, as far as that
-   * changes the residuals of the points that hold a direction by 0.7 to 2 of their
-   * scale. */
+  /** The directions are the principal axes of this covariance in the displacement
+   * metric. A step is three of its standard deviations long, but no shorter and no
+   * longer than a step that changes the residuals of the points that hold the direction
+   * by 0.7 and by 2 times their scale. */
   Matrix6d covariance;
   /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
   Matrix6d displacement_metric;
   /** No step is longer than 1.5 prior standard deviations, 0.3 rad, or 0.6 of the
    * source's root mean square radius. */
   Matrix6d prior_precision;
-  /** Steps are not shortened below a fifth of this root mean squared displacement [m],
-   * unless a half of what changes the residuals by their scale is less. */
+  /** Root mean squared displacement [m]. Steps are not shortened below a fifth of it,
+   * or of half the step that changes the residuals by their scale, whichever is less.
+   */
   double min_displacement;
 };
 
@@ -33,18 +35,18 @@ struct Secants {
   Matrix6d steps = Matrix6d::Zero();
   /** The steps before they were shortened. */
   Matrix6d planned = Matrix6d::Zero();
-  /** Where a secant is not above its noise, the root mean squared displacement of its
-   * step, and 0 elsewhere [m]. */
+  /** Root mean squared displacement of each step whose secant is not above its noise;
+   * 0 for the other steps [m]. */
   Vector6d unclear_displacement = Vector6d::Zero();
   /** Half the difference of the scores at +step and -step. */
   Matrix6d differences = Matrix6d::Zero();
-  /** Covariance of each difference, without what the correspondences of the mode
-   * predict of it. */
+  /** Covariance of the part of each difference that the correspondences at the mode do
+   * not predict. */
   std::array<Matrix6d, 6> noise = {};
-  /** Share of each step's information that is to be trusted, in [0, 1]: less where
-   * points that hold the direction move along their surface, so that only its slopes
-   * speak of it, and nothing is left of their scores once they have met other patches.
-   */
+  /** Share of each step's information to trust, in [0, 1]. It is less than 1 where the
+   * points that hold the direction move along their surface. Then only the surface's
+   * slopes tell of the motion, and their scores may vanish as soon as the points meet
+   * other patches. */
   Vector6d trust = Vector6d::Ones();
   /** H: symmetric, in the twists' coordinates. */
   Matrix6d curvature = Matrix6d::Zero();
@@ -58,8 +60,8 @@ struct Secants {
  * \param[in] at_mode scores there
  * \param[in] tau scale of the residuals in Tukey's weight
  * \param[in] plan directions and lengths of the steps
- * \param[in] previous secants about the same mode, which are kept where the step would
- *            be nearly the same */
+ * \param[in] previous secants about the same mode. They are kept where the new step is
+ *            nearly the same. */
 Secants
 measureSecants(const SurfaceScorer& scorer,
                const Eigen::Isometry3d& mode,
@@ -68,31 +70,35 @@ measureSecants(const SurfaceScorer& scorer,
                const SecantPlan& plan,
                const Secants& previous = Secants());
 
-/** \brief The steps; from those that are not \p held the part is taken along the held
- * ones that accounts for their secants, unless that part is longer than a fifth of the
- * step, both in prior standard deviations. */
+/** \brief The steps, with those that are not \p held turned along the surface.
+ *
+ * A step that is not held may have a secant only because it is tilted a little towards
+ * the held steps. This tilt is removed, unless it is longer than a fifth of the step
+ * (both in prior standard deviations). */
 Matrix6d
 alongTheSurface(const Secants& secants,
                 const std::array<bool, 6>& held,
                 const Matrix6d& prior_precision);
 
-/** \brief Factor c on the expected noise tr(J^-1 N) of a secant's information, which
- * noise alone exceeds with a probability of 1 in 1000 (Wilson and Hilferty's
- * approximation of chi-square, with the noise's own number of degrees of freedom). */
+/** \brief Factor c such that the information of pure noise exceeds c tr(J^-1 N) with a
+ * probability of 1 in 1000. tr(J^-1 N) is its expected value. The quantile is Wilson
+ * and Hilferty's approximation of chi-square, with the noise's own degrees of freedom.
+ */
 double
 noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise);
 
 /** \brief What is left of the curvature after its noise is debited. */
 struct DebitedInformation {
-  /** keep_k = trust_k max(0, 1 - d_k / info_k), one per step: d_k is c tr(J^-1 N_k), c
-   * of noiseThreshold(), where info_k is no more than that, falling to the noise's mean
-   * tr(J^-1 N_k) where it is three times that; trust_k is that of the secant. */
+  /** keep_k = trust_k max(0, 1 - d_k / info_k), one per step. The debit d_k is
+   * c tr(J^-1 N_k) where info_k is at most that, with c of noiseThreshold(). It falls
+   * to the noise's mean tr(J^-1 N_k) where info_k is three times the threshold. trust_k
+   * is Secants::trust. */
   Vector6d keep = Vector6d::Zero();
   /** info_k: information of the data along each step before the debit. */
   Vector6d raw = Vector6d::Zero();
-  /** V: the steps. Those that keep nothing are turned towards the others such that the
-   * score stays as it is, by the secants: a prior may let the pose go far along them,
-   * where a small tilt of an axis is a large distance from the surface. */
+  /** V: the steps. Those that keep nothing are turned by alongTheSurface(): a wide
+   * prior lets the pose go far along them, and far along a slightly tilted axis the
+   * source has left the surface. */
   Matrix6d steps = Matrix6d::Identity();
   /** T = V diag(sqrt(keep)) V^-1. */
   Matrix6d transfer = Matrix6d::Zero();
@@ -100,8 +106,8 @@ struct DebitedInformation {
   Matrix6d information = Matrix6d::Zero();
 };
 
-/** \brief Debit the noise. A direction that keeps less than \p min_relative_information
- * times the prior's information along it keeps nothing. */
+/** \brief Debit the noise. A direction keeps nothing if what is left is less than
+ * \p min_relative_information times the prior's information along it. */
 DebitedInformation
 debitedInformation(const Secants& secants,
                    const Matrix6d& score_covariance,

@@ -1,6 +1,6 @@
 /** \file
- * \brief Draws of the calibrated posterior: SGLD whose score is weighted such that the
- * spread is the calibrated covariance, and whose shape is that of the data.
+ * \brief Draws of the calibrated posterior by SGLD. The score is weighted such that the
+ * draws have the calibrated covariance; their shape is that of the data.
  */
 #pragma once
 
@@ -11,13 +11,13 @@
 
 namespace bayesian_icp {
 
-/** \brief Sum of the scores of some source points about an estimate's mode, as
- * SurfaceScorer::batchScore() gives it for its centre and residual scale. Chains call
- * it at once: its answers must depend on its arguments alone.
+/** \brief Sum of the scores of some source points, as SurfaceScorer::batchScore() gives
+ * it for an estimate's centre and residual scale. Chains call it from several threads;
+ * its answers must depend on its arguments alone.
  *
  * \param[in] T_target_source the pose
  * \param[in] indices columns of the source, none twice
- * \param[in,out] hints of one chain: whatever speeds up the next call, empty at first
+ * \param[in,out] hints of one chain, which speed up the next call; empty at first
  * \param[out] total sum of their scores
  * \return how many of them have a usable patch */
 using BatchScore = std::function<int(const CalibratedEstimate& estimate,
@@ -26,15 +26,15 @@ using BatchScore = std::function<int(const CalibratedEstimate& estimate,
                                      PatchHints& hints,
                                      Vector6d& total)>;
 
-/** \brief The scores that \p scorer gives, which must outlive them. */
+/** \brief The scores of \p scorer, which must outlive the returned function. */
 BatchScore
 scoresOf(const SurfaceScorer& scorer);
 
 /** \brief One of several modes. */
 struct CalibratedMode {
   CalibratedEstimate estimate;
-  /** Logarithm of its share of the posterior, up to a constant common to all modes;
-   * good to a factor of a few. */
+  /** Logarithm of its share of the posterior, up to a constant common to all modes. The
+   * share is good to a factor of a few. */
   double log_weight = 0.0;
 };
 
@@ -45,14 +45,14 @@ sharesOf(const std::vector<CalibratedMode>& modes);
 /** \brief Draw by stochastic gradient Langevin dynamics over mini-batches of the
  * source (the guarded pre-weighted score of docs/calibration.md).
  *
- * Every mode has chains.num_chains chains, one mode after another in the result, and
- * a part of chains.num_draws by its weight. A mode that would get less than one draw
- * a chain gets none and is left out. With one mode ChainSet::modes stays empty.
+ * Every mode has chains.num_chains chains, and a part of chains.num_draws by its
+ * weight. The result has one mode after another. A mode is left out if its chains would
+ * get less than one draw each. With one mode ChainSet::modes stays empty.
  *
- * Chains have their own random streams, so that draws are bit-identical for every
- * number of threads. They start from draws of the calibrated Gaussian. A chain has
- * diverged if a pose is not finite: the data and the prior leave a motion free. Of \p
- * options burn-in and thinning are used. */
+ * Each chain has its own random stream, so that draws are bit-identical for every
+ * number of threads. Chains start from draws of the calibrated Gaussian. A chain has
+ * diverged if a pose is not finite: then data and prior leave a motion free. Only
+ * burn-in and thinning of \p options are used. */
 ChainSet
 sampleCalibrated(const BatchScore& score,
                  const Prior& prior,

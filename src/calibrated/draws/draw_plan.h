@@ -9,24 +9,24 @@
 
 namespace bayesian_icp {
 
-/** \brief Plan draws that are nearly independent and stay within the queries allowed.
+/** \brief Plan steps such that draws are nearly independent and need no more queries
+ * than allowed.
  *
- * If a batch's score is so noisy that this would need too many steps, the draws follow
- * the shape of the data only in part, and the calibrated Gaussian for the rest.
+ * If a batch's score is so noisy that this needs too many steps, the draws follow the
+ * shape of the data only in part, and the calibrated Gaussian for the rest.
  * \param[in,out] score gets its shape gain */
 StepPlan
 planDraws(WeightedScore& score, Random& random);
 
-/** \brief Give b, over all chains and about its own mean, the covariance of the
- * calibrated Gaussian, by a linear map that changes no direction's spread by more than
- * a factor of 1.4. The effect of the prior and of the data's shape on the mean stays.
+/** \brief Map b linearly such that it has the covariance of the calibrated Gaussian,
+ * over all chains and about its own mean. No direction's spread changes by more than a
+ * factor of 1.4. The mean stays, and with it what prior and shape do to it.
  * \param[in,out] paths one per chain, of positions (a, b) */
 void
 spreadAsEstimated(const ProductCoordinates& coordinates, std::vector<Path>& paths);
 
-/** \brief Make b Student's t about its mean over all chains: multiply the
- * deviation of each draw by its own sqrt((nu - 2) / chi^2_nu), which leaves the
- * covariance as it is.
+/** \brief Make b Student's t about its mean over all chains. The deviation of each draw
+ * is multiplied by its own sqrt((nu - 2) / chi^2_nu), which keeps the covariance.
  * \param[in] degrees_of_freedom nu; 0 changes nothing */
 void
 scaleAtRandom(const ProductCoordinates& coordinates,

@@ -1,6 +1,6 @@
 /** \file
- * \brief Coordinates of poses near a mode in which motions held by the prior only are
- * set apart, and the calibrated density in them.
+ * \brief Coordinates of poses near a mode, and the calibrated density in them. Motions
+ * that only the prior holds are separate coordinates.
  */
 #pragma once
 
@@ -12,10 +12,11 @@ namespace bayesian_icp {
 /** \brief Coordinates z = (a, b) with pose(z) = exp(V0 a) exp(VK b) mode, V0 the
  * directions that the prior alone holds (keep = 0), VK the others.
  *
- * The likelihood depends on b only, so that it stays the same however far a wide prior
- * lets a go: along an axis of symmetry, along an edge. Whole turns of V0 a are dropped,
- * as the prior's angles do: a turn of a screw would shift b. To second order in b its
- * energy is 1/2 (b - b^)^T Lambda_b (b - b^); the prior is exact everywhere. */
+ * The likelihood depends on b only. It stays the same however far a wide prior lets a
+ * go, for instance about an axis of symmetry or along an edge. Whole turns of V0 a are
+ * dropped, because the prior's angles are periodic, and a turn of a screw would shift
+ * b. To second order in b the likelihood's energy is 1/2 (b - b^)^T Lambda_b (b - b^).
+ * The prior is exact everywhere. */
 class ProductCoordinates {
 public:
   explicit ProductCoordinates(const CalibratedEstimate& estimate);
@@ -30,12 +31,12 @@ public:
   Eigen::Isometry3d
   pose(const Vector6d& z) const;
 
-  /** \brief The b, with a zero, of the pose that is left of \p pose when the motion
-   * held by the prior only that brings it nearest to the mode is taken off. */
+  /** \brief The part (0, b) of \p pose: what is left after the prior-only motion that
+   * brings it nearest to the mode. */
   Vector6d
   heldPart(const Eigen::Isometry3d& pose) const;
 
-  /** \brief The twist T VK b from the mode: where scores count for z. */
+  /** \brief The twist T VK b from the mode: where scores are evaluated for z. */
   Vector6d
   scoredTwist(const Vector6d& z) const;
 
@@ -43,8 +44,8 @@ public:
   Eigen::Isometry3d
   scoredPose(const Vector6d& z) const;
 
-  /** \brief Matrix from total scores to gradients of the likelihood's energy with
-   * respect to z, VK^T T^T H J^-1: weighs scores such that their spread is right. */
+  /** \brief VK^T T^T H J^-1, from total scores to gradients of the likelihood's energy
+   * with respect to z. It weighs scores such that their spread is right. */
   const Matrix6d&
   scoreWeights() const
   {
@@ -63,11 +64,11 @@ public:
   Vector6d
   priorGradient(const Vector6d& z, const Prior& prior) const;
 
-  /** \brief log |det [V0 VK]|: what turns densities of z into those of twists. */
+  /** \brief log |det [V0 VK]|, which converts densities of z into those of twists. */
   double
   logVolume() const;
 
-  /** \brief The posterior if the prior were Gaussian, too. */
+  /** \brief The posterior if likelihood and prior were Gaussian. */
   const Gaussian&
   gaussian() const
   {
@@ -78,7 +79,7 @@ private:
   void
   setUnwinding(const Matrix6d& prior_precision);
 
-  /** V0 a less whole turns. */
+  /** V0 a without whole turns. */
   Vector6d
   priorOnlyTwist(const Vector6d& z) const;
 
@@ -91,7 +92,8 @@ private:
   /** Twists from the mode of (a, 0) and (0, b). */
   Matrix6d prior_only_, held_;
   int num_prior_only_ = 0;
-  /** The twist V0 a that the prior likes best of those that turn by a vector. */
+  /** From a rotation vector to the twist V0 a with that rotation that the prior likes
+   * best. */
   Eigen::Matrix<double, 6, 3> unwinding_ = Eigen::Matrix<double, 6, 3>::Zero();
   Matrix6d score_weights_ = Matrix6d::Zero();
   /** Lambda_b, and zero where a is concerned. */

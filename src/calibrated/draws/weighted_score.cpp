@@ -7,9 +7,10 @@ namespace bayesian_icp {
 
 namespace {
 
-/** The guard: how far the gradient may be from that of a Gaussian likelihood, posterior
- * sd = 1, at the mode and for each unit of that gradient. Below 1, it points back from
- * far out. */
+/** The guard: how far the gradient may be from that of a Gaussian likelihood, in units
+ * in which the posterior's standard deviation is 1. The first is the limit at the mode;
+ * the second is added for each unit of the Gaussian's gradient. As it is below 1, the
+ * gradient points back from far out. */
 constexpr double max_deviation = 3.0;
 constexpr double max_relative_deviation = 0.5;
 

@@ -27,8 +27,8 @@ public:
     return coordinates_;
   }
 
-  /** \brief Number of the points that have a weight at the mode: those that batches are
-   * drawn from. */
+  /** \brief Number of points that have a weight at the mode. Batches are drawn from
+   * these. */
   std::size_t
   numTerms() const
   {
@@ -43,8 +43,8 @@ public:
     shape_gain_ = gain;
   }
 
-  /** \brief The gradient, with its likelihood part so near to that of a Gaussian
-   * likelihood that a chain always comes back. */
+  /** \brief The gradient. Its likelihood part is kept near that of a Gaussian
+   * likelihood, so that a chain always comes back. */
   SplitGradient
   gradient(const Vector6d& z, std::size_t batch_size, Random& random) override;
 

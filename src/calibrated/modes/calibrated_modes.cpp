@@ -32,8 +32,8 @@ constexpr double reach = 1.75;
 constexpr double icp_part = 0.5, sight = 0.1;
 
 /** An end of a start is ignored if its cost is above the best one's by more than this
- * part, or if it is within these squared Mahalanobis distances of a mode: on a few
- * points, and after an estimate. */
+ * part, or if it is within these squared Mahalanobis distances of a mode: the first is
+ * for ends on a few points, the second for estimates. */
 constexpr double cost_margin = 0.35;
 constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
 
@@ -113,9 +113,9 @@ isKnown(const Isometry3d& pose,
   });
 }
 
-/** Whether one can go from a mode to the other along motions that the prior alone
- * holds, without leaving the surface. The axes of the two are not exact: far along,
- * each is far from the other's. */
+/** Whether a path along motions that the prior alone holds leads from one mode to the
+ * other on the surface. Their own axes cannot tell: they are not exact, and far along
+ * them each mode is off the other's axis. */
 bool
 areConnected(const SurfaceScorer& subset,
              const Prior& prior,
@@ -133,7 +133,7 @@ areConnected(const SurfaceScorer& subset,
   fit.tolerance = 0.1 * noise;
   for (const double part : {0.25, 0.5, 0.75}) {
     const Isometry3d start = movedBy(part * way, from.centre, from.mode);
-    // This prior keeps it where it was put.
+    // This prior keeps the fit near its start.
     const Prior here(poseOf(start.matrix()), prior.variance(), prior.referencePoint());
     const RobustFit end = fitRobustly(subset, here, start, fit);
     const Vector6d aside = twistBetween(start, end.pose, from.centre);

@@ -24,35 +24,35 @@ struct ModeSearchOptions {
 
 /** \brief Modes, and what they cost. */
 struct ModeSearch {
-  /** At least one; heaviest first. Weights count differences in fit only as far as they
-   * are above their own noise. */
+  /** At least one; heaviest first. A difference in fit counts only as far as it is
+   * above its own noise. */
   std::vector<CalibratedMode> modes;
   /** Nearest-neighbour queries beyond those of the first estimate. */
   long num_queries = 0;
 };
 
 /** \brief Whether the prior is so wide that there may be other modes: a standard
- * deviation above 0.2 rad, or above a quarter of the diagonal of the source's bounding
- * box. */
+ * deviation is above 0.2 rad, or above a quarter of the diagonal of the source's
+ * bounding box. */
 bool
 mayHaveSeveralModes(const SurfaceScorer& scorer, const Prior& prior);
 
-/** \brief Look for modes other than \p first. A motion held by the prior only makes no
- * mode of its own. Not more than about 150 000 queries to look, and those of one
- * estimate for each mode. */
+/** \brief Look for modes other than \p first. Poses that differ by a motion that only
+ * the prior holds are one mode. The search takes at most about 150 000 queries, plus
+ * one estimate for each mode. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
           const Prior& prior,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options = ModeSearchOptions());
 
-/** \brief Of modes, heaviest first, those that hold at least two per cent of the
- * posterior. A weight is good to a factor of a few, so that lighter ones are not told
- * from none. */
+/** \brief The modes that hold at least two per cent of the posterior. Weights are good
+ * to a factor of a few, so lighter modes cannot be told from none.
+ * \param[in] modes heaviest first */
 std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes);
 
-/** \brief The estimate, and where the prior is wide the other significantModes();
+/** \brief The estimate, and the other significantModes() where the prior is wide;
  * heaviest first. */
 std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,

@@ -11,13 +11,13 @@ namespace bayesian_icp {
 
 /** \brief Set log_weight of the modes of one registration, and sort them by it.
  *
- * The weight is the Gaussian's integral times the prior, times exp(-energy). The energy
- * is that of the residuals above the best mode's, as far as it is above its own noise:
- * E max(0, 1 - 4 V / E^2). V is its variance if each independent patch could as well
- * have the opposite sign: kappa_inf times the sum of the points' squared differences.
- * (The variance over clusters of points would count as noise what a single place shows,
- * such as a mug's handle.) A mode whose weight is not finite, because its clouds do not
- * meet, gets the smallest possible weight.
+ * The weight is the Gaussian's integral times the prior, times exp(-energy). E is the
+ * energy of the residuals above the best mode's. It counts as far as it is above its
+ * own noise: E max(0, 1 - 4 V / E^2). V is the variance of E if each independent patch
+ * could as well have the opposite sign: kappa_inf times the sum of the points' squared
+ * differences. (The variance over clusters of points would take for noise what a single
+ * place shows, such as a mug's handle.) A mode whose weight is not finite, because its
+ * clouds do not meet, gets the smallest possible weight.
  */
 void
 weighModes(const Prior& prior, std::vector<CalibratedMode>& modes);

@@ -11,10 +11,10 @@ namespace bayesian_icp {
 
 /** \brief How a mode is approached. */
 struct RobustFitOptions {
-  /** Scale tau of Tukey's weight to start with, in units of the target's noise; reduced
-   * to that of the residuals. 0 starts there. */
+  /** Scale tau of Tukey's weight at the start, in units of the target's noise. It is
+   * reduced to the scale of the residuals. 0 starts at that scale. */
   double start_scale = 0.0;
-  /** Most steps; each finds all correspondences anew. */
+  /** Most steps; each one searches all correspondences again. */
   int max_steps = 25;
   /** Root mean squared displacement of the source at which it has converged [m]. */
   double tolerance = 0.0;
@@ -31,17 +31,16 @@ struct RobustFit {
   int num_evaluations = 0;
 };
 
-/** \brief Iteratively re-weighted least squares from \p start: the robust mean of
- * distances to the surface, annealed, with a fifth of the points' weight against the
- * prior (they are correlated). */
+/** \brief Iteratively re-weighted least squares of the distances to the surface, from
+ * \p start, annealed. Points have a fifth of their weight against the prior, because
+ * they are correlated. */
 RobustFit
 fitRobustly(const SurfaceScorer& scorer,
             const Prior& prior,
             const Eigen::Isometry3d& start,
             const RobustFitOptions& options);
 
-/** \brief Point-to-point ICP on the model's points from \p start, held loosely by the
- * prior. */
+/** \brief Point-to-point ICP on the model's points from \p start, with a weak prior. */
 RobustFit
 fitPointToPoint(const SurfaceScorer& scorer,
                 const Prior& prior,

@@ -21,8 +21,8 @@ struct ClusterOptions {
 struct PointScores {
   /** One active point per column [1/m, 1/rad]. */
   Matrix6Xd scores;
-  /** Square roots of their Gauss-Newton informations; empty if the pose was not fitted
-   * to these scores. */
+  /** One column for each point, whose outer product is the point's Gauss-Newton
+   * information; empty if the pose was not fitted to these scores. */
   Matrix6Xd jacobians;
   /** Source frame [m]. */
   Eigen::Matrix3Xd positions;
@@ -33,15 +33,15 @@ PointScores
 activeScores(const SurfaceScores& scores, const Eigen::Matrix3Xd& source_points);
 
 /** \brief Covariance of the total score if clusters of neighbouring points are
- * independent of each other.
+ * independent of each other: the sum of outer products of the clusters' total scores.
  *
- * Clusters are the leaves of randomised kd-splits, about equal in number of points. The
- * sum of outer products of the L clusters' total scores is corrected for the pose
- * having been fitted: with H_b the Gauss-Newton information of cluster b, its score is
- * multiplied by (I - H_b H_w^-1)^-1/2, which is the whitened form of CR2 (Bell and
- * McCaffrey 2002); without jacobians the sum by L / (L - 1).
+ * Clusters are the leaves of randomised kd-splits, with about equal numbers of points.
+ * Scores at a fitted pose are too small. Therefore the score of cluster b, whose
+ * Gauss-Newton information is H_b, is multiplied by (I - H_b H_w^-1)^-1/2, the whitened
+ * form of CR2 (Bell and McCaffrey 2002). Without jacobians, the sum over L clusters is
+ * multiplied by L / (L - 1).
  * \param[in] points their scores and positions
- * \param[in] working_information H_w: what the fit was held by
+ * \param[in] working_information H_w: information of points and prior in the fit
  * \param[in] options number of clusters, and partitions to average over */
 Matrix6d
 clusteredCovariance(const PointScores& points,
@@ -53,14 +53,17 @@ struct ScoreCovariance {
   Matrix6d covariance = Matrix6d::Zero();
   /** Ratio to that of independent points, for about 48 clusters ... */
   double kappa_48 = 1.0;
-  /** ... and extrapolated to clusters so large that they are independent, at least 1.
-   */
+  /** The same, extrapolated to clusters so large that they are independent; at least
+   * 1. */
   double kappa_inf = 1.0;
 };
 
-/** \brief Estimate J: half the shape of 48 clusters, half that of independent points,
- * both of the size of clusters that are independent, and larger by nu / (nu - 13) for
- * the nu = n / kappa_inf independent points from which it was estimated.
+/** \brief Estimate J.
+ *
+ * Half of it has the shape of the covariance of 48 clusters, half that of independent
+ * points. Both are scaled to the size that independent clusters have. The factor
+ * nu / (nu - 13) allows for the number nu = n / kappa_inf of independent points from
+ * which J is estimated.
  * \param[in] points their scores and positions
  * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
 ScoreCovariance

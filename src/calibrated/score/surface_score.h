@@ -51,7 +51,7 @@ tukeyWeight(double z);
 double
 residualScale(const SurfaceScores& scores);
 
-/** \brief Mean of min(|u|, 5), points without a usable patch counting 5. */
+/** \brief Mean of min(|u|, 5). A point without a usable patch counts 5. */
 double
 meanCappedResidual(const SurfaceScores& scores);
 
@@ -60,8 +60,8 @@ class SurfaceScorer {
 public:
   /** Tukey's constant: 95 % efficiency on Gaussian residuals. */
   static constexpr double tukey_constant = 4.685;
-  /** A point further than this part of a patch's radius from it (see
-   * SurfaceOffset::in_plane) has no patch. */
+  /** A point has no patch if it is further from the nearest one than this part of its
+   * radius (see SurfaceOffset::in_plane). */
   static constexpr double max_in_plane = 0.6;
 
   /** \param[in] source_points 3 x n, finite, source frame [m]

@@ -7,8 +7,8 @@
 
 namespace bayesian_icp {
 
-/** \brief The finite points of a cloud, each once, in their order: merged clouds often
- * have points twice. Their spacing and noise of zero are not those of a surface.
+/** \brief The finite points of a cloud, each once, in their order. Merged clouds often
+ * have points twice, whose spacing and noise of zero say nothing about a surface.
  * \param[in] points 3 x n [m]
  * \return 3 x m [m] */
 Eigen::Matrix3Xd

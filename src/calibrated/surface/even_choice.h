@@ -15,23 +15,22 @@ namespace bayesian_icp {
 void
 shuffle(std::vector<Eigen::Index>& columns, Random& random);
 
-/** \brief Columns of points that cover a cloud evenly, ascending: one, chosen at
- * random, of each cube of a grid whose cubes are such that nearly \p count of them hold
- * points; all columns if there are no more than that.
+/** \brief Columns of points that cover a cloud evenly, ascending: a random point of
+ * each cube of a grid. The cubes are so large that nearly \p count of them hold points.
+ * All columns if there are no more than \p count.
  * \param[in] points 3 x n, finite
  * \param[in] count most columns, at least 1 */
 std::vector<Eigen::Index>
 evenChoice(const Eigen::Matrix3Xf& points, Eigen::Index count);
 
-/** \brief Columns of about \p count points, ascending: each is taken with a probability
- * inversely proportional to the number of points around it, but at most 1; all columns
- * if there are no more than \p count.
+/** \brief Columns of about \p count points, ascending. Each point is taken with a
+ * probability that is inversely proportional to the number of points around it, but at
+ * most 1. All columns if there are no more than \p count.
  *
- * Dense parts become as sparse as the rest, but neighbours keep their proportions. One
- * point of each cube would not do that where cubes are smaller than the noise: too many
- * of the points would be from the noise's tails, and surfaces through them tilted.
- * \param[in] points 3 x n, finite
- * \param[in] count at least 1 */
+ * Dense parts become as sparse as the rest, and the distribution of the noise stays.
+ * One point of each cube would change it where cubes are smaller than the noise: too
+ * many points would be from the noise's tails, and surfaces through them would be
+ * tilted. \param[in] points 3 x n, finite \param[in] count at least 1 */
 std::vector<Eigen::Index>
 evenlyThinned(const Eigen::Matrix3Xf& points, Eigen::Index count);
 

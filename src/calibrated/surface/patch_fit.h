@@ -23,8 +23,8 @@ struct PatchFitWorkspace {
 };
 
 /** \brief Least-squares quadric of the neighbourhood of \p point, or its plane if no
- * quadric fits. The neighbourhood grows while it is not much wider than its noise,
- * or as narrow as a scan line.
+ * quadric fits. The neighbourhood grows while it is not much wider than its noise, or
+ * while it is as narrow as a scan line.
  *
  * \param[in] max_radius of a neighbourhood [m]; a wider one is not a patch
  * \param[in,out] workspace of earlier points of the same cloud, or new

@@ -13,7 +13,7 @@
 namespace bayesian_icp {
 
 /** \brief Fits a patch to every chosen point of a target, and corrects the patches by
- * their neighbours. Stages are for one call each, in the order below; all are parallel
+ * their neighbours. Call each stage once, in the order below. All stages are parallel
  * and give the same bits for every number of threads. */
 class SurfaceBuilder {
 public:
@@ -31,8 +31,7 @@ public:
   void
   poolNoise();
 
-  /** \brief Points without a quadric take over that of a neighbour on which they lie.
-   */
+  /** \brief Points without a quadric take over the neighbour's on which they lie. */
   void
   takeOver();
 
@@ -43,7 +42,7 @@ public:
   std::vector<SurfacePatch>
   takePatches();
 
-  /** \brief Of the pooled noise [m]. */
+  /** \brief Median of the pooled noise [m]. */
   double
   medianSigma() const
   {
@@ -58,7 +57,7 @@ private:
   /** Neighbours among which a point at an edge looks for a patch to take over. */
   static constexpr std::size_t num_donors = 32;
 
-  /** The nearest patches of a patch, itself the first. */
+  /** The patches nearest to a patch; the first is the patch itself. */
   struct NearestPatches {
     std::array<std::uint32_t, num_donors> patches;
     std::uint32_t count = 0;

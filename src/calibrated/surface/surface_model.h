@@ -53,9 +53,9 @@ struct SurfacePatch {
 struct SurfaceOffset {
   /** Signed, across the surface, to first order in the surface's slope [m]. */
   double distance;
-  /** In the plane of x and y, from the patch's origin or from its centre, whichever is
-   * further: the quadric is known about the one, the surface is there about the other
-   * [m]. */
+  /** Distance in the plane of x and y from the patch's origin or from its centre,
+   * whichever is further [m]. The quadric is known about its origin, and the target has
+   * points about its centre. */
   double in_plane;
   /** Unit normal of the surface under the point. */
   Eigen::Vector3d normal;
@@ -75,15 +75,15 @@ struct SurfaceModelOptions {
   /** Largest F statistic of a quartic against the quadric, where this misses its points
    * by more than a thousandth of the radius. */
   double max_misfit = 2.2;
-  /** Largest distance of the neighbours' centroid from the point, in radii: beyond, the
-   * point is at an edge and has no quadric. */
+  /** Largest distance of the neighbours' centroid from the point, in radii. A point
+   * with a larger one is at an edge and has no quadric. */
   double max_centroid_offset = 0.28;
-  /** In-plane distance, in radii of the donor, within which a point that has no quadric
-   * takes over its neighbour's; 0 for never. */
+  /** A point without a quadric takes over a neighbour's within this in-plane distance,
+   * in radii of the neighbour; 0 for never. */
   double takeover_radius = 0.5;
-  /** Largest number of patches. In a larger target, this number of points get one; they
-   * cover it evenly. Neighbourhoods consist of four times as many points, so patches
-   * are about as wide as they are apart, whatever the density of the target. */
+  /** Largest number of patches. In a larger target, this number of points get a patch;
+   * they cover the target evenly. Neighbourhoods are taken from four times as many
+   * points, so that patches overlap in the same way at any density of the target. */
   int max_patches = 20000;
 };
 
@@ -130,8 +130,8 @@ public:
     return median_sigma_;
   }
 
-  /** \brief Median distance of a patch's point to the nearest other one of those that
-   * neighbourhoods are of [m]. */
+  /** \brief Median distance of a patch's point to the nearest other point among those
+   * that neighbourhoods are taken from [m]. */
   double
   spacing() const
   {
