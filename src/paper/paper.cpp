@@ -10,7 +10,7 @@ namespace {
 /** Algorithm 1 for one chain: SgldChain::step() is its loop's body. */
 Chain
 runChain(const Vector6d& guess,
-         const SamplerTarget& target,
+         const SampledDensity& density,
          const PaperOptions& options,
          const ChainOptions& chains,
          int chain_index,
@@ -25,8 +25,8 @@ runChain(const Vector6d& guess,
   SgldChain sgld_chain(options.sgld,
                        schedule.numSteps(),
                        start,
-                       target.make_gradient(chain_index),
-                       target.has_diverged,
+                       density.make_gradient(chain_index),
+                       density.has_diverged,
                        random);
   const auto to_pose = [](const Vector6d& pose) { return pose; };
   Path path;
@@ -39,7 +39,7 @@ runChain(const Vector6d& guess,
 
 ChainSet
 runChains(const Vector6d& start,
-          const SamplerTarget& target,
+          const SampledDensity& density,
           const PaperOptions& options,
           const ChainOptions& chains,
           const ProgressCallback& progress)
@@ -48,11 +48,11 @@ runChains(const Vector6d& start,
   result.chains.resize(static_cast<std::size_t>(chains.num_chains));
   RunState run(progress, numStepsOf(chains, options.num_burn_in, options.thinning));
   forEachChain(chains.num_chains,
-               target.is_thread_safe ? chains.num_threads : 1,
+               density.is_thread_safe ? chains.num_threads : 1,
                run,
                [&](int i) {
                  result.chains[static_cast<std::size_t>(i)] =
-                     runChain(start, target, options, chains, i, run);
+                     runChain(start, density, options, chains, i, run);
                });
   result.cancelled = run.cancelled();
   return result;
@@ -74,11 +74,11 @@ samplePaper(const Eigen::Matrix3Xd& source_points,
   // Eqs. (2) and (3), weighted as in (5), and the prior's (6) and (7).
   const PosteriorGradient gradient(
       source_points, search, prior, options.scale.weight(), mini_batches);
-  SamplerTarget target;
-  target.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
-  target.has_diverged = has_diverged;
-  target.is_thread_safe = search.isThreadSafe();
-  return runChains(initial_pose, target, options, chains, progress);
+  SampledDensity density;
+  density.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
+  density.has_diverged = has_diverged;
+  density.is_thread_safe = search.isThreadSafe();
+  return runChains(initial_pose, density, options, chains, progress);
 }
 
 } // namespace bayesian_icp

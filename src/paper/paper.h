@@ -16,7 +16,7 @@
 namespace bayesian_icp {
 
 /** \brief What the chains sample. */
-struct SamplerTarget {
+struct SampledDensity {
   /** Makes the stochastic gradient of one chain. */
   std::function<MiniBatchGradient(int chain)> make_gradient;
   /** Whether a pose is so far out that the chain has to be stopped. */
@@ -32,7 +32,7 @@ struct SamplerTarget {
  * runs on the calling thread. */
 ChainSet
 runChains(const Vector6d& start,
-          const SamplerTarget& target,
+          const SampledDensity& density,
           const PaperOptions& options,
           const ChainOptions& chains,
           const ProgressCallback& progress = ProgressCallback());

@@ -22,25 +22,25 @@ using namespace std::chrono_literals;
 
 /** Gaussian with independent coordinates of the given precisions, mean 0. The
  * mini-batch mean is held constant, so the preconditioner becomes constant, too. */
-SamplerTarget
-gaussianTarget(const Vector6d& precision, const Vector6d& mini_batch_mean)
+SampledDensity
+gaussianDensity(const Vector6d& precision, const Vector6d& mini_batch_mean)
 {
-  SamplerTarget target;
-  target.make_gradient = [=](int) {
+  SampledDensity density;
+  density.make_gradient = [=](int) {
     return [=](const Vector6d& pose, Random&) {
       return EnergyGradient{precision.cwiseProduct(pose), mini_batch_mean};
     };
   };
-  target.has_diverged = [](const Vector6d& pose) {
+  density.has_diverged = [](const Vector6d& pose) {
     return pose.cwiseAbs().maxCoeff() > 1e3;
   };
-  return target;
+  return density;
 }
 
-SamplerTarget
+SampledDensity
 unitGaussian()
 {
-  return gaussianTarget(Vector6d::Ones(), Vector6d::Ones());
+  return gaussianDensity(Vector6d::Ones(), Vector6d::Ones());
 }
 
 PaperOptions
@@ -128,7 +128,7 @@ TEST(Chains, SampleAGaussianWithTheBiasOfTheStepSize)
   auto options = withSteps(alpha);
   options.num_burn_in = 500;
   const ChainSet set = runChains(Vector6d::Zero(),
-                                 gaussianTarget(precision, Vector6d::Ones()),
+                                 gaussianDensity(precision, Vector6d::Ones()),
                                  options,
                                  chainOptions(4, 80000));
   for (int k = 0; k < 6; ++k) {
@@ -207,10 +207,10 @@ TEST(Chains, StartAtTheGuessPlusTheirSpread)
   Vector6d start;
   start << 1, -2, 3, 0.1, 0.2, -0.3;
   options.initial_spread << 0.5, 0.1, 0.2, 0.01, 0.02, 0.0;
-  // A flat target and no noise: the first draw is the start.
+  // A flat density and no noise: the first draw is the start.
   options.sgld.noise_factor = 0.0;
   const ChainSet set = runChains(start,
-                                 gaussianTarget(Vector6d::Zero(), Vector6d::Ones()),
+                                 gaussianDensity(Vector6d::Zero(), Vector6d::Ones()),
                                  options,
                                  chainOptions(num_chains, num_chains));
   Vector6d mean = Vector6d::Zero(), mean_square = Vector6d::Zero();
@@ -234,7 +234,7 @@ TEST(Chains, KeepCanonicalPoses)
   auto options = withSteps(0.1);
   options.sgld.noise_factor = 0.0;
   const ChainSet set = runChains(start,
-                                 gaussianTarget(Vector6d::Zero(), Vector6d::Ones()),
+                                 gaussianDensity(Vector6d::Zero(), Vector6d::Ones()),
                                  options,
                                  chainOptions(1, 1));
   EXPECT_EQ(Vector6d(set.chains[0].draws.row(0).transpose()), canonicalPose(start));
@@ -243,14 +243,14 @@ TEST(Chains, KeepCanonicalPoses)
 TEST(Chains, ThatRunAwayAreStoppedAndMarked)
 {
   // Precision 100 with step 0.1 is unstable; chain 1 alone gets it.
-  auto target = unitGaussian();
-  target.make_gradient = [](int chain) {
+  auto density = unitGaussian();
+  density.make_gradient = [](int chain) {
     return [chain](const Vector6d& pose, Random&) {
       return EnergyGradient{(chain == 1 ? 100.0 : 1.0) * pose, Vector6d::Ones()};
     };
   };
   const ChainSet set =
-      runChains(Vector6d::Ones(), target, withSteps(0.1), chainOptions(3, 300));
+      runChains(Vector6d::Ones(), density, withSteps(0.1), chainOptions(3, 300));
   EXPECT_FALSE(set.chains[0].diverged);
   EXPECT_TRUE(set.chains[1].diverged);
   EXPECT_FALSE(set.chains[2].diverged);
@@ -263,18 +263,18 @@ TEST(Chains, ThatAreWhiteNoiseOnTheCircleAreMarked)
 {
   // Without a gradient V is 0 and A is 1e8: every step turns the angles many times.
   // R-hat and effective sample size of such draws are perfect.
-  auto target = gaussianTarget(Vector6d::Zero(), Vector6d::Zero());
-  target.has_diverged = [](const Vector6d&) { return false; };
+  auto density = gaussianDensity(Vector6d::Zero(), Vector6d::Zero());
+  density.has_diverged = [](const Vector6d&) { return false; };
   const ChainSet set =
-      runChains(Vector6d::Zero(), target, withSteps(1e-4), chainOptions(2, 200));
+      runChains(Vector6d::Zero(), density, withSteps(1e-4), chainOptions(2, 200));
   EXPECT_TRUE(set.chains[0].diverged);
   EXPECT_TRUE(set.chains[1].diverged);
 }
 
 TEST(Chains, ThatBecomeNonFiniteAreStoppedAndMarked)
 {
-  auto target = unitGaussian();
-  target.make_gradient = [](int) {
+  auto density = unitGaussian();
+  density.make_gradient = [](int) {
     return [](const Vector6d&, Random&) {
       return EnergyGradient{
           Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()),
@@ -282,7 +282,7 @@ TEST(Chains, ThatBecomeNonFiniteAreStoppedAndMarked)
     };
   };
   const ChainSet set =
-      runChains(Vector6d::Zero(), target, withSteps(0.1), chainOptions(1, 10));
+      runChains(Vector6d::Zero(), density, withSteps(0.1), chainOptions(1, 10));
   EXPECT_TRUE(set.chains[0].diverged);
   EXPECT_EQ(set.chains[0].draws.rows(), 0);
 }
@@ -365,15 +365,15 @@ TEST(Progress, AnExceptionReachesTheCaller)
 
 TEST(Threads, AThrowingGradientReachesTheCaller)
 {
-  auto target = unitGaussian();
-  target.make_gradient = [](int) {
+  auto density = unitGaussian();
+  density.make_gradient = [](int) {
     return [](const Vector6d&, Random&) -> EnergyGradient {
       throw std::runtime_error("broken search");
     };
   };
   auto options = chainOptions(4, 40);
   options.num_threads = 2;
-  EXPECT_THROW(runChains(Vector6d::Zero(), target, withSteps(0.1), options),
+  EXPECT_THROW(runChains(Vector6d::Zero(), density, withSteps(0.1), options),
                std::runtime_error);
 }
 
@@ -386,9 +386,9 @@ largestConcurrency(bool is_thread_safe,
 {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   std::atomic<int> running{0}, largest{0};
-  SamplerTarget target = unitGaussian();
-  target.is_thread_safe = is_thread_safe;
-  target.make_gradient = [&](int) {
+  SampledDensity density = unitGaussian();
+  density.is_thread_safe = is_thread_safe;
+  density.make_gradient = [&](int) {
     return [&](const Vector6d& pose, Random&) {
       const int now = ++running;
       int seen = largest;
@@ -402,7 +402,7 @@ largestConcurrency(bool is_thread_safe,
   };
   auto options = chainOptions(4, 4000);
   options.num_threads = num_threads;
-  runChains(Vector6d::Zero(), target, withSteps(0.1), options);
+  runChains(Vector6d::Zero(), density, withSteps(0.1), options);
   return largest;
 }
 
