@@ -1,5 +1,4 @@
 #include "search/kd_tree_build.h"
-#include "search/kd_tree_kernels.h"
 
 #include <bayesian_icp/kd_tree.h>
 
@@ -9,35 +8,24 @@
 #include <utility>
 
 namespace bayesian_icp {
-namespace {
 
-using kd_tree::Search;
-
-Search
-searchOf(InstructionSet instruction_set)
-{
-  switch (instruction_set) {
-#if defined(BAYESIAN_ICP_X86_KERNELS)
-  case InstructionSet::Sse2:
-    return kd_tree::searchSse2;
-  case InstructionSet::Avx2:
-    return kd_tree::searchAvx2;
-#endif
-  default:
-    return kd_tree::searchPlain;
-  }
-}
-
-Search
-supportedSearchOf(InstructionSet instruction_set)
+const kd_tree::Searches&
+kd_tree::searchesOf(InstructionSet instruction_set)
 {
   const auto supported = supportedInstructionSets();
   if (std::find(supported.begin(), supported.end(), instruction_set) == supported.end())
     throw std::invalid_argument("KdTree: instruction set not supported");
-  return searchOf(instruction_set);
+  switch (instruction_set) {
+#if defined(BAYESIAN_ICP_X86_KERNELS)
+  case InstructionSet::Sse2:
+    return sse2_searches;
+  case InstructionSet::Avx2:
+    return avx2_searches;
+#endif
+  default:
+    return plain_searches;
+  }
 }
-
-} // namespace
 
 // For users who compile as C++14, where a static member is no inline variable.
 constexpr std::uint32_t KdTree::none;
@@ -45,7 +33,7 @@ constexpr std::uint32_t KdTree::none;
 struct KdTree::Tree {
   kd_tree::Storage storage;
   kd_tree::View view;
-  Search search;
+  kd_tree::Searches searches;
 };
 
 KdTree::KdTree(Eigen::Matrix3Xf points, int num_threads)
@@ -59,15 +47,9 @@ KdTree::KdTree(Eigen::Matrix3Xf points, int num_threads, InstructionSet instruct
   if (num_points >= none)
     throw std::invalid_argument("KdTree: too many points");
   auto tree = std::make_unique<Tree>();
-  tree->search = supportedSearchOf(instruction_set);
+  tree->searches = kd_tree::searchesOf(instruction_set);
   tree->storage = kd_tree::build(points_.data(), num_points, num_threads);
-  const kd_tree::Storage& storage = tree->storage;
-  tree->view = {storage.nodes.data(),
-                storage.cells.data(),
-                storage.leaves.data(),
-                storage.first_leaf,
-                storage.leaf_of.data(),
-                num_points};
+  tree->view = tree->storage.view();
   tree_ = std::move(tree);
 }
 
@@ -86,7 +68,7 @@ KdTree::nearest(const Eigen::Vector3f& query,
   kd_tree::Best best{
       std::min(max_squared_distance, max_float), kd_tree::no_point, false};
   if (query.allFinite())
-    tree_->search(tree_->view, query.data(), hint, best);
+    tree_->searches.nearest(tree_->view, query.data(), hint, best);
   if (best.index == kd_tree::no_point)
     return {none, std::numeric_limits<float>::infinity(), false};
   return {best.index, best.squared_distance, best.is_tied};

@@ -1,9 +1,12 @@
 /** \file
- * \brief Internal: building the tree of KdTree.
+ * \brief Internal: the tree of KdTree and PointNeighbors, and how it is built and
+ * searched.
  */
 #pragma once
 
 #include "search/kd_tree_kernels.h"
+
+#include <bayesian_icp/kd_tree.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +24,17 @@ struct Storage {
   std::uint32_t first_leaf = 0;
   /** Points in the tree. */
   std::size_t num_points = 0;
+
+  View
+  view() const
+  {
+    return {nodes.data(),
+            cells.data(),
+            leaves.data(),
+            first_leaf,
+            leaf_of.data(),
+            leaf_of.size()};
+  }
 };
 
 /** Whether a search finds all points that are equal to each other, or only the one with
@@ -34,6 +48,10 @@ build(const float* points,
       std::size_t num_points,
       int num_threads,
       RepeatedPoints repeated = RepeatedPoints::LeftOut);
+
+/** \throws std::invalid_argument if the instruction set is not supported */
+const Searches&
+searchesOf(InstructionSet instruction_set);
 
 } // namespace kd_tree
 } // namespace bayesian_icp

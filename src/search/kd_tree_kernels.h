@@ -63,22 +63,36 @@ struct Best {
   bool is_tied;
 };
 
-/** Improve \p best to the point nearest to the finite \p query, among equally near ones
- * that of the smallest index. The search begins around the point with index \p hint, if
- * there is one. */
-using Search = void (*)(const View& tree,
-                        const float* query,
-                        std::uint32_t hint,
-                        Best& best);
+/** The nearest points so far, at least as many as are wanted if there are so many. */
+struct NearestK {
+  /** How many are wanted, at least 1. */
+  std::size_t count;
+  /** Squared distance beyond which no point is wanted. */
+  float limit;
+  /** A key for each point: the bits of its squared distance, then its index. Keys sort
+   * as the points do: nearest first, equally near ones by their index. There is room
+   * for 2 * (count + leaf_size) keys. */
+  std::uint64_t* first;
+  std::uint64_t* end;
+};
 
+/** Keep the \p found.count nearest points, and lower the limit to the last of them. */
 void
-searchPlain(const View& tree, const float* query, std::uint32_t hint, Best& best);
+dropOthers(NearestK& found);
 
+/** The searches for a finite \p query [m], of one instruction set. */
+struct Searches {
+  /** Improve \p best to the nearest point, among equally near ones that of the smallest
+   * index. The search begins around the point with index \p hint, if there is one. */
+  void (*nearest)(const View& tree, const float* query, std::uint32_t hint, Best& best);
+  /** Add the points to \p found, which has none before. */
+  void (*nearestK)(const View& tree, const float* query, NearestK& found);
+};
+
+extern const Searches plain_searches;
 #if defined(BAYESIAN_ICP_X86_KERNELS)
-void
-searchSse2(const View& tree, const float* query, std::uint32_t hint, Best& best);
-void
-searchAvx2(const View& tree, const float* query, std::uint32_t hint, Best& best);
+extern const Searches sse2_searches;
+extern const Searches avx2_searches;
 #endif
 
 } // namespace kd_tree

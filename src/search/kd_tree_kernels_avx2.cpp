@@ -1,5 +1,5 @@
-// The search for processors with AVX2. Compiled with more instructions than the
-// library: include nothing here but the search and the intrinsics.
+// The searches for processors with AVX2. Compiled with more instructions than the
+// library: include nothing here but the searches and the intrinsics.
 #include "search/kd_tree_search.h"
 
 #include <immintrin.h>
@@ -36,11 +36,7 @@ struct EightFloats {
 
 } // namespace
 
-void
-searchAvx2(const View& tree, const float* query, std::uint32_t hint, Best& best)
-{
-  search<EightFloats>(tree, query, hint, best);
-}
+const Searches avx2_searches = {nearest<EightFloats>, nearestK<EightFloats>};
 
 } // namespace kd_tree
 } // namespace bayesian_icp

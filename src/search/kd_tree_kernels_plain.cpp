@@ -1,4 +1,4 @@
-// The search for any processor.
+// The searches for any processor.
 #include "search/kd_tree_search.h"
 
 namespace bayesian_icp {
@@ -26,11 +26,7 @@ struct OneFloat {
 
 } // namespace
 
-void
-searchPlain(const View& tree, const float* query, std::uint32_t hint, Best& best)
-{
-  search<OneFloat>(tree, query, hint, best);
-}
+const Searches plain_searches = {nearest<OneFloat>, nearestK<OneFloat>};
 
 } // namespace kd_tree
 } // namespace bayesian_icp

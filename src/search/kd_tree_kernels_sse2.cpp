@@ -1,4 +1,4 @@
-// The search for any x86-64 processor.
+// The searches for any x86-64 processor.
 #include "search/kd_tree_search.h"
 
 #include <immintrin.h>
@@ -34,11 +34,7 @@ struct FourFloats {
 
 } // namespace
 
-void
-searchSse2(const View& tree, const float* query, std::uint32_t hint, Best& best)
-{
-  search<FourFloats>(tree, query, hint, best);
-}
+const Searches sse2_searches = {nearest<FourFloats>, nearestK<FourFloats>};
 
 } // namespace kd_tree
 } // namespace bayesian_icp

@@ -1,6 +1,6 @@
 /** \file
- * \brief Internal: the search in a tree of boxes, written once for all instruction
- * sets.
+ * \brief Internal: the searches in a tree of boxes, written once for all instruction
+ * sets, and for the nearest point (Best) and the k nearest ones (NearestK).
  *
  * Included by the kernels only. A kernel says what its vectors can do: a Pack is
  * `width` floats with load(), fill(), sub(), add(), mul(), min(), max(), lessEqual()
@@ -10,7 +10,7 @@
  * The kernels agree to the last bit: the same operations in the same order, none fused.
  * A rounded difference, square and sum are monotonous, so that the bound of a box,
  * taken like the distance of a point, is never above the distance of a point in it: the
- * search is exact in single precision, ties included.
+ * searches are exact in single precision, ties included.
  */
 #pragma once
 
@@ -75,11 +75,33 @@ squaredNorm(typename Pack::Vector x, typename Pack::Vector y, typename Pack::Vec
   return Pack::add(Pack::add(Pack::mul(x, x), Pack::mul(y, y)), Pack::mul(z, z));
 }
 
+inline float
+limitOf(const Best& best)
+{
+  return best.squared_distance;
+}
+
+inline float
+limitOf(const NearestK& found)
+{
+  return found.limit;
+}
+
 template <typename Pack>
 inline typename Pack::Vector
 pointOffset(const Leaf& leaf, std::size_t axis, std::size_t place, const float* query)
 {
   return Pack::sub(Pack::load(leaf.coordinates[axis] + place), Pack::fill(query[axis]));
+}
+
+/** Squared distances of the points of a leaf from \p place on. */
+template <typename Pack>
+inline typename Pack::Vector
+pointDistances(const Leaf& leaf, std::size_t place, const float* query)
+{
+  return squaredNorm<Pack>(pointOffset<Pack>(leaf, 0, place, query),
+                           pointOffset<Pack>(leaf, 1, place, query),
+                           pointOffset<Pack>(leaf, 2, place, query));
 }
 
 /** Distance to an interval along one axis, 0 inside. */
@@ -100,10 +122,7 @@ searchLeaf(const Leaf& leaf, const float* query, Best& best)
   constexpr std::size_t num_packs = leaf_size / Pack::width;
   typename Pack::Vector distances[num_packs];
   for (std::size_t i = 0; i < num_packs; ++i)
-    distances[i] =
-        squaredNorm<Pack>(pointOffset<Pack>(leaf, 0, i * Pack::width, query),
-                          pointOffset<Pack>(leaf, 1, i * Pack::width, query),
-                          pointOffset<Pack>(leaf, 2, i * Pack::width, query));
+    distances[i] = pointDistances<Pack>(leaf, i * Pack::width, query);
   auto nearest = distances[0];
   for (std::size_t i = 1; i < num_packs; ++i)
     nearest = Pack::min(nearest, distances[i]);
@@ -123,18 +142,39 @@ searchLeaf(const Leaf& leaf, const float* query, Best& best)
     best.is_tied = is_tied;
 }
 
-/** Squared distances of the children's boxes; a bit for each child that may hold
- * something better than \p best. */
+template <typename Pack>
+inline void
+searchLeaf(const Leaf& leaf, const float* query, NearestK& found)
+{
+  alignas(64) float distances[leaf_size];
+  unsigned wanted = 0;
+  for (std::size_t place = 0; place < leaf_size; place += Pack::width) {
+    const auto some = pointDistances<Pack>(leaf, place, query);
+    wanted |= Pack::lessEqual(some, Pack::fill(found.limit)) << place;
+    Pack::store(distances + place, some);
+  }
+  for (; wanted != 0; wanted &= wanted - 1) {
+    const int i = __builtin_ctz(wanted);
+    std::uint32_t bits;
+    __builtin_memcpy(&bits, distances + i, sizeof(bits));
+    *found.end++ = std::uint64_t(bits) << 32 | leaf.index[i];
+  }
+  if (found.end > found.first + 2 * found.count + leaf_size)
+    dropOthers(found);
+}
+
+/** Squared distances of the children's boxes; a bit for each child whose box is within
+ * \p limit. */
 template <typename Pack>
 inline unsigned
-boundChildren(const Node& node, const float* query, const Best& best, float* bounds)
+boundChildren(const Node& node, const float* query, float limit, float* bounds)
 {
   unsigned promising = 0;
   for (std::size_t child = 0; child < fan_out; child += Pack::width) {
     const auto bound = squaredNorm<Pack>(boxOffset<Pack>(node, 0, child, query),
                                          boxOffset<Pack>(node, 1, child, query),
                                          boxOffset<Pack>(node, 2, child, query));
-    promising |= Pack::lessEqual(bound, Pack::fill(best.squared_distance)) << child;
+    promising |= Pack::lessEqual(bound, Pack::fill(limit)) << child;
     Pack::store(bounds + child, bound);
   }
   return promising;
@@ -158,13 +198,13 @@ descend(std::uint32_t number, const float* bounds, unsigned promising, Pending*&
 }
 
 /** Search a subtree completely, but for the leaf that has been searched. */
-template <typename Pack>
+template <typename Pack, typename Found>
 inline void
 searchBelow(const View& tree,
             Pending current,
             std::uint32_t searched_leaf,
             const float* query,
-            Best& best)
+            Found& found)
 {
   Pending pending[max_pending];
   Pending* end = pending;
@@ -172,12 +212,13 @@ searchBelow(const View& tree,
     unsigned promising = 0;
     if (current.number < tree.first_leaf) {
       alignas(64) float bounds[fan_out];
-      promising = boundChildren<Pack>(tree.nodes[current.number], query, best, bounds);
+      promising = boundChildren<Pack>(
+          tree.nodes[current.number], query, limitOf(found), bounds);
       if (promising)
         current = descend(current.number, bounds, promising, end);
     }
     else if (current.number - tree.first_leaf != searched_leaf) {
-      searchLeaf<Pack>(tree.leaves[current.number - tree.first_leaf], query, best);
+      searchLeaf<Pack>(tree.leaves[current.number - tree.first_leaf], query, found);
     }
     if (promising)
       continue;
@@ -186,13 +227,13 @@ searchBelow(const View& tree,
         return;
       current = *--end;
     }
-    while (current.bound > best.squared_distance);
+    while (current.bound > limitOf(found));
   }
 }
 
 template <typename Pack>
-inline void
-search(const View& tree, const float* query, std::uint32_t hint, Best& best)
+void
+nearest(const View& tree, const float* query, std::uint32_t hint, Best& best)
 {
   const std::uint32_t leaf = hint < tree.num_indices ? tree.leaf_of[hint] : no_leaf;
   Pending top{0.f, 0};
@@ -201,6 +242,13 @@ search(const View& tree, const float* query, std::uint32_t hint, Best& best)
     top.number = climb(tree, leaf, query, best);
   }
   searchBelow<Pack>(tree, top, leaf, query, best);
+}
+
+template <typename Pack>
+void
+nearestK(const View& tree, const float* query, NearestK& found)
+{
+  searchBelow<Pack>(tree, {0.f, 0}, no_leaf, query, found);
 }
 
 } // namespace

@@ -8,28 +8,13 @@
 namespace bayesian_icp {
 
 using Eigen::Vector3f;
-using kd_tree::fan_out;
-using kd_tree::Leaf;
 using kd_tree::leaf_size;
-using kd_tree::Node;
 
 namespace {
 
 /** Above any squared distance to a neighbour; below that to a place without a point, or
  * with one so far away that a float cannot hold it. */
 constexpr float no_limit = std::numeric_limits<float>::max();
-
-/** A level leaves at most seven of its children behind, and 2^32 points have less than
- * eleven levels. */
-constexpr std::size_t max_pending = 11 * fan_out;
-
-std::uint64_t
-keyOf(float squared_distance, std::uint32_t index)
-{
-  std::uint32_t bits;
-  std::memcpy(&bits, &squared_distance, sizeof(bits));
-  return (std::uint64_t(bits) << 32) | index;
-}
 
 float
 squaredDistanceOf(std::uint64_t key)
@@ -38,91 +23,6 @@ squaredDistanceOf(std::uint64_t key)
   float squared_distance;
   std::memcpy(&squared_distance, &bits, sizeof(bits));
   return squared_distance;
-}
-
-/** Subtrees still to be searched, the nearest one last. */
-class Pending {
-public:
-  struct Subtree {
-    float bound;
-    std::uint32_t number;
-  };
-
-  bool
-  isEmpty() const
-  {
-    return end_ == subtrees_;
-  }
-
-  Subtree
-  take()
-  {
-    return *--end_;
-  }
-
-  void
-  add(Subtree subtree)
-  {
-    *end_++ = subtree;
-  }
-
-  /** The children whose boxes are within \p limit. */
-  void
-  addChildren(const Node& node,
-              std::uint32_t number,
-              const Vector3f& query,
-              float limit)
-  {
-    float bounds[fan_out];
-    for (std::size_t child = 0; child < fan_out; ++child)
-      bounds[child] = squaredNorm(offset(node, 0, child, query[0]),
-                                  offset(node, 1, child, query[1]),
-                                  offset(node, 2, child, query[2]));
-    Subtree* const first = end_;
-    for (std::size_t child = 0; child < fan_out; ++child) {
-      if (bounds[child] > limit)
-        continue;
-      Subtree* place = end_++;
-      for (; place > first && place[-1].bound < bounds[child]; --place)
-        *place = place[-1];
-      *place = {bounds[child],
-                static_cast<std::uint32_t>(fan_out * number + 1 + child)};
-    }
-  }
-
-  static float
-  squaredNorm(float x, float y, float z)
-  {
-    return (x * x + y * y) + z * z;
-  }
-
-private:
-  static float
-  offset(const Node& node, std::size_t axis, std::size_t child, float coordinate)
-  {
-    return std::max(std::max(node.lower[axis][child] - coordinate,
-                             coordinate - node.upper[axis][child]),
-                    0.f);
-  }
-
-  Subtree subtrees_[max_pending];
-  Subtree* end_ = subtrees_;
-};
-
-/** Append the points of a leaf that are within \p limit; there is room for all. */
-std::uint64_t*
-appendLeaf(const Leaf& leaf, const Vector3f& query, float limit, std::uint64_t* end)
-{
-  float squared_distances[leaf_size];
-  for (std::size_t i = 0; i < leaf_size; ++i)
-    squared_distances[i] = Pending::squaredNorm(leaf.coordinates[0][i] - query[0],
-                                                leaf.coordinates[1][i] - query[1],
-                                                leaf.coordinates[2][i] - query[2]);
-  for (std::size_t i = 0; i < leaf_size; ++i) {
-    *end = keyOf(squared_distances[i], leaf.index[i]);
-    end += squared_distances[i] <= limit ? 1 : 0;
-  }
-  return end;
 }
 
 /** Sort the \p count nearest of the keys to the front: into buckets of equal width in
@@ -173,12 +73,22 @@ sortNearest(const std::vector<std::uint64_t>& keys,
 
 } // namespace
 
+void
+kd_tree::dropOthers(NearestK& found)
+{
+  std::uint64_t* const last = found.first + found.count - 1;
+  std::nth_element(found.first, last, found.end);
+  found.end = last + 1;
+  found.limit = squaredDistanceOf(*last);
+}
+
 PointNeighbors::PointNeighbors(const Eigen::Matrix3Xf& points)
 : points_(points)
 , tree_(kd_tree::build(points.data(),
                        static_cast<std::size_t>(points.cols()),
                        1,
                        kd_tree::RepeatedPoints::Kept))
+, nearest_k_(kd_tree::searchesOf(supportedInstructionSets().back()).nearestK)
 {}
 
 std::vector<std::uint32_t>
@@ -186,7 +96,7 @@ PointNeighbors::alongTree() const
 {
   std::vector<std::uint32_t> indices;
   indices.reserve(tree_.num_points);
-  for (const Leaf& leaf : tree_.leaves)
+  for (const kd_tree::Leaf& leaf : tree_.leaves)
     for (const std::uint32_t index : leaf.index)
       if (index != kd_tree::no_point)
         indices.push_back(index);
@@ -201,29 +111,10 @@ PointNeighbors::gather(const Vector3f& query,
                        float limit,
                        std::vector<std::uint64_t>& found) const
 {
-  const std::size_t most = 2 * count + leaf_size;
-  found.resize(most + leaf_size);
-  std::uint64_t* const first = found.data();
-  std::uint64_t* end = first;
-  Pending pending;
-  pending.add({0.f, 0});
-  while (!pending.isEmpty()) {
-    const auto subtree = pending.take();
-    if (subtree.bound > limit)
-      continue;
-    if (subtree.number < tree_.first_leaf) {
-      pending.addChildren(tree_.nodes[subtree.number], subtree.number, query, limit);
-      continue;
-    }
-    end =
-        appendLeaf(tree_.leaves[subtree.number - tree_.first_leaf], query, limit, end);
-    if (end > first + most) {
-      std::nth_element(first, first + count - 1, end);
-      end = first + count;
-      limit = squaredDistanceOf(end[-1]);
-    }
-  }
-  found.resize(static_cast<std::size_t>(end - first));
+  found.resize(2 * (count + leaf_size));
+  kd_tree::NearestK nearest{count, limit, found.data(), found.data()};
+  nearest_k_(tree_.view(), query.data(), nearest);
+  found.resize(static_cast<std::size_t>(nearest.end - nearest.first));
   return found.size();
 }
 

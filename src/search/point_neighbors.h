@@ -75,6 +75,7 @@ private:
 
   const Eigen::Matrix3Xf& points_;
   kd_tree::Storage tree_;
+  decltype(kd_tree::Searches::nearestK) nearest_k_;
 };
 
 } // namespace bayesian_icp
