@@ -92,22 +92,10 @@ TreeTarget::match(const Vector6d& /* pose */,
       continue;
     hint = neighbor.index;
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-    if (hasNormals())
+    if (normals_.cols() > 0)
       normal = normals_.col(hint);
     matches.push_back({i, tree_.points().col(hint), normal});
   }
-}
-
-bool
-TreeTarget::hasNormals() const
-{
-  return normals_.cols() > 0;
-}
-
-bool
-TreeTarget::isThreadSafe() const
-{
-  return true;
 }
 
 SearchTarget::SearchTarget(const CorrespondenceSearch& search) : search_(search) {}
@@ -125,12 +113,6 @@ SearchTarget::match(const Vector6d& pose,
   for (const auto& pair : pairs)
     matches.push_back(
         {pair.source_index, pair.target_point.cast<float>(), Eigen::Vector3f::Zero()});
-}
-
-bool
-SearchTarget::hasNormals() const
-{
-  return false;
 }
 
 bool

@@ -43,13 +43,12 @@ public:
         NeighborHints& hints,
         std::vector<TargetMatch>& matches) const = 0;
 
-  /** \brief Whether match() returns normals. */
-  virtual bool
-  hasNormals() const = 0;
-
   /** \brief Whether several threads may call match() at the same time. */
   virtual bool
-  isThreadSafe() const = 0;
+  isThreadSafe() const
+  {
+    return true;
+  }
 };
 
 /** \brief Exact nearest neighbours in a KdTree, for any number of threads. */
@@ -69,12 +68,6 @@ public:
         NeighborHints& hints,
         std::vector<TargetMatch>& matches) const override;
 
-  bool
-  hasNormals() const override;
-
-  bool
-  isThreadSafe() const override;
-
 private:
   const KdTree& tree_;
   float max_squared_distance_;
@@ -93,9 +86,6 @@ public:
         const Eigen::Matrix3Xf& moved,
         NeighborHints& hints,
         std::vector<TargetMatch>& matches) const override;
-
-  bool
-  hasNormals() const override;
 
   bool
   isThreadSafe() const override;

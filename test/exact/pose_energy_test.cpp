@@ -110,12 +110,6 @@ public:
   }
 
   bool
-  hasNormals() const override
-  {
-    return target_.hasNormals();
-  }
-
-  bool
   isThreadSafe() const override
   {
     return false;
