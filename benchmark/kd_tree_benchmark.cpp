@@ -1,6 +1,7 @@
-// Nearest neighbours of one scan in another: bayesian_icp::KdTree against
-// pcl::KdTreeFLANN and nanoflann, queries and building. All names end in the number of
-// target points; `time_per_query` is CPU time.
+// Nearest neighbours of one scan in another, neighbourhoods of a scan, and building:
+// bayesian_icp::KdTree against pcl::KdTreeFLANN and nanoflann. All names end in the
+// number of target points; `time_per_query` is CPU time. Seeded searches begin at the
+// last neighbour; nanoflann is told how far away it is.
 //
 //   kd_tree_benchmark [target.pcd] [Google Benchmark options]
 //
@@ -24,6 +25,14 @@ namespace {
 using bayesian_icp::InstructionSet;
 using bayesian_icp::KdTree;
 
+void
+countQueries(benchmark::State& state, Eigen::Index num_queries)
+{
+  state.counters["time_per_query"] = benchmark::Counter(
+      static_cast<double>(num_queries),
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
 template <typename Tree>
 void
 runQueries(benchmark::State& state, Tree tree, const Queries& queries)
@@ -33,15 +42,13 @@ runQueries(benchmark::State& state, Tree tree, const Queries& queries)
     for (Eigen::Index i = 0; i < num_queries; ++i)
       benchmark::DoNotOptimize(tree.nearest(
           queries.points.col(i), queries.last_neighbors[static_cast<std::size_t>(i)]));
-  state.counters["time_per_query"] = benchmark::Counter(
-      static_cast<double>(num_queries),
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  countQueries(state, num_queries);
 }
 
 const char*
 nameOf(InstructionSet instruction_set)
 {
-  constexpr const char* names[] = {"plain", "sse2", "avx2", "avx512"};
+  constexpr const char* names[] = {"plain", "sse2", "avx2"};
   return names[static_cast<int>(instruction_set)];
 }
 
@@ -62,9 +69,13 @@ addQueries(const std::string& order, const Queries& queries, const Scene& scene)
   add(order + "/flann", size, [&](benchmark::State& state) {
     runQueries(state, FlannTree(scene.target), queries);
   });
-  add(order + "/nanoflann", size, [&](benchmark::State& state) {
-    runQueries<const NanoflannTree&>(state, NanoflannTree(scene.target), queries);
-  });
+  for (const bool is_seeded : {false, true})
+    add(order + (is_seeded ? "/nanoflann_seeded" : "/nanoflann"),
+        size,
+        [&queries, &scene, is_seeded](benchmark::State& state) {
+          runQueries<const NanoflannTree&>(
+              state, NanoflannTree(scene.target, is_seeded), queries);
+        });
   for (const bool is_seeded : {false, true})
     for (const auto set : bayesian_icp::supportedInstructionSets())
       add(order + (is_seeded ? "/seeded/" : "/own/") + nameOf(set),
@@ -73,6 +84,24 @@ addQueries(const std::string& order, const Queries& queries, const Scene& scene)
             runQueries<const OwnTree&>(
                 state, OwnTree(scene.target, is_seeded, set), queries);
           });
+}
+
+/** Neighbourhoods of all points, as preset `calibrated` asks for them: of 45 points, in
+ * an order in which most are near the one before. */
+template <typename Tree>
+void
+addNeighborhoods(const std::string& name, const Scene& scene)
+{
+  add("neighborhoods/" + name,
+      static_cast<std::size_t>(scene.target.cols()),
+      [&scene](benchmark::State& state) {
+        const auto order = bayesian_icp::PointNeighbors(scene.target).alongTree();
+        Tree tree(scene.target);
+        for (auto _ : state)
+          for (const std::uint32_t point : order)
+            benchmark::DoNotOptimize(tree.nearestK(scene.target.col(point), 45));
+        countQueries(state, scene.target.cols());
+      });
 }
 
 void
@@ -134,6 +163,9 @@ main(int argc, char** argv)
   for (const Scene& scene : all_scenes) {
     addQueries("scan_order", scene.scan_order, scene);
     addQueries("random_order", scene.random_order, scene);
+    addNeighborhoods<FlannTree>("flann", scene);
+    addNeighborhoods<NanoflannTree>("nanoflann", scene);
+    addNeighborhoods<OwnNeighbors>("own", scene);
     addBuilding(scene);
   }
   benchmark::RunSpecifiedBenchmarks();

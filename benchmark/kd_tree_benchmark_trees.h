@@ -1,8 +1,11 @@
 /** \file
  * \brief The trees that kd_tree_benchmark compares, behind one interface: made of
- * points, build() again, nearest(query, last neighbour).
+ * points, build() again, nearest(query, last neighbour), and nearestK(query, k), which
+ * returns the index of the last of them.
  */
 #pragma once
+
+#include "search/point_neighbors.h"
 
 #include <bayesian_icp/kd_tree.h>
 
@@ -36,6 +39,13 @@ public:
   {
     tree_.nearestKSearch({query.x(), query.y(), query.z()}, 1, index_, distance_);
     return index_[0];
+  }
+
+  int
+  nearestK(const Eigen::Vector3f& query, int k)
+  {
+    tree_.nearestKSearch({query.x(), query.y(), query.z()}, k, index_, distance_);
+    return index_.back();
   }
 
 private:
@@ -73,11 +83,40 @@ using NanoflannIndex = nanoflann::KDTreeSingleIndexAdaptor<
     3,
     std::uint32_t>;
 
+/** What nanoflann keeps of a search: the nearest point, at first perhaps a guess. */
+struct NanoflannNearest {
+  using DistanceType = float;
+
+  std::uint32_t index = 0;
+  float squared_distance = std::numeric_limits<float>::max();
+
+  bool
+  full() const
+  {
+    return true;
+  }
+  float
+  worstDist() const
+  {
+    return squared_distance;
+  }
+  bool
+  addPoint(float nearer, std::uint32_t at)
+  {
+    if (nearer < squared_distance) {
+      squared_distance = nearer;
+      index = at;
+    }
+    return true;
+  }
+};
+
 class NanoflannTree {
 public:
-  explicit NanoflannTree(const Eigen::Matrix3Xf& points)
+  explicit NanoflannTree(const Eigen::Matrix3Xf& points, bool is_seeded = false)
   : cloud_{points}
   , tree_(3, cloud_, {10})
+  , is_seeded_(is_seeded)
   {
     build();
   }
@@ -89,17 +128,32 @@ public:
   }
 
   std::uint32_t
-  nearest(const Eigen::Vector3f& query, std::uint32_t) const
+  nearest(const Eigen::Vector3f& query, std::uint32_t last_neighbor) const
   {
-    std::uint32_t index = 0;
-    float squared_distance = 0.f;
-    tree_.knnSearch(query.data(), 1, &index, &squared_distance);
-    return index;
+    NanoflannNearest result;
+    if (is_seeded_)
+      result = {last_neighbor,
+                (cloud_.points.col(last_neighbor) - query).squaredNorm()};
+    tree_.findNeighbors(result, query.data(), {});
+    return result.index;
+  }
+
+  std::uint32_t
+  nearestK(const Eigen::Vector3f& query, int k)
+  {
+    const auto count = static_cast<std::size_t>(k);
+    indices_.resize(count);
+    squared_distances_.resize(count);
+    tree_.knnSearch(query.data(), count, indices_.data(), squared_distances_.data());
+    return indices_.back();
   }
 
 private:
   NanoflannCloud cloud_;
   NanoflannIndex tree_;
+  bool is_seeded_;
+  std::vector<std::uint32_t> indices_;
+  std::vector<float> squared_distances_;
 };
 
 class OwnTree {
@@ -121,4 +175,20 @@ public:
 private:
   bayesian_icp::KdTree tree_;
   bool is_seeded_;
+};
+
+class OwnNeighbors {
+public:
+  explicit OwnNeighbors(const Eigen::Matrix3Xf& points) : neighbors_(points) {}
+
+  std::uint32_t
+  nearestK(const Eigen::Vector3f& query, int k)
+  {
+    neighbors_.find(query, static_cast<std::size_t>(k), list_);
+    return list_.indices.back();
+  }
+
+private:
+  bayesian_icp::PointNeighbors neighbors_;
+  bayesian_icp::NeighborList list_;
 };
