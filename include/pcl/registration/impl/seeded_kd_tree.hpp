@@ -111,17 +111,12 @@ public:
   }
 
   /** From now on the search for a point begins at the last answer for what was at the
-   * same address, or before it. That never changes an answer.
+   * same address. That never changes an answer.
    * \param[in] num_points how many there are, one after the other; 0: no more */
   void
   beginAtLastAnswers(std::size_t num_points)
   {
-    std::size_t num_slots = num_points > 0 ? 1 : 0;
-    while (num_slots < num_points)
-      num_slots *= 2;
-    last_answers_ = std::vector<std::atomic<std::uint32_t>>(num_slots);
-    for (auto& answer : last_answers_)
-      answer.store(Tree::none, std::memory_order_relaxed);
+    last_answers_ = std::vector<std::atomic<std::uint32_t>>(num_points);
   }
 
 private:
@@ -142,13 +137,11 @@ private:
     if (last_answers_.empty())
       return (tree_->nearest(point.getVector3fMap(), no_gate));
     // Each point of an array has a slot of its own.
-    const std::size_t mask = last_answers_.size() - 1;
     const std::size_t slot = reinterpret_cast<std::uintptr_t>(&point) / sizeof(PointT);
-    auto hint = last_answers_[slot & mask].load(std::memory_order_relaxed);
-    if (hint == Tree::none)
-      hint = last_answers_[(slot - 1) & mask].load(std::memory_order_relaxed);
-    const auto nearest = tree_->nearest(point.getVector3fMap(), no_gate, hint);
-    last_answers_[slot & mask].store(nearest.index, std::memory_order_relaxed);
+    auto& last_answer = last_answers_[slot % last_answers_.size()];
+    const auto nearest = tree_->nearest(
+        point.getVector3fMap(), no_gate, last_answer.load(std::memory_order_relaxed));
+    last_answer.store(nearest.index, std::memory_order_relaxed);
     return (nearest);
   }
 
