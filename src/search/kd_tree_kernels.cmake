@@ -1,7 +1,7 @@
-# The searches of KdTree, one file for each instruction set, chosen at run time. These
-# files alone are compiled with more than the baseline instructions, and contain nothing
-# that other code could be linked to. No fused multiply-add: results are the same on every
-# processor.
+# The searches of KdTree and PointNeighbors, one file for each instruction set, chosen at
+# run time. These files alone are compiled with more than the baseline instructions, and
+# contain nothing that other code could be linked to. No fused multiply-add: results are
+# the same on every processor.
 target_sources(bayesian_icp_core_objects PRIVATE search/kd_tree_kernels_plain.cpp)
 set(kernel_options -ffp-contract=off)
 set_source_files_properties(search/kd_tree_kernels_plain.cpp PROPERTIES COMPILE_OPTIONS
