@@ -9,8 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 namespace po = boost::program_options;
 
@@ -219,5 +218,4 @@ sceneList()
   return list.str();
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

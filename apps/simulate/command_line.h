@@ -7,8 +7,7 @@
 
 #include <string>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief What the user asks for. */
 struct Request {
@@ -31,5 +30,4 @@ helpText();
 std::string
 sceneList();
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

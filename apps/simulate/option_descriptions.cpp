@@ -4,8 +4,7 @@
 
 #include <string>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 namespace po = boost::program_options;
 
@@ -192,5 +191,4 @@ allOptions()
   return all;
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

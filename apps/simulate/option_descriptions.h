@@ -5,12 +5,10 @@
 
 #include <boost/program_options/options_description.hpp>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief Every option takes text, which command_line.cpp turns into numbers. */
 boost::program_options::options_description
 allOptions();
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

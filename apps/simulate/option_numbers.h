@@ -7,8 +7,7 @@
 
 #include <stdexcept>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using io::textOf;
 
@@ -25,5 +24,4 @@ numberOf(const std::string& text, const std::string& option)
   return value;
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -14,8 +14,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 namespace {
 
@@ -66,5 +65,4 @@ writePair(const std::string& folder,
   files.commit();
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -7,8 +7,7 @@
 
 #include <string>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief Write source.pcd, target.pcd, T_target_source.txt and scene.json.
  *
@@ -22,5 +21,4 @@ writePair(const std::string& folder,
           const SimulationOptions& options,
           const ScanPair& pair);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -4,8 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Json = nlohmann::ordered_json;
 
@@ -155,5 +154,4 @@ recordOf(const SimulationOptions& options, const ScanPair& pair)
   return record;
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

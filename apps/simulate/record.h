@@ -9,8 +9,7 @@
 
 #include <string>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief A command line, without the output folder, that spells out every option and
  * so makes the same pair even if a default changes. */
@@ -21,5 +20,4 @@ fullCommandLine(const SimulationOptions& options);
 nlohmann::ordered_json
 recordOf(const SimulationOptions& options, const ScanPair& pair);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

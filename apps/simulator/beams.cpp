@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -151,5 +150,4 @@ Beams::quantised(double reading) const
   return reading;
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

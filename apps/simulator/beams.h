@@ -13,8 +13,7 @@
 #include <optional>
 #include <vector>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief The random numbers of one ray, drawn whether they are needed or not: a change
  * of one source of error leaves the others as they were. */
@@ -84,5 +83,4 @@ private:
   const ScanState& state_;
 };
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -3,8 +3,7 @@
  */
 #include "simulator/simulation.h"
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -111,5 +110,4 @@ defaultOptions(const std::string& scene)
   return cameraOnObject(scene, {0.0, -0.62, 0.32}, {0.16, -0.6, 0.32});
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

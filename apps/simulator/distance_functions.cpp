@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 namespace {
 
@@ -68,5 +67,4 @@ sphericalBowlDistance(const Eigen::Vector3d& point,
   return middle_surface - half_thickness;
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

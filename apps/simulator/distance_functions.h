@@ -8,8 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief Box centred at the origin, sides along the axes. */
 double
@@ -37,5 +36,4 @@ sphericalBowlDistance(const Eigen::Vector3d& point,
                       double rim_height,
                       double half_thickness);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -59,5 +58,4 @@ mugHandleDistance(const Vector3d& point)
   return std::max(ring, -inside_cup);
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -6,8 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief Heights of the objects [m]. */
 constexpr double bowl_height = 0.076;
@@ -30,5 +29,4 @@ mugBodyDistance(const Eigen::Vector3d& point);
 double
 mugHandleDistance(const Eigen::Vector3d& point);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

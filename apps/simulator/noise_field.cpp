@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 namespace {
 
@@ -81,5 +80,4 @@ NoiseField::mixed(double independent, int row, int column) const
          std::sqrt(correlation_) * field_(column, row);
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

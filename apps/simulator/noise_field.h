@@ -9,8 +9,7 @@
 
 #include <cstdint>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief A smooth random field over the rays of one scan: white noise blurred by a
  * Gaussian of SensorOptions::noise_correlation_pixels along rows and columns, scaled to
@@ -36,5 +35,4 @@ private:
   Eigen::ArrayXXd field_;
 };
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -4,8 +4,7 @@
 #include "simulator/household_objects.h"
 #include "simulator/scene_parts.h"
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -99,5 +98,4 @@ makeTable()
   return scene;
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -71,5 +70,4 @@ makeTree()
           {floorPart("ground"), {"trunk", trunk}}};
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

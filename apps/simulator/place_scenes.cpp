@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -189,5 +188,4 @@ makeGround()
       "an endless plane", "translation along x and y, rotation about z", {floorPart()}};
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -4,8 +4,7 @@
 #include <limits>
 #include <vector>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -70,5 +69,4 @@ surfaceNormal(const Scene& scene, const Vector3d& point)
   return gradient.normalized();
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

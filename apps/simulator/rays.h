@@ -9,8 +9,7 @@
 
 #include <optional>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief A half line in the world frame [m]. */
 struct Ray {
@@ -28,5 +27,4 @@ castRay(const Scene& scene, const Ray& ray, double max_range);
 Eigen::Vector3d
 surfaceNormal(const Scene& scene, const Eigen::Vector3d& point);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -8,8 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -199,5 +198,4 @@ makeTunnel()
       {floorPart(), {"wall", wall}}};
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

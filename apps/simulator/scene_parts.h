@@ -10,8 +10,7 @@
 #include <string>
 #include <utility>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief The solid with its origin moved to \p origin. */
 inline DistanceFunction
@@ -137,5 +136,4 @@ makeBareGround();
 Scene
 makeTunnel();
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

@@ -7,8 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -98,5 +97,4 @@ makeScene(const std::string& name)
                               "'; --list-scenes shows all");
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

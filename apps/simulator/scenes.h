@@ -15,8 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief Signed distance [m] of a point of the world frame [m] to a surface. */
 using DistanceFunction = std::function<double(const Eigen::Vector3d&)>;
@@ -68,5 +67,4 @@ sceneNames();
 Scene
 makeScene(const std::string& name);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

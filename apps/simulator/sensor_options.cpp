@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 namespace {
 
@@ -149,5 +148,4 @@ validate(const SensorOptions& options)
           "larger than min-range");
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

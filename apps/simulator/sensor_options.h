@@ -8,8 +8,7 @@
 
 #include <cstdint>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 enum class SensorKind { DepthCamera, Lidar };
 
@@ -122,5 +121,4 @@ incidenceFactor(const SensorOptions& options, double angle_of_incidence);
 void
 validate(const SensorOptions& options);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

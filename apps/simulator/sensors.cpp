@@ -8,8 +8,7 @@
 
 #include <cmath>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -119,5 +118,4 @@ scanScene(const Scene& scene,
   return joinRows(rows, rays_per_row);
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

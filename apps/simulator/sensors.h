@@ -16,8 +16,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 struct Scan {
   /** 3 x n, sensor frame [m]. */
@@ -44,5 +43,4 @@ scanScene(const Scene& scene,
           std::uint32_t scan_number,
           const Vector6d& sweep_motion = Vector6d::Zero());
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

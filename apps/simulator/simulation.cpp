@@ -2,8 +2,7 @@
 
 #include <stdexcept>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -125,5 +124,4 @@ simulate(const SimulationOptions& options)
   return pair;
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

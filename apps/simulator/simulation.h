@@ -12,8 +12,7 @@
 #include <cstdint>
 #include <string>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 /** \brief Where a sensor stands and where it looks, world frame [m]. */
 struct View {
@@ -77,5 +76,4 @@ struct ScanPair {
 ScanPair
 simulate(const SimulationOptions& options);
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator

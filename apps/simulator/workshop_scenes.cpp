@@ -5,8 +5,7 @@
 
 #include <algorithm>
 
-namespace bayesian_icp {
-namespace simulator {
+namespace bayesian_icp::simulator {
 
 using Eigen::Vector3d;
 
@@ -59,5 +58,4 @@ makeTool()
            box("pommel", {-0.08, -0.012, 0.02}, {-0.06, 0.012, 0.04})}};
 }
 
-} // namespace simulator
-} // namespace bayesian_icp
+} // namespace bayesian_icp::simulator
