@@ -1,8 +1,7 @@
 #include "batch/batch_command.h"
 
+#include "batch/ranks.h"
 #include "io/command_line.h"
-#include "io/errors.h"
-#include "register/option_descriptions.h"
 #include "register/settings_options.h"
 
 #include <sstream>
@@ -15,28 +14,25 @@ namespace po = boost::program_options;
 namespace {
 
 po::options_description
-describeOptionsOfBatch()
+describeOptionsOfBatch(BatchRequest& request)
 {
   po::options_description group("General");
-  const auto text = [](const char* placeholder) {
-    return po::value<std::string>()->value_name(placeholder);
-  };
-  group.add_options()("help,h", "Show this text.");
-  group.add_options()("version", "Show the version.");
-  group.add_options()("results",
-                      text("FILE"),
-                      "Write the lines to this file, and skip pairs that already have "
-                      "a line in it. (default: standard output)");
-  group.add_options()("output,o",
-                      text("DIR"),
-                      "Write DIR/NAME/posterior.json and samples.csv for each pair. "
-                      "Without it, only the lines are written.");
-  group.add_options()("suggested-prior",
-                      "Take the prior about the guess and the source's centroid, with "
-                      "the standard deviations 'suggested_prior_sigma' of each pair. "
-                      "Without it, all pairs have the prior of --prior-mean and "
-                      "--prior-variance.");
-  group.add_options()("quiet", "Show no progress.");
+  // clang-format off
+  group.add_options()
+    ("help,h", "Show this text.")
+    ("version", "Show the version.")
+    ("results", io::fileName("FILE", request.results_file),
+     "Write the lines to this file, and skip pairs that already have a line in it. "
+     "(default: standard output)")
+    ("output,o", io::fileName("DIR", request.output_folder),
+     "Write DIR/NAME/posterior.json and samples.csv for each pair. Without it, only "
+     "the lines are written.")
+    ("suggested-prior", io::flag(request.use_suggested_prior),
+     "Take the prior about the guess and the source's centroid, with the standard "
+     "deviations 'suggested_prior_sigma' of each pair. Without it, all pairs have the "
+     "prior of --prior-mean and --prior-variance.")
+    ("quiet", io::flag(request.is_quiet), "Show no progress.");
+  // clang-format on
   po::options_description all;
   all.add(group);
   describeSettings(Settings(), all);
@@ -52,38 +48,8 @@ refuseSecondPrior(const po::variables_map& given)
                            " exclude each other");
 }
 
-} // namespace
-
-BatchRequest
-parseBatchCommand(int argc, const char* const* argv)
-{
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, describeOptionsOfBatch(), "manifest");
-  BatchRequest request;
-  if (given.count("help") > 0 || given.count("version") > 0) {
-    request.kind = given.count("help") > 0 ? BatchRequest::Kind::ShowHelp
-                                           : BatchRequest::Kind::ShowVersion;
-    return request;
-  }
-  const std::vector<std::string> manifests = io::optionTexts(given, "manifest");
-  if (manifests.empty())
-    throw io::UsageError("expected a manifest");
-  if (manifests.size() > 1)
-    throw io::UsageError("expected one manifest, but got a second file: " +
-                         io::quoted(manifests[1]));
-  request.manifest_file = manifests[0];
-  request.results_file = io::optionText(given, "results");
-  request.output_folder = io::optionText(given, "output");
-  request.is_quiet = given.count("quiet") > 0;
-  request.use_suggested_prior = given.count("suggested-prior") > 0;
-  if (request.use_suggested_prior)
-    refuseSecondPrior(given);
-  request.settings = settingsFrom(given, Settings(), request.note);
-  return request;
-}
-
 std::string
-batchHelpText()
+helpText(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_batch MANIFEST [options]
@@ -102,7 +68,7 @@ more pairs than threads. docs/batch.md describes the keys of a line.
 A batch that was stopped continues if it is started again with the same
 --results. If a pair cannot be read or registered, its line has the status
 "error", and the other pairs continue.
-)" << describeOptionsOfBatch()
+)" << options
        << R"(
 Exit codes:
   0    the status of all pairs is "ok"
@@ -116,6 +82,34 @@ Example:
       --prior-variance 0.01
 )";
   return help.str();
+}
+
+} // namespace
+
+std::optional<BatchRequest>
+parseBatchCommand(int argc, const char* const* argv)
+{
+  BatchRequest request;
+  const po::options_description options = describeOptionsOfBatch(request);
+  const po::variables_map given = io::splitCommandLine(argc, argv, options, "manifest");
+  if (io::printHelpOrVersion(
+          given,
+          std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
+              (Ranks::hasMpi() ? " with MPI" : " without MPI"),
+          [&options] { return helpText(options); }))
+    return std::nullopt;
+  const std::vector<std::string> manifests = io::optionTexts(given, "manifest");
+  if (manifests.empty())
+    throw io::UsageError("expected a manifest");
+  if (manifests.size() > 1)
+    throw io::UsageError("expected one manifest, but got a second file: " +
+                         io::quoted(manifests[1]));
+  request.manifest_file = manifests[0];
+  io::takeOptions(given, options);
+  if (request.use_suggested_prior)
+    refuseSecondPrior(given);
+  request.settings = settingsFrom(given, Settings(), request.note);
+  return request;
 }
 
 } // namespace bayesian_icp::app

@@ -5,14 +5,13 @@
 
 #include "register/settings.h"
 
+#include <optional>
 #include <string>
 
 namespace bayesian_icp::app {
 
 /** \brief What the user asks for. */
 struct BatchRequest {
-  enum class Kind { Register, ShowHelp, ShowVersion };
-  Kind kind = Kind::Register;
   std::string manifest_file;
   /** Empty for standard output. */
   std::string results_file;
@@ -27,13 +26,10 @@ struct BatchRequest {
 };
 
 /** \brief Read the command line, and the configuration file that it names.
+ * \return nothing if it asks for help or version, which has been printed
  * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
  *         read */
-BatchRequest
+std::optional<BatchRequest>
 parseBatchCommand(int argc, const char* const* argv);
-
-/** \brief What --help prints. */
-std::string
-batchHelpText();
 
 } // namespace bayesian_icp::app

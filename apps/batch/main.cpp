@@ -143,18 +143,10 @@ runToFile(const BatchRequest& request,
 int
 runTool(int argc, char** argv, const Ranks& ranks)
 {
-  const BatchRequest request = parseBatchCommand(argc, argv);
-  switch (request.kind) {
-  case BatchRequest::Kind::ShowHelp:
-    io::print(batchHelpText());
+  const std::optional<BatchRequest> asked = parseBatchCommand(argc, argv);
+  if (!asked)
     return Good;
-  case BatchRequest::Kind::ShowVersion:
-    io::print(std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
-              (Ranks::hasMpi() ? " with MPI\n" : " without MPI\n"));
-    return Good;
-  case BatchRequest::Kind::Register:
-    break;
-  }
+  const BatchRequest& request = *asked;
   if (!request.note.empty() && !request.is_quiet && ranks.rank() == 0)
     tell("note: " + request.note);
   if (ranks.size() > 1 && request.results_file.empty())

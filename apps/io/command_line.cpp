@@ -1,6 +1,6 @@
 #include "io/command_line.h"
 
-#include "io/errors.h"
+#include "io/program.h"
 
 #include <boost/program_options/parsers.hpp>
 
@@ -21,9 +21,11 @@ splitCommandLine(int argc,
   for (const auto& option : options.options())
     if (names.insert(option->long_name()).second)
       known.add(option);
-  known.add_options()(positional_name, po::value<std::vector<std::string>>());
   po::positional_options_description positional;
-  positional.add(positional_name, -1);
+  if (positional_name != nullptr) {
+    known.add_options()(positional_name, po::value<std::vector<std::string>>());
+    positional.add(positional_name, -1);
+  }
   po::variables_map given;
   try {
     po::store(po::command_line_parser(argc, argv)
@@ -39,15 +41,61 @@ splitCommandLine(int argc,
   return given;
 }
 
-std::string
-optionText(const po::variables_map& given, const std::string& name)
+void
+takeOptions(const po::variables_map& given, const po::options_description& options)
 {
-  if (given.count(name) == 0)
-    return "";
-  auto text = given[name].as<std::string>();
-  if (text.empty())
-    throw UsageError("--" + name + ": the name is empty");
-  return text;
+  for (const auto& option : options.options())
+    if (const auto found = given.find(option->long_name()); found != given.end())
+      readOption(found->first,
+                 [&] { option->semantic()->notify(found->second.value()); });
+}
+
+bool
+printHelpOrVersion(const po::variables_map& given,
+                   const std::string& version,
+                   const std::function<std::string()>& helpText)
+{
+  if (given.count("help") > 0)
+    print(helpText());
+  else if (given.count("version") > 0)
+    print(version + '\n');
+  else
+    return false;
+  return true;
+}
+
+void
+refuseValue(const std::string& text, const std::string& expected)
+{
+  throw BadValue(": " + quoted(text) + " is not " + expected);
+}
+
+po::typed_value<std::string>*
+taken(const char* placeholder, const std::function<void(const std::string&)>& take)
+{
+  return po::value<std::string>()->value_name(placeholder)->notifier(take);
+}
+
+po::typed_value<std::string>*
+text(const char* placeholder, std::string& value)
+{
+  return po::value<std::string>(&value)->value_name(placeholder);
+}
+
+po::typed_value<std::string>*
+fileName(const char* placeholder, std::string& value)
+{
+  return taken(placeholder, [&value](const std::string& name) {
+    if (name.empty())
+      throw BadValue(": the name is empty");
+    value = name;
+  });
+}
+
+po::typed_value<bool>*
+flag(bool& value)
+{
+  return po::value<bool>(&value)->zero_tokens();
 }
 
 std::vector<std::string>

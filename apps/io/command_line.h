@@ -1,13 +1,23 @@
 /** \file
- * \brief Taking the command lines of the tools apart.
+ * \brief Reading the command lines of all tools.
+ *
+ * A tool states each option once, in the notation of Boost.Program_options: its name,
+ * what takes its value, and its help. The functions below that return a value semantic
+ * say where a value goes. takeOptions() then fills these places.
  */
 #pragma once
 
+#include "io/errors.h"
+#include "io/numbers.h"
+
 #include <boost/program_options/cmdline.hpp>
 #include <boost/program_options/options_description.hpp>
+#include <boost/program_options/value_semantic.hpp>
 #include <boost/program_options/variables_map.hpp>
 
+#include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace bayesian_icp::io {
@@ -21,7 +31,7 @@ constexpr int option_style =
 /** \brief Take a command line apart; options begin with one dash or two.
  * \param[in] options those of one name count once
  * \param[in] positional_name option under which the arguments without a dash are found,
- *            as a std::vector<std::string>
+ *            as a std::vector<std::string>; null: there may be none
  * \throws io::UsageError if there is an option that is not in \p options */
 boost::program_options::variables_map
 splitCommandLine(int argc,
@@ -29,10 +39,79 @@ splitCommandLine(int argc,
                  const boost::program_options::options_description& options,
                  const char* positional_name);
 
-/** \brief Value of an option that is a text; empty if the option is not given.
- * \throws io::UsageError if it is given empty */
-std::string
-optionText(const boost::program_options::variables_map& given, const std::string& name);
+/** \brief Put the values of the given options where \p options says, in the order of
+ * \p options. Defaults count as given.
+ * \throws UsageError that names the option if a text is not a value of it */
+void
+takeOptions(const boost::program_options::variables_map& given,
+            const boost::program_options::options_description& options);
+
+/** \brief Print the help or the version if the command line asks for it.
+ * \param[in] version the tool's name and version
+ * \return whether it does; there is nothing else to do then */
+bool
+printHelpOrVersion(const boost::program_options::variables_map& given,
+                   const std::string& version,
+                   const std::function<std::string()>& helpText);
+
+/** \brief Why a text is not a value of its option; follows the option's name. */
+struct BadValue : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/** \throws BadValue: "'text' is not EXPECTED" */
+[[noreturn]] void
+refuseValue(const std::string& text, const std::string& expected);
+
+/** \brief Run \p read, which reads the value of \p option.
+ * \throws UsageError that names the option in place of a BadValue */
+template <typename Read>
+void
+readOption(const std::string& option, const Read& read)
+{
+  try {
+    read();
+  }
+  catch (const BadValue& error) {
+    throw UsageError("--" + option + error.what());
+  }
+}
+
+/** \brief Read the number that is the whole of \p text.
+ * \throws BadValue */
+template <typename Number>
+void
+readValue(const std::string& text, Number& value)
+{
+  if (!readNumber(text, value))
+    refuseValue(
+        text, std::is_integral_v<Number> ? "a whole number in its range" : "a number");
+}
+
+/** \brief An option whose text \p take gets, which may throw a BadValue. */
+boost::program_options::typed_value<std::string>*
+taken(const char* placeholder, const std::function<void(const std::string&)>& take);
+
+/** \brief An option that is a text. */
+boost::program_options::typed_value<std::string>*
+text(const char* placeholder, std::string& value);
+
+/** \brief An option that names a file or a folder, and is not empty. */
+boost::program_options::typed_value<std::string>*
+fileName(const char* placeholder, std::string& value);
+
+/** \brief An option that is a number. */
+template <typename Number>
+boost::program_options::typed_value<std::string>*
+number(const char* placeholder, Number& value)
+{
+  return taken(placeholder,
+               [&value](const std::string& text) { readValue(text, value); });
+}
+
+/** \brief An option without a value; \p value becomes true if it is given. */
+boost::program_options::typed_value<bool>*
+flag(bool& value);
 
 /** \brief All values of an option that may be given several times, or of the arguments
  * without a dash; none if it is not given. */

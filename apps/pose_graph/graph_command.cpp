@@ -1,9 +1,6 @@
 #include "pose_graph/graph_command.h"
 
 #include "io/command_line.h"
-#include "io/errors.h"
-#include "io/numbers.h"
-#include "register/option_descriptions.h"
 #include "register/settings_options.h"
 
 #include <algorithm>
@@ -19,22 +16,23 @@ namespace fs = std::filesystem;
 namespace {
 
 po::options_description
-describeOptionsOfGraph()
+describeOptionsOfGraph(GraphCommand& command)
 {
   po::options_description group("General");
-  group.add_options()("help,h", "Show this text.");
-  group.add_options()("version", "Show the version.");
-  group.add_options()("output,o",
-                      po::value<std::string>()->value_name("FILE"),
-                      "File for the graph in g2o's format. (required)");
-  group.add_options()("loop",
-                      po::value<std::vector<std::string>>()->value_name("I,J"),
-                      "Also register scan J to scan I, counted from 0. May be given "
-                      "several times. Without it, the graph is a chain.");
-  group.add_options()("weak-edges",
-                      "Make an edge of the prior where a scan cannot be registered to "
-                      "the one before. Without it, that edge is missing.");
-  group.add_options()("quiet", "Print problems only.");
+  // clang-format off
+  group.add_options()
+    ("help,h", "Show this text.")
+    ("version", "Show the version.")
+    ("output,o", io::fileName("FILE", command.output_file),
+     "File for the graph in g2o's format. (required)")
+    ("loop", po::value<std::vector<std::string>>()->value_name("I,J"),
+     "Also register scan J to scan I, counted from 0. May be given several times. "
+     "Without it, the graph is a chain.")
+    ("weak-edges", io::flag(command.request.has_weak_edges),
+     "Make an edge of the prior where a scan cannot be registered to the one before. "
+     "Without it, that edge is missing.")
+    ("quiet", io::flag(command.is_quiet), "Print problems only.");
+  // clang-format on
   po::options_description all;
   all.add(group);
   describeSettings(Settings(), all);
@@ -76,36 +74,8 @@ loopOf(const std::string& text, std::size_t num_scans)
   return {target, source};
 }
 
-} // namespace
-
-GraphCommand
-parseGraphCommand(int argc, const char* const* argv)
-{
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, describeOptionsOfGraph(), "scan");
-  GraphCommand command;
-  if (given.count("help") > 0 || given.count("version") > 0) {
-    command.kind = given.count("help") > 0 ? GraphCommand::Kind::ShowHelp
-                                           : GraphCommand::Kind::ShowVersion;
-    return command;
-  }
-  GraphRequest& request = command.request;
-  request.scans = scansOf(io::optionTexts(given, "scan"));
-  if (request.scans.size() < 2)
-    throw io::UsageError("a folder or at least two scans are needed");
-  command.output_file = io::optionText(given, "output");
-  if (command.output_file.empty())
-    throw io::UsageError("--output is needed");
-  for (const std::string& text : io::optionTexts(given, "loop"))
-    request.loops.push_back(loopOf(text, request.scans.size()));
-  request.has_weak_edges = given.count("weak-edges") > 0;
-  request.settings = settingsFrom(given, Settings(), command.note);
-  command.is_quiet = given.count("quiet") > 0;
-  return command;
-}
-
 std::string
-graphHelpText()
+helpText(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_pose_graph FOLDER -o FILE.g2o [options]
@@ -120,7 +90,7 @@ graph again. Edges of --loop have the information of the clouds alone, because
 their prior comes from the chain. A posterior that is neither ok nor doubtful
 makes no edge; missing and doubtful edges are reported. For more, see
 docs/pose_graph_and_filter.md.
-)" << describeOptionsOfGraph()
+)" << options
        << R"(
 Exit codes:
   0    all registrations are ok
@@ -134,6 +104,31 @@ Example:
       --guess 0.5,0,0,0,0,0 --prior-variance 0.01,0.01,0.0004,1e-4,1e-4,1e-2
 )";
   return help.str();
+}
+
+} // namespace
+
+std::optional<GraphCommand>
+parseGraphCommand(int argc, const char* const* argv)
+{
+  GraphCommand command;
+  const po::options_description options = describeOptionsOfGraph(command);
+  const po::variables_map given = io::splitCommandLine(argc, argv, options, "scan");
+  if (io::printHelpOrVersion(given,
+                             "pcl_bayesian_icp_pose_graph " BAYESIAN_ICP_VERSION,
+                             [&options] { return helpText(options); }))
+    return std::nullopt;
+  GraphRequest& request = command.request;
+  request.scans = scansOf(io::optionTexts(given, "scan"));
+  if (request.scans.size() < 2)
+    throw io::UsageError("a folder or at least two scans are needed");
+  io::takeOptions(given, options);
+  if (command.output_file.empty())
+    throw io::UsageError("--output is needed");
+  for (const std::string& text : io::optionTexts(given, "loop"))
+    request.loops.push_back(loopOf(text, request.scans.size()));
+  request.settings = settingsFrom(given, Settings(), command.note);
+  return command;
 }
 
 } // namespace bayesian_icp::app

@@ -5,14 +5,13 @@
 
 #include "pose_graph/scan_graph.h"
 
+#include <optional>
 #include <string>
 
 namespace bayesian_icp::app {
 
 /** \brief What the user asks for. */
 struct GraphCommand {
-  enum class Kind { MakeGraph, ShowHelp, ShowVersion };
-  Kind kind = Kind::MakeGraph;
   GraphRequest request;
   std::string output_file;
   bool is_quiet = false;
@@ -21,13 +20,10 @@ struct GraphCommand {
 };
 
 /** \brief Read the command line, and look into the folder that it names.
+ * \return nothing if it asks for help or version, which has been printed
  * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
  *         read */
-GraphCommand
+std::optional<GraphCommand>
 parseGraphCommand(int argc, const char* const* argv);
-
-/** \brief What --help prints. */
-std::string
-graphHelpText();
 
 } // namespace bayesian_icp::app

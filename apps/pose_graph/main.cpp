@@ -47,18 +47,8 @@ makeGraph(const GraphCommand& command)
 int
 runTool(int argc, char** argv)
 {
-  const GraphCommand command = parseGraphCommand(argc, argv);
-  switch (command.kind) {
-  case GraphCommand::Kind::ShowHelp:
-    io::print(graphHelpText());
-    return Good;
-  case GraphCommand::Kind::ShowVersion:
-    io::print("pcl_bayesian_icp_pose_graph " BAYESIAN_ICP_VERSION "\n");
-    return Good;
-  case GraphCommand::Kind::MakeGraph:
-    break;
-  }
-  return makeGraph(command);
+  const std::optional<GraphCommand> command = parseGraphCommand(argc, argv);
+  return command ? makeGraph(*command) : Good;
 }
 
 } // namespace

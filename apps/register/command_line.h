@@ -6,14 +6,15 @@
 #include "register/export_files.h"
 #include "register/settings.h"
 
+#include <boost/program_options/options_description.hpp>
+
+#include <optional>
 #include <string>
 
 namespace bayesian_icp::app {
 
 /** \brief What the user asks for. */
 struct Request {
-  enum class Kind { Register, ShowHelp, ShowVersion };
-  Kind kind = Kind::Register;
   std::string source_file;
   std::string target_file;
   /** Empty if no files are wanted. */
@@ -32,13 +33,15 @@ struct Request {
 };
 
 /** \brief Read the command line, and the configuration file that it names.
+ * \return nothing if it asks for help or version, which has been printed
  * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
  *         read */
-Request
+std::optional<Request>
 parseCommandLine(int argc, const char* const* argv);
 
-/** \brief What --help prints. */
-std::string
-helpText();
+/** \brief Every option, described with its unit and its default. They fill \p request,
+ * which has to outlive them; settingsFrom() reads the settings. */
+boost::program_options::options_description
+describeOptions(Request& request);
 
 } // namespace bayesian_icp::app

@@ -10,12 +10,13 @@
 
 namespace bayesian_icp::app {
 
+/** \brief They fill \p exports, which has to outlive them. */
 boost::program_options::options_description
-describeExportOptions();
+describeExportOptions(ExportRequest& exports);
 
-/** \brief What the command line says of exports; without formats if nothing.
- * \throws io::UsageError if a value is malformed, or an option has no effect */
-ExportRequest
-readExportOptions(const boost::program_options::variables_map& given);
+/** \throws io::UsageError if there is an option that has no effect because --export is
+ *         missing */
+void
+refuseExportOptionsWithoutExport(const boost::program_options::variables_map& given);
 
 } // namespace bayesian_icp::app

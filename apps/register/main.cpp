@@ -172,18 +172,8 @@ runTool(int argc, char** argv)
 {
   if (isSgdIcpAskedFor(argc, argv))
     return runSgdIcp(argc, argv);
-  const Request request = parseCommandLine(argc, argv);
-  switch (request.kind) {
-  case Request::Kind::ShowHelp:
-    io::print(helpText());
-    return Good;
-  case Request::Kind::ShowVersion:
-    io::print("pcl_bayesian_icp " BAYESIAN_ICP_VERSION "\n");
-    return Good;
-  case Request::Kind::Register:
-    break;
-  }
-  return registerAsAsked(request);
+  const std::optional<Request> request = parseCommandLine(argc, argv);
+  return request ? registerAsAsked(*request) : Good;
 }
 
 } // namespace

@@ -1,61 +1,88 @@
 #include "register/settings_options.h"
 
 #include "io/command_line.h"
-#include "io/errors.h"
 #include "io/motion.h"
-#include "io/numbers.h"
 #include "register/choices.h"
 #include "register/config_file.h"
 #include "register/other_presets.h"
 #include "register/setting_fields.h"
 
+#include <cmath>
 #include <optional>
+#include <type_traits>
 
 namespace bayesian_icp::app {
 
 namespace po = boost::program_options;
 
-void
-refuse(const std::string& option, const std::string& value, const std::string& expected)
-{
-  throw io::UsageError("--" + option + ": " + io::quoted(value) + " is not " +
-                       expected);
-}
-
 namespace {
 
-void
-convert(const std::string& option, const std::string& text, double& value)
+using io::readValue;
+
+std::string
+described(const Field& field, double value)
 {
-  if (!io::readNumber(text, value))
-    refuse(option, text, "a number");
+  const std::string text = std::isfinite(value) ? io::textOf(value) : "none";
+  return std::string(field.help) + " (default " + text + ")";
 }
 
 template <typename Integer>
-void
-convertInteger(const std::string& option, const std::string& text, Integer& value)
+std::enable_if_t<std::is_integral_v<Integer>, std::string>
+described(const Field& field, Integer value)
 {
-  if (!io::readNumber(text, value))
-    refuse(option, text, "a whole number in its range");
+  return std::string(field.help) + " (default " + io::textOf(value) + ")";
 }
 
-void
-convert(const std::string& option, const std::string& text, int& value)
+std::string
+described(const Field& field, const Vector6d& value)
 {
-  convertInteger(option, text, value);
+  const bool is_one_for_all = value.isConstant(value[0]);
+  return field.help + (is_one_for_all ? " (default " + io::textOf(value[0]) + ")" : "");
 }
 
-void
-convert(const std::string& option, const std::string& text, std::uint64_t& value)
+std::string
+described(const Field& field, const Eigen::Matrix4d&)
 {
-  convertInteger(option, text, value);
+  return std::string(field.help) + " (default: identity)";
 }
+
+template <typename Choice>
+std::enable_if_t<std::is_enum_v<Choice>, std::string>
+described(const Field& field, Choice value)
+{
+  return std::string(field.help) + " One of " + namesOfChoices(value) + ". (default " +
+         toString(value) + ")";
+}
+
+template <typename T>
+std::string
+described(const Field& field, const Automatic<T>& value)
+{
+  return value.isGiven() ? described(field, value.valueOr(T()))
+                         : std::string(field.help) + " (default automatic)";
+}
+
+/** Makes an option of every setting. */
+struct Describer {
+  po::options_description& group;
+
+  template <typename T>
+  void
+  operator()(const Field& field, const T& default_value)
+  {
+    if constexpr (std::is_same_v<T, bool>)
+      group.add_options()(field.option, field.help);
+    else
+      group.add_options()(field.option,
+                          po::value<std::string>()->value_name(field.placeholder),
+                          described(field, default_value).c_str());
+  }
+};
 
 /** Six numbers separated by commas, or one for all where that makes sense. */
 void
-convert(const std::string& option, const std::string& text, Vector6d& value)
+readNumbers(const std::string& text, bool may_be_one, Vector6d& value)
 {
-  const bool may_be_one = option != "prior-mean";
   const auto items = io::splitAt(',', text);
   Vector6d numbers;
   bool is_good = items.size() == 6 || (may_be_one && items.size() == 1);
@@ -63,25 +90,25 @@ convert(const std::string& option, const std::string& text, Vector6d& value)
     is_good = io::readNumber(items[items.size() == 1 ? 0 : k],
                              numbers[static_cast<Eigen::Index>(k)]);
   if (!is_good)
-    refuse(option,
-           text,
-           std::string("six numbers separated by commas") +
-               (may_be_one ? ", or one for all" : ""));
+    io::refuseValue(text,
+                    std::string("six numbers separated by commas") +
+                        (may_be_one ? ", or one for all" : ""));
   value = numbers;
 }
 
+/** The value of an option as a setting of any type. */
+template <typename T>
 void
-convert(const std::string&, const std::string& text, Eigen::Matrix4d& value)
+convert(const std::string& option, const std::string& text, T& value)
 {
-  value = io::readMotion("guess", text);
-}
-
-template <typename Choice>
-void
-convert(const std::string& option, const std::string& text, Choice& value)
-{
-  if (!readChoice(text, value))
-    refuse(option, text, namesOfChoices(value));
+  if constexpr (std::is_same_v<T, Vector6d>)
+    readNumbers(text, option != "prior-mean", value);
+  else if constexpr (std::is_same_v<T, Eigen::Matrix4d>)
+    value = io::readMotion(option, text);
+  else if constexpr (!std::is_enum_v<T>)
+    readValue(text, value);
+  else if (!readChoice(text, value))
+    io::refuseValue(text, namesOfChoices(value));
 }
 
 template <typename T>
@@ -110,7 +137,8 @@ struct SettingsReader {
     if constexpr (std::is_same_v<T, bool>)
       value = true;
     else
-      convert(name, given[name].as<std::string>(), value);
+      io::readOption(name,
+                     [&] { convert(name, given[name].as<std::string>(), value); });
   }
 };
 
@@ -127,16 +155,45 @@ refuseLengths(const po::variables_map& given, const std::string& config)
 
 } // namespace
 
+void
+describeSettings(const Settings& defaults, po::options_description& options)
+{
+  po::options_description registration("Registration");
+  registration.add_options()(
+      "config",
+      po::value<std::string>()->value_name("FILE"),
+      "Read settings from a posterior.json, from its 'options' alone, or from a "
+      "config.json of the authors' program. Options on the command line take "
+      "precedence. Without it, all settings have their defaults.");
+  Describer describe_registration{registration};
+  visitRegistration(defaults, describe_registration);
+  po::options_description posterior("Posterior");
+  Describer describe_posterior{posterior};
+  visitPosterior(defaults.options, describe_posterior);
+  visitChains(defaults.options.chains, describe_posterior);
+  options.add(registration).add(posterior);
+  for (const Preset preset : choicesOf(Preset())) {
+    po::options_description group(std::string("Preset ") + toString(preset));
+    Describer describe{group};
+    visitPreset(preset, defaults, describe);
+    options.add(group);
+  }
+}
+
 Settings
 settingsFrom(const po::variables_map& given,
              const Settings& defaults,
              std::string& note)
 {
   Settings settings = defaults;
-  const std::string config = io::optionText(given, "config");
+  std::string config;
   std::optional<Preset> preset;
-  if (given.count("preset") > 0)
-    convert("preset", given["preset"].as<std::string>(), preset.emplace());
+  po::options_description first;
+  first.add_options()("config", io::fileName("", config));
+  first.add_options()("preset", io::taken("", [&preset](const std::string& text) {
+                        convert("preset", text, preset.emplace());
+                      }));
+  io::takeOptions(given, first);
   if (!config.empty())
     settings = readConfigFile(config, preset, note);
   SettingsReader reader{given};

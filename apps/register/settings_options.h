@@ -1,22 +1,23 @@
 /** \file
- * \brief Settings from a command line, for every program that registers pairs.
+ * \brief Settings as options of a command line, for every program that registers pairs.
  */
 #pragma once
 
 #include "register/settings.h"
 
+#include <boost/program_options/options_description.hpp>
 #include <boost/program_options/variables_map.hpp>
 
 #include <string>
 
 namespace bayesian_icp::app {
 
-/** \brief Refuse the value of an option: "--option: 'value' is not ...".
- * \throws io::UsageError */
-[[noreturn]] void
-refuse(const std::string& option,
-       const std::string& value,
-       const std::string& expected);
+/** \brief Add the options that decide the result of a registration, which all programs
+ * that register have in common, described with their units and \p defaults. Values are
+ * strings. Each preset has a group, so that an option can be there several times. */
+void
+describeSettings(const Settings& defaults,
+                 boost::program_options::options_description& options);
 
 /** \brief What the command line, and the file that --config names, say of the settings.
  * \param[in] defaults settings if nothing is said; a --config file has its own

@@ -1,18 +1,13 @@
 #include "register/sgd_request.h"
 
 #include "io/command_line.h"
-#include "io/errors.h"
 #include "io/motion.h"
-#include "io/numbers.h"
-#include "register/option_descriptions.h"
+#include "register/command_line.h"
 
 #include <boost/program_options.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <sstream>
-#include <vector>
 
 namespace bayesian_icp::app {
 
@@ -26,59 +21,9 @@ constexpr SgdOptimizer optimizers[] = {SgdOptimizer::FixedStep,
                                        SgdOptimizer::Adam,
                                        SgdOptimizer::RmsProp};
 
-/** Options of Bayesian ICP that SGD-ICP has, too. */
-constexpr const char* shared_options[] = {"method",
-                                          "json",
-                                          "quiet",
-                                          "output",
-                                          "guess",
-                                          "max-distance",
-                                          "iterations",
-                                          "batch-size",
-                                          "step-size",
-                                          "seed"};
-
-bool
-isShared(const std::string& option)
-{
-  return std::find(std::begin(shared_options), std::end(shared_options), option) !=
-         std::end(shared_options);
-}
-
-po::variables_map
-split(int argc, const char* const* argv)
-{
-  const po::options_description of_bayesian_icp = describeOptions();
-  po::options_description all;
-  all.add(of_bayesian_icp).add(describeSgdOptions());
-  po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
-  for (const auto& option : of_bayesian_icp.options()) {
-    const std::string& name = option->long_name();
-    if (given.count(name) > 0 && !isShared(name))
-      throw io::UsageError("--" + name + ": has no effect with method sgd-icp");
-  }
-  return given;
-}
-
-template <typename Number>
 void
-take(const po::variables_map& given, const std::string& option, Number& number)
+takeOptimizer(const std::string& name, SgdOptimizer& optimizer)
 {
-  if (given.count(option) == 0)
-    return;
-  const auto& text = given[option].as<std::string>();
-  if (!io::readNumber(text, number))
-    throw io::UsageError(
-        "--" + option + ": " + io::quoted(text) + " is not a " +
-        (std::is_integral_v<Number> ? "whole number in its range" : "number"));
-}
-
-void
-takeOptimizer(const po::variables_map& given, SgdOptimizer& optimizer)
-{
-  if (given.count("optimizer") == 0)
-    return;
-  const auto& name = given["optimizer"].as<std::string>();
   std::string names;
   for (const SgdOptimizer candidate : optimizers) {
     if (name == toString(candidate)) {
@@ -87,25 +32,93 @@ takeOptimizer(const po::variables_map& given, SgdOptimizer& optimizer)
     }
     names += (names.empty() ? "" : ", ") + std::string(toString(candidate));
   }
-  throw io::UsageError("--optimizer: " + io::quoted(name) + " is not one of " + names);
+  io::refuseValue(name, "one of " + names);
 }
 
-void
-takeOptions(const po::variables_map& given, SgdRequest& request)
+/** Options of Bayesian ICP that SGD-ICP has, too. */
+po::options_description
+sharedOptions(SgdRequest& request)
 {
   auto& options = request.options;
-  takeOptimizer(given, options.optimizer);
-  take(given, "step-size", options.step_size);
-  take(given, "batch-size", options.batch_size);
-  take(given, "iterations", options.max_iterations);
-  take(given, "translation-epsilon", options.translation_epsilon);
-  take(given, "rotation-epsilon", options.rotation_epsilon);
-  take(given, "still-iterations", options.num_still_iterations);
-  take(given, "seed", options.seed);
-  take(given, "max-distance", request.max_distance);
-  options.is_one_to_one = given.count("keep-duplicates") == 0;
-  if (given.count("guess") > 0)
-    request.guess = io::readMotion("guess", given["guess"].as<std::string>());
+  po::options_description shared;
+  // clang-format off
+  shared.add_options()
+    ("method", po::value<std::string>())
+    ("json", io::flag(request.is_json))
+    ("quiet", io::flag(request.is_quiet))
+    ("output", io::fileName("", request.output_folder))
+    ("guess", io::taken("", [&request](const std::string& text) {
+       request.guess = io::readMotion("guess", text);
+     }))
+    ("max-distance", io::number("", request.max_distance))
+    ("iterations", io::number("", options.max_iterations))
+    ("batch-size", io::number("", options.batch_size))
+    ("step-size", io::number("", options.step_size))
+    ("seed", io::number("", options.seed));
+  // clang-format on
+  return shared;
+}
+
+po::variables_map
+split(int argc,
+      const char* const* argv,
+      const po::options_description& own,
+      const po::options_description& shared)
+{
+  Request ignored;
+  const po::options_description of_bayesian_icp = describeOptions(ignored);
+  po::options_description all;
+  all.add(of_bayesian_icp).add(own);
+  po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
+  for (const auto& option : of_bayesian_icp.options()) {
+    const std::string& name = option->long_name();
+    if (given.count(name) > 0 && shared.find_nothrow(name, false) == nullptr)
+      throw io::UsageError("--" + name + ": has no effect with method sgd-icp");
+  }
+  return given;
+}
+
+/** The options that only SGD-ICP has; they fill \p request. */
+po::options_description
+describeSgdOptions(SgdRequest& request)
+{
+  auto& options = request.options;
+  const auto withDefault = [](const std::string& help, const std::string& value) {
+    return help + " (default " + value + ")";
+  };
+  const std::string optimizer = withDefault(
+      "Optimizer that turns gradients into steps: fixed, momentum, adadelta, "
+      "adam or rmsprop.",
+      toString(options.optimizer));
+  const std::string translation_epsilon = withDefault(
+      "A pose is still while its translation is nearer than this to where it "
+      "came to rest [m]. 0 means never.",
+      io::textOf(options.translation_epsilon));
+  const std::string rotation_epsilon =
+      withDefault("A pose is still only while the sum of the changes of its angles is "
+                  "below this [rad].",
+                  io::textOf(options.rotation_epsilon));
+  const std::string still_iterations = withDefault(
+      "Number of consecutive still steps after which the descent has converged.",
+      io::textOf(options.num_still_iterations));
+  po::options_description group("Method sgd-icp only");
+  // clang-format off
+  group.add_options()
+    ("optimizer", io::taken("NAME", [&options](const std::string& name) {
+       takeOptimizer(name, options.optimizer);
+     }),
+     optimizer.c_str())
+    ("translation-epsilon", io::number("M", options.translation_epsilon),
+     translation_epsilon.c_str())
+    ("rotation-epsilon", io::number("RAD", options.rotation_epsilon),
+     rotation_epsilon.c_str())
+    ("still-iterations", io::number("N", options.num_still_iterations),
+     still_iterations.c_str())
+    ("keep-duplicates",
+     "Let a target point be in several pairs of a mini-batch. Without it, only the "
+     "pair with the nearest source point counts.");
+  // clang-format on
+  return group;
 }
 
 /** The option that a complaint of validate() speaks of. */
@@ -187,13 +200,14 @@ isSgdIcpAskedFor(int argc, const char* const* argv)
 SgdRequest
 parseSgdCommandLine(int argc, const char* const* argv)
 {
-  const po::variables_map given = split(argc, argv);
   SgdRequest request;
+  const po::options_description own = describeSgdOptions(request);
+  const po::options_description shared = sharedOptions(request);
+  const po::variables_map given = split(argc, argv, own, shared);
   io::takeClouds(given, "cloud", request.source_file, request.target_file);
-  request.output_folder = io::optionText(given, "output");
-  request.is_json = given.count("json") > 0;
-  request.is_quiet = given.count("quiet") > 0;
-  takeOptions(given, request);
+  io::takeOptions(given, shared);
+  io::takeOptions(given, own);
+  request.options.is_one_to_one = given.count("keep-duplicates") == 0;
   check(given, request);
   return request;
 }
@@ -201,37 +215,8 @@ parseSgdCommandLine(int argc, const char* const* argv)
 po::options_description
 describeSgdOptions()
 {
-  const StochasticGradientIcpOptions defaults;
-  po::options_description group("Method sgd-icp only");
-  const auto add =
-      [&group](const char* name, const char* placeholder, const std::string& help) {
-        group.add_options()(
-            name, po::value<std::string>()->value_name(placeholder), help.c_str());
-      };
-  add("optimizer",
-      "NAME",
-      std::string("Optimizer that turns gradients into steps: fixed, momentum, "
-                  "adadelta, adam or rmsprop. (default ") +
-          toString(defaults.optimizer) + ")");
-  add("translation-epsilon",
-      "M",
-      "A pose is still while its translation is nearer than this to where it came to "
-      "rest [m]. 0 means never. (default " +
-          io::textOf(defaults.translation_epsilon) + ")");
-  add("rotation-epsilon",
-      "RAD",
-      "A pose is still only while the sum of the changes of its angles is below this "
-      "[rad]. (default " +
-          io::textOf(defaults.rotation_epsilon) + ")");
-  add("still-iterations",
-      "N",
-      "Number of consecutive still steps after which the descent has converged. "
-      "(default " +
-          io::textOf(defaults.num_still_iterations) + ")");
-  group.add_options()("keep-duplicates",
-                      "Let a target point be in several pairs of a mini-batch. Without "
-                      "it, only the pair with the nearest source point counts.");
-  return group;
+  SgdRequest ignored;
+  return describeSgdOptions(ignored);
 }
 
 std::string

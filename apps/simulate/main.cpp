@@ -14,13 +14,13 @@ namespace simulator = bayesian_icp::simulator;
 
 namespace {
 
-simulator::Request
+std::optional<simulator::Request>
 requestOf(int argc, const char* const* argv)
 {
   try {
     return simulator::parseCommandLine(argc, argv);
   }
-  catch (const std::logic_error& error) {
+  catch (const std::invalid_argument& error) {
     throw io::UsageError(error.what());
   }
 }
@@ -40,17 +40,13 @@ pairOf(const simulator::SimulationOptions& options)
 int
 runTool(int argc, const char* const* argv)
 {
-  const simulator::Request request = requestOf(argc, argv);
-  if (request.kind != simulator::Request::Kind::Simulate) {
-    io::print(request.kind == simulator::Request::Kind::ShowHelp
-                  ? simulator::helpText()
-                  : simulator::sceneList());
+  const auto request = requestOf(argc, argv);
+  if (!request)
     return 0;
-  }
-  const simulator::ScanPair pair = pairOf(request.options);
+  const simulator::ScanPair pair = pairOf(request->options);
   io::catchInterrupt(); // from here on all files or none
-  simulator::writePair(request.output_folder, request.options, pair);
-  io::print(request.output_folder + ": " + request.options.scene + ", source " +
+  simulator::writePair(request->output_folder, request->options, pair);
+  io::print(request->output_folder + ": " + request->options.scene + ", source " +
             std::to_string(pair.source.cols()) + " points, target " +
             std::to_string(pair.target.cols()) + " points\n");
   return io::wasInterrupted() ? io::interrupted_exit_code : 0;

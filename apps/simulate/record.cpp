@@ -1,6 +1,6 @@
 #include "simulate/record.h"
 
-#include "simulate/option_numbers.h"
+#include "io/numbers.h"
 
 #include <nlohmann/json.hpp>
 
@@ -115,7 +115,7 @@ commandLineValue(const Json& value)
   if (value.is_string())
     return value.get<std::string>();
   if (value.is_number_float())
-    return textOf(value.get<double>());
+    return io::textOf(value.get<double>());
   if (!value.is_array())
     return value.dump();
   std::string list;

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace bayesian_icp::transform {
@@ -12,8 +13,6 @@ enum class PoseChoice { Final, Mean };
 
 /** \brief What the user asks for. */
 struct Request {
-  enum class Kind { Transform, ShowHelp, ShowVersion };
-  Kind kind = Kind::Transform;
   std::string input_file;
   std::string output_file;
   /** Six numbers, or the name of a matrix file or of a posterior.json. */
@@ -24,12 +23,9 @@ struct Request {
 };
 
 /** \brief Read the command line.
+ * \return nothing if it asks for help or version, which has been printed
  * \throws io::UsageError if it cannot be understood */
-Request
+std::optional<Request>
 parseCommandLine(int argc, const char* const* argv);
-
-/** \brief What --help prints. */
-std::string
-helpText();
 
 } // namespace bayesian_icp::transform

@@ -58,18 +58,9 @@ transformCloud(const Request& request)
 int
 runTool(int argc, char** argv)
 {
-  const Request request = parseCommandLine(argc, argv);
-  switch (request.kind) {
-  case Request::Kind::ShowHelp:
-    io::print(helpText());
-    break;
-  case Request::Kind::ShowVersion:
-    io::print("pcl_bayesian_icp_transform " BAYESIAN_ICP_VERSION "\n");
-    break;
-  case Request::Kind::Transform:
+  if (const auto request = parseCommandLine(argc, argv)) {
     io::silencePcl();
-    transformCloud(request);
-    break;
+    transformCloud(*request);
   }
   return io::wasInterrupted() ? io::interrupted_exit_code : 0;
 }

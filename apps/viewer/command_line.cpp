@@ -1,14 +1,12 @@
 #include "viewer/command_line.h"
 
 #include "io/command_line.h"
-#include "io/errors.h"
-#include "register/option_descriptions.h"
 #include "register/settings_options.h"
-#include "viewer/option_descriptions.h"
-#include "viewer/option_values.h"
+#include "viewer/keys.h"
 
-#include <boost/program_options/variables_map.hpp>
-
+#include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <vector>
 
 namespace bayesian_icp::viewer {
@@ -16,6 +14,236 @@ namespace bayesian_icp::viewer {
 namespace po = boost::program_options;
 
 namespace {
+
+template <typename Number>
+bool
+readBetween(std::string_view text, Number lowest, Number highest, Number& value)
+{
+  return io::readNumber(text, value) && value >= lowest && value <= highest;
+}
+
+/** "r,g,b" in 0 ... 1, or in 0 ... 255 if one of them is above 1. */
+void
+readColor(const std::string& text, Color& color)
+{
+  const auto items = io::splitAt(',', text);
+  bool is_good = items.size() == 3;
+  for (std::size_t k = 0; is_good && k < 3; ++k)
+    is_good = readBetween(items[k], 0.0, 255.0, color[k]);
+  if (!is_good)
+    io::refuseValue(text, "a colour r,g,b, each 0 to 1 or each 0 to 255");
+  if (*std::max_element(color.begin(), color.end()) > 1.0)
+    for (double& part : color)
+      part /= 255.0;
+}
+
+void
+readPointSize(const std::string& text, int& size)
+{
+  if (!readBetween(text, 1, 64, size))
+    io::refuseValue(text, "a point size, 1 to 64");
+}
+
+void
+readOpacity(const std::string& text, double& opacity)
+{
+  if (!readBetween(text, 0.0, 1.0, opacity))
+    io::refuseValue(text, "an opacity, 0 to 1");
+}
+
+void
+readLength(const std::string& text, double& length)
+{
+  if (!io::readNumber(text, length) || !std::isfinite(length) || length < 0.0)
+    io::refuseValue(text, "a length [m]");
+}
+
+void
+readSwitch(const std::string& text, bool& is_on)
+{
+  if (text != "0" && text != "1")
+    io::refuseValue(text, "0 or 1");
+  is_on = text == "1";
+}
+
+/** Names of layers separated by commas, or "all". */
+void
+readLayers(const std::string& text, Layers& layers)
+{
+  layers.clear();
+  std::string known;
+  for (const LayerName& name : layer_names)
+    known += std::string(name.name) + ", ";
+  for (const std::string_view item : io::splitAt(',', text)) {
+    const std::size_t size_before = layers.size();
+    for (const LayerName& name : layer_names)
+      if (item == name.name || item == "all")
+        layers.insert(name.layer);
+    if (layers.size() == size_before)
+      io::refuseValue(std::string(item), "(another) one of " + known + "all");
+  }
+}
+
+void
+readNumDraws(const std::string& text, int& number)
+{
+  if (!readBetween(text, 1, 1000, number))
+    io::refuseValue(text, "a number of draws, 1 to 1000");
+}
+
+/** A positive number, or "auto", which is 0. */
+void
+readMagnification(const std::string& text, double& factor)
+{
+  factor = 0.0;
+  if (text != "auto" &&
+      (!io::readNumber(text, factor) || !std::isfinite(factor) || factor <= 0.0))
+    io::refuseValue(text, "a positive number or auto");
+}
+
+void
+readReference(const std::string& text, Reference& reference)
+{
+  if (text != "centroid" && text != "origin")
+    io::refuseValue(text, "centroid or origin");
+  reference = text == "origin" ? Reference::Origin : Reference::Centroid;
+}
+
+void
+readSize(const std::string& text, ViewOptions& view)
+{
+  const auto items = io::splitAt('x', text);
+  if (items.size() != 2 || !readBetween(items[0], 64, 8192, view.width) ||
+      !readBetween(items[1], 64, 8192, view.height))
+    io::refuseValue(text, "WIDTHxHEIGHT in pixels, each 64 to 8192");
+  view.is_size_given = true;
+}
+
+/** An option with a value that \p read reads. */
+template <typename Value>
+po::typed_value<std::string>*
+value(const char* placeholder, void (*read)(const std::string&, Value&), Value& value)
+{
+  return io::taken(placeholder,
+                   [read, &value](const std::string& text) { read(text, value); });
+}
+
+/** The same, given up to once for each cloud. */
+template <typename Value>
+po::typed_value<std::vector<std::string>>*
+oncePerCloud(const char* placeholder,
+             void (*read)(const std::string&, Value&),
+             std::vector<Value>& values)
+{
+  const auto take = [read, &values](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts)
+      read(text, values.emplace_back());
+    if (values.size() > 3)
+      throw io::BadValue(": given more than three times (source, target, aligned)");
+  };
+  return po::value<std::vector<std::string>>()
+      ->composing()
+      ->value_name(placeholder)
+      ->notifier(take);
+}
+
+std::string
+layersHelp()
+{
+  std::string help = "Layers to show, separated by commas, or all: ";
+  for (const LayerName& name : layer_names)
+    help += std::string(name.name) + ": " + name.help + "; ";
+  return help + "(default target,deviation,position,rotation)";
+}
+
+po::options_description
+describeOptions(Request& request)
+{
+  ViewOptions& view = request.view;
+  po::options_description general("General");
+  po::options_description pcl_viewers(
+      "As in pcl_viewer (give fc, ps and opaque for source, target, aligned)");
+  po::options_description own("Posterior");
+  // clang-format off
+  general.add_options()
+    ("help,h", "Show this text.")
+    ("version", "Show the version.")
+    ("quiet", io::flag(request.is_quiet), "Print errors only, and show no progress bar.");
+  pcl_viewers.add_options()
+    ("bc", value("R,G,B", readColor, view.background),
+     "Background, each 0 to 1 or 0 to 255. (default 0,0,0)")
+    ("fc", oncePerCloud("R,G,B", readColor, view.foregrounds),
+     "Colour of a cloud. (default depends on the cloud)")
+    ("ps", oncePerCloud("N", readPointSize, view.point_sizes),
+     "Point size, 1 to 64. (default 3)")
+    ("opaque", oncePerCloud("X", readOpacity, view.opacities),
+     "Opacity, 0 to 1. (default 1)")
+    ("ax", value("X", readLength, view.axes_scale),
+     "Length of the target frame's axes [m]. (default 0: none)")
+    ("cam", io::fileName("CAMERA", view.camera),
+     "Initial view: what key c prints, or a .cam file. (default: all in sight, from "
+     "the sensor if it is away from the target, else obliquely from above)")
+    ("multiview", value("0|1", readSwitch, view.is_multiview),
+     "Show four pictures: before, after, likely poses, deviations. (default 0)");
+  own.add_options()
+    ("show", value("LAYERS", readLayers, view.layers), layersHelp().c_str())
+    ("draws", value("N", readNumDraws, view.num_draws),
+     "Number of draws to show, spread evenly over the chains. (default 20)")
+    ("magnify", value("X", readMagnification, view.magnification),
+     "Factor on the deviations from the mean in the layers draws, position and "
+     "rotation. auto takes the largest of 1, 2, 5, 10, ... 1000 with which no standard "
+     "deviation of a point exceeds a twentieth of the source. The picture states the "
+     "factor. (default auto)")
+    ("reference", value("POINT", readReference, view.reference),
+     "Point whose position is shown: the source's centroid, or the origin of the "
+     "source frame, to which the covariances of posterior.json refer. (default "
+     "centroid)")
+    ("live", io::flag(view.is_live),
+     "Show ICP's iterations and the chains while they run, then the result. Without "
+     "it, only the result is shown.")
+    ("screenshot", io::fileName("FILE", view.screenshot_file),
+     "Write a PNG file instead of opening a window. With --live, it shows the chains' "
+     "last state.")
+    ("size", value("WxH", readSize, view),
+     "Size of window or picture [pixels]. (default 1280x960)");
+  // clang-format on
+  po::options_description all;
+  all.add(general).add(pcl_viewers).add(own);
+  app::describeSettings(app::Settings(), all);
+  return all;
+}
+
+std::string
+helpText(const po::options_description& options)
+{
+  std::ostringstream help;
+  help << R"(Usage: pcl_bayesian_icp_viewer SOURCE TARGET [options]
+       pcl_bayesian_icp_viewer POSTERIOR.json [SOURCE TARGET] [options]
+
+Registers a source cloud to a target cloud, or opens a result of
+pcl_bayesian_icp -o (samples.csv is read from the folder of posterior.json).
+Shows the posterior of the pose: how far off each point may be, and which poses
+are likely. Clouds are .pcd or .ply files in metres. Everything is in the
+target frame. Options begin with one or two dashes.
+)" << options
+       << '\n'
+       << keysText() << R"(
+Exit codes:
+  0    what was shown can be trusted
+  1    it cannot (the status in the picture says why), or nothing could be
+       shown, for example without an X display (xvfb-run provides one)
+  2    wrong usage
+  3    a file cannot be read, used or written
+  130  interrupted (Ctrl-C or SIGTERM)
+
+Example:
+  pcl_bayesian_icp_viewer source.pcd target.pcd --live
+  pcl_bayesian_icp_viewer result/posterior.json -multiview 1
+  xvfb-run -a pcl_bayesian_icp_viewer result/posterior.json \
+      --show target,deviation --screenshot deviation.png --size 800x600
+)";
+  return help.str();
+}
 
 bool
 isPosterior(const std::string& name)
@@ -47,69 +275,12 @@ takeFiles(const po::variables_map& given, Request& request)
   request.target_file = clouds[1];
 }
 
-/** Options of pcl_viewer that are given once for each cloud. */
-template <typename Value, typename Read>
-void
-takeRepeated(const po::variables_map& given,
-             const std::string& name,
-             const Read& read,
-             std::vector<Value>& values)
-{
-  for (const std::string& text : io::optionTexts(given, name))
-    values.push_back(read(name, text));
-  if (values.size() > 3)
-    throw io::UsageError("-" + name +
-                         ": given more than three times (source, target, aligned)");
-}
-
-void
-takePclViewerOptions(const po::variables_map& given, ViewOptions& view)
-{
-  const auto textOf = [&given](const char* name) {
-    return io::optionText(given, name);
-  };
-  if (given.count("bc") > 0)
-    view.background = readColor("bc", textOf("bc"));
-  takeRepeated(given, "fc", readColor, view.foregrounds);
-  takeRepeated(given, "ps", readPointSize, view.point_sizes);
-  takeRepeated(given, "opaque", readOpacity, view.opacities);
-  if (given.count("ax") > 0)
-    view.axes_scale = readNonNegative("ax", textOf("ax"));
-  view.camera = textOf("cam");
-  if (given.count("multiview") > 0)
-    view.is_multiview = readSwitch("multiview", textOf("multiview"));
-}
-
-void
-takeOwnOptions(const po::variables_map& given, ViewOptions& view)
-{
-  const auto textOf = [&given](const char* name) {
-    return io::optionText(given, name);
-  };
-  if (given.count("show") > 0)
-    view.layers = readLayers(textOf("show"));
-  if (given.count("show") > 0 && view.is_multiview)
-    throw io::UsageError("--show and -multiview 1 exclude each other");
-  if (given.count("draws") > 0)
-    view.num_draws = readNumDraws("draws", textOf("draws"));
-  if (given.count("magnify") > 0)
-    view.magnification = readMagnification(textOf("magnify"));
-  if (given.count("reference") > 0)
-    view.reference = readReference(textOf("reference"));
-  view.is_live = given.count("live") > 0;
-  view.screenshot_file = textOf("screenshot");
-  view.is_size_given = given.count("size") > 0;
-  if (view.is_size_given)
-    readSize(textOf("size"), view.width, view.height);
-}
-
 /** Refuses options of a registration, because none takes place. */
 void
 refuseSettings(const po::variables_map& given)
 {
-  if (given.count("live") > 0)
-    throw io::UsageError("--live: has no effect with a finished posterior");
   po::options_description settings;
+  settings.add_options()("live", "");
   app::describeSettings(app::Settings(), settings);
   for (const auto& option : settings.options())
     if (given.count(option->long_name()) > 0)
@@ -119,21 +290,20 @@ refuseSettings(const po::variables_map& given)
 
 } // namespace
 
-Request
+std::optional<Request>
 parseCommandLine(int argc, const char* const* argv)
 {
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, describeOptions(), "file");
   Request request;
-  if (given.count("help") > 0 || given.count("version") > 0) {
-    request.kind =
-        given.count("help") > 0 ? Request::Kind::ShowHelp : Request::Kind::ShowVersion;
-    return request;
-  }
+  const po::options_description options = describeOptions(request);
+  const po::variables_map given = io::splitCommandLine(argc, argv, options, "file");
+  if (io::printHelpOrVersion(given,
+                             "pcl_bayesian_icp_viewer " BAYESIAN_ICP_VERSION,
+                             [&options] { return helpText(options); }))
+    return std::nullopt;
   takeFiles(given, request);
-  takePclViewerOptions(given, request.view);
-  takeOwnOptions(given, request.view);
-  request.is_quiet = given.count("quiet") > 0;
+  io::takeOptions(given, options);
+  if (given.count("show") > 0 && request.view.is_multiview)
+    throw io::UsageError("--show and -multiview 1 exclude each other");
   if (request.posterior_file.empty())
     request.settings = app::settingsFrom(given, app::Settings(), request.note);
   else

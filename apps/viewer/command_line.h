@@ -6,14 +6,13 @@
 #include "register/settings.h"
 #include "viewer/view_options.h"
 
+#include <optional>
 #include <string>
 
 namespace bayesian_icp::viewer {
 
 /** \brief What the user asks for. */
 struct Request {
-  enum class Kind { Show, ShowHelp, ShowVersion };
-  Kind kind = Kind::Show;
   /** A saved posterior; empty if the clouds are to be registered. */
   std::string posterior_file;
   /** Empty if the names in the posterior are to be used. */
@@ -27,13 +26,10 @@ struct Request {
 };
 
 /** \brief Read the command line.
+ * \return nothing if it asks for help or version, which has been printed
  * \throws io::UsageError if it cannot be understood, io::FileError if a configuration
  *         file cannot be read */
-Request
+std::optional<Request>
 parseCommandLine(int argc, const char* const* argv);
-
-/** \brief What --help prints. */
-std::string
-helpText();
 
 } // namespace bayesian_icp::viewer

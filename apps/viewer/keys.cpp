@@ -1,6 +1,7 @@
 #include "viewer/keys.h"
 
-#include "viewer/option_descriptions.h"
+#include "viewer/layers.h"
+#include "viewer/window.h"
 
 #include <pcl/console/print.h>
 #include <pcl/visualization/keyboard_event.h>
@@ -9,6 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <set>
+#include <sstream>
 
 namespace bayesian_icp::viewer {
 
@@ -25,6 +27,17 @@ toggle(const std::string& prefix, std::set<std::string>& hidden, Window& window)
 }
 
 } // namespace
+
+std::string
+keysText()
+{
+  std::ostringstream keys;
+  keys << "Keys in addition to those of pcl_viewer (h lists all):\n";
+  for (const LayerName& name : layer_names)
+    keys << "  " << name.key << "    " << name.name << " on/off\n";
+  keys << "  k    legend and colour bar on/off\n";
+  return keys.str();
+}
 
 void
 handleKeys(Window& window)

@@ -3,9 +3,15 @@
  */
 #pragma once
 
-#include "viewer/window.h"
+#include <string>
 
 namespace bayesian_icp::viewer {
+
+class Window;
+
+/** \brief What they are; pcl_viewer prints its keys itself. */
+std::string
+keysText();
 
 /** \brief From now on keys switch layers and the legend; h prints them, and lets PCL
  * print its own. */

@@ -134,18 +134,8 @@ show(const Request& request)
 int
 runTool(int argc, char** argv)
 {
-  const Request request = parseCommandLine(argc, argv);
-  switch (request.kind) {
-  case Request::Kind::ShowHelp:
-    io::print(helpText());
-    return Good;
-  case Request::Kind::ShowVersion:
-    io::print("pcl_bayesian_icp_viewer " BAYESIAN_ICP_VERSION "\n");
-    return Good;
-  case Request::Kind::Show:
-    break;
-  }
-  return show(request);
+  const std::optional<Request> request = parseCommandLine(argc, argv);
+  return request ? show(*request) : Good;
 }
 
 } // namespace

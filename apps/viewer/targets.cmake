@@ -35,8 +35,6 @@ if(BAYESIAN_ICP_BUILD_VIEWER)
     viewer/keys.cpp
     viewer/live_view.cpp
     viewer/main.cpp
-    viewer/option_descriptions.cpp
-    viewer/option_values.cpp
     viewer/scene_files.cpp
     viewer/window.cpp)
   bayesian_icp_configure(pcl_bayesian_icp_viewer)
