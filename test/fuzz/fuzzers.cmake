@@ -62,7 +62,6 @@ target_sources(
           ${apps}/batch/batch_line.cpp
           ${evaluation}/study/row_file.cpp
           ${evaluation}/samplers/gold_file.cpp
-          ${apps}/register/data_json.cpp
           ${apps}/register/posterior_json.cpp)
 target_compile_definitions(fuzz_result_file
                            PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
