@@ -1,4 +1,4 @@
-#include "report/chain_charts.h"
+#include "report/charts.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "report/cloud_charts.h"
+#include "report/charts.h"
 
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/random.h>

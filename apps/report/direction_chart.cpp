@@ -1,4 +1,4 @@
-#include "report/direction_chart.h"
+#include "report/charts.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "report/posterior_charts.h"
+#include "report/charts.h"
 
 #include <bayesian_icp/diagnostics.h>
 

@@ -2,10 +2,7 @@
 
 #include "io/numbers.h"
 #include "register/settings_json.h"
-#include "report/chain_charts.h"
-#include "report/cloud_charts.h"
-#include "report/direction_chart.h"
-#include "report/posterior_charts.h"
+#include "report/charts.h"
 #include "report/tables.h"
 
 #include <nlohmann/json.hpp>
