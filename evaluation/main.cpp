@@ -9,8 +9,6 @@
 #include "sbc/sbc_command.h"
 #include "study/report_program.h"
 
-#include <boost/program_options/errors.hpp>
-
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -53,8 +51,7 @@ subCommands()
     commands.push_back({experiment.name,
                         experiment.summary,
                         [&experiment](int argc, const char* const* argv) {
-                          return evaluate::runExperiments(
-                              {experiment.details, experiment.run}, argc, argv);
+                          return evaluate::runExperimentCommand(experiment, argc, argv);
                         }});
   commands.push_back({"report",
                       "report.md, report.html and figures of the CSV files in a folder",
@@ -75,17 +72,6 @@ printHelp(std::ostream& stream)
 }
 
 int
-run(const SubCommand& command, int argc, const char* const* argv)
-{
-  try {
-    return command.run(argc, argv);
-  }
-  catch (const boost::program_options::error& error) {
-    throw io::UsageError(error.what());
-  }
-}
-
-int
 runTool(int argc, const char* const* argv)
 {
   const std::string name = argc > 1 ? argv[1] : "";
@@ -95,7 +81,7 @@ runTool(int argc, const char* const* argv)
   }
   for (const SubCommand& command : subCommands())
     if (command.name == name)
-      return run(command, argc - 1, argv + 1);
+      return command.run(argc - 1, argv + 1);
   printHelp(std::cerr);
   return BadUsage;
 }

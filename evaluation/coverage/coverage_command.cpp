@@ -264,19 +264,17 @@ runsOf(const CoverageStudy& study, const CoverageFile& results)
 int
 runCoverageCommand(int argc, const char* const* argv)
 {
-  const CoverageOptions options = parseCoverageOptions(argc, argv);
-  if (options.show_help) {
-    std::cout << coverageHelp();
+  const std::optional<CoverageOptions> options = parseCoverageOptions(argc, argv);
+  if (!options)
     return 0;
-  }
   io::silencePcl();
-  CoverageStudy study = studyOf(options);
+  CoverageStudy study = studyOf(*options);
   study.report = reportProgress;
-  CoverageFile results(options.result_file);
+  CoverageFile results(options->result_file);
   runCoverageStudy(study, results);
   const auto runs = runsOf(study, results);
   printCoverageTable(runs, std::cout);
-  return options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
+  return options->has_report ? makeReport(io::folderOf(options->result_file)) : 0;
 }
 
 } // namespace bayesian_icp::evaluate

@@ -8,7 +8,7 @@ namespace bayesian_icp::evaluate {
 /** \brief Run the sub-command.
  * \param[in] argc,argv the command line from the sub-command's name on
  * \return the exit code 0
- * \throws io::UsageError, io::FileError, boost::program_options::error */
+ * \throws io::UsageError, io::FileError */
 int
 runCoverageCommand(int argc, const char* const* argv);
 

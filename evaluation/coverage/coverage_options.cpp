@@ -1,10 +1,6 @@
 #include "coverage/coverage_options.h"
 
-#include "io/errors.h"
-#include "io/numbers.h"
 #include "study/option_values.h"
-
-#include <boost/program_options.hpp>
 
 #include <cmath>
 #include <sstream>
@@ -15,50 +11,6 @@ namespace po = boost::program_options;
 
 namespace {
 
-po::options_description
-description()
-{
-  po::options_description options("Options", 88);
-  // clang-format off
-  options.add_options()
-    ("scenes", textOption(""),
-     "simulated scenes: tuned (on which the method was tuned), new (not used in tuning), lidar (a "
-     "spinning lidar of up to 64 rings and 80 m on a car or robot), or names separated by commas. "
-     "With --real: names of pairs or recordings. The default is tuned and new, or all that is real")
-    ("conditions", textOption(""),
-     "conditions, separated by commas; every scene takes those that it has. Lidar scenes have "
-     "lidar16, lidar32, lidar64 (rings) and lidar64_sweep (the sensor moves during each scan). "
-     "The default is all conditions of the scenes except far (the true pose is 1 m and 0.8 rad "
-     "off, and the prior is as wide), points_quarter, points_x4, points_x16 and points_x64 (both "
-     "clouds have that many times the points)")
-    ("methods", textOption(""), "methods, separated by commas; the default is all")
-    ("seeds", intOption(20), "number of cases of each scene and condition")
-    ("first-seed", intOption(1), "seed of the first case; with recordings, seed of all guesses")
-    ("real", textOption(""),
-     "folder of real scans, which replace the simulated scenes. If it has a manifest.json, it has "
-     "pairs, and each seed takes another random part of the source and another pose from the "
-     "pair's prior. Otherwise it has recordings: one folder for each, with set.json, poses.txt "
-     "and scan_0000.pcd, scan_0001.pcd, ... (docs/calibration.md)")
-    ("step", intOption(1), "with recordings: number of scans from the target to the source")
-    ("pairs", intOption(0), "largest number of pairs of each recording, evenly spread; 0 means all")
-    ("guess-sd", textOption("0.1,0.03"),
-     "with recordings: standard deviations of the guesses, along and about each axis of the "
-     "sensor [m, rad]")
-    ("rows", textOption(""),
-     "file with pairs of recordings, their guesses and truths, which replace random guesses. "
-     "Each line is a JSON object with set, pair (the target's number), guess and truth (3x4; the "
-     "source is turned as the truth requires)")
-    ("output", textOption("results/coverage.csv"),
-     "CSV file of the results, one row for each run. Runs that it already has are skipped")
-    ("report", "also make a report, with figures, of all results in that folder")
-    ("threads", intOption(0), "number of cases that run at the same time; 0 means as many as there are cores")
-    ("quick",
-     "two scenes, pairs or recordings, one condition, and three seeds or pairs, unless given")
-    ("help", "show this text");
-  // clang-format on
-  return options;
-}
-
 AxisDeviation
 deviationOf(const std::string& text)
 {
@@ -67,10 +19,70 @@ deviationOf(const std::string& text)
   if (items.size() != 2 || !io::readNumber(items[0], sd.translation) ||
       !io::readNumber(items[1], sd.rotation) || !(sd.translation >= 0.0) ||
       !(sd.rotation >= 0.0) || std::isinf(sd.translation + sd.rotation))
-    throw io::UsageError("--guess-sd is " + io::quoted(text) +
-                         ", but must be two numbers [m, rad], not negative, separated "
-                         "by a comma");
+    throw io::BadValue(" is " + io::quoted(text) +
+                       ", but must be two numbers [m, rad], not negative, separated by "
+                       "a comma");
   return sd;
+}
+
+po::options_description
+describeOptions(CoverageOptions& options)
+{
+  SequenceOptions& sequences = options.sequences;
+  constexpr int most = 1000000;
+  po::options_description description("Options", 88);
+  // clang-format off
+  description.add_options()
+    ("scenes", list(options.scenes),
+     "simulated scenes: tuned (on which the method was tuned), new (not used in "
+     "tuning), lidar (a spinning lidar of up to 64 rings and 80 m on a car or robot), "
+     "or names separated by commas. With --real: names of pairs or recordings. The "
+     "default is tuned and new, or all that is real")
+    ("conditions", list(options.conditions),
+     "conditions, separated by commas; every scene takes those that it has. Lidar "
+     "scenes have lidar16, lidar32, lidar64 (rings) and lidar64_sweep (the sensor "
+     "moves during each scan). The default is all conditions of the scenes except far "
+     "(the true pose is 1 m and 0.8 rad off, and the prior is as wide), "
+     "points_quarter, points_x4, points_x16 and points_x64 (both clouds have that many "
+     "times the points)")
+    ("methods", list(options.methods),
+     "methods, separated by commas; the default is all")
+    ("seeds", integer(options.num_seeds, 1, most),
+     "number of cases of each scene and condition")
+    ("first-seed", integer(options.first_seed, 0, max_seed),
+     "seed of the first case; with recordings, seed of all guesses")
+    ("real", text(options.real_folder),
+     "folder of real scans, which replace the simulated scenes. If it has a "
+     "manifest.json, it has pairs, and each seed takes another random part of the "
+     "source and another pose from the pair's prior. Otherwise it has recordings: one "
+     "folder for each, with set.json, poses.txt and scan_0000.pcd, scan_0001.pcd, ... "
+     "(docs/calibration.md)")
+    ("step", integer(sequences.step, 1, most),
+     "with recordings: number of scans from the target to the source")
+    ("pairs", integer(sequences.max_pairs, 0, most),
+     "largest number of pairs of each recording, evenly spread; 0 means all")
+    ("guess-sd", taken("0.1,0.03", [&sequences](const std::string& text) {
+       sequences.guess_sd = deviationOf(text);
+     }),
+     "with recordings: standard deviations of the guesses, along and about each axis "
+     "of the sensor [m, rad]")
+    ("rows", text(sequences.rows_file),
+     "file with pairs of recordings, their guesses and truths, which replace random "
+     "guesses. Each line is a JSON object with set, pair (the target's number), guess "
+     "and truth (3x4; the source is turned as the truth requires)")
+    ("output", outputName("file", options.result_file),
+     "CSV file of the results, one row for each run. Runs that it already has are "
+     "skipped")
+    ("report", io::flag(options.has_report),
+     "also make a report, with figures, of all results in that folder")
+    ("threads", threads(options.num_threads),
+     "number of cases that run at the same time; 0 means as many as there are cores")
+    ("quick", io::flag(options.is_quick),
+     "two scenes, pairs or recordings, one condition, and three seeds or pairs, unless "
+     "given")
+    ("help", "show this text");
+  // clang-format on
+  return description;
 }
 
 /** \throws io::UsageError of an option that has no meaning for what is run */
@@ -90,85 +102,56 @@ refuseMisplaced(const po::variables_map& given, const CoverageOptions& options)
       refuse(name, "of recordings only: see --real");
 }
 
-SequenceOptions
-sequenceOptionsOf(const po::variables_map& given)
+std::string
+helpText(const po::options_description& options)
 {
-  constexpr int most = 1000000;
-  constexpr int num_quick_pairs = 3;
-  SequenceOptions options;
-  options.step = static_cast<std::size_t>(integerWithin(given, "step", 1, most));
-  options.max_pairs = static_cast<std::size_t>(integerWithin(given, "pairs", 0, most));
-  if (given.count("quick") > 0 && given["pairs"].defaulted())
-    options.max_pairs = num_quick_pairs;
-  options.guess_sd = deviationOf(given["guess-sd"].as<std::string>());
-  options.seed = seedOf(given, "first-seed");
-  options.rows_file = given["rows"].as<std::string>();
-  return options;
+  std::ostringstream help;
+  help << R"(Usage: pcl_bayesian_icp_evaluate coverage [options]
+
+Is the posterior as wide as it should be? Registers pairs of scans whose true
+pose was drawn from the prior, by every method, and compares each posterior
+with the truth. Every run is a row of a CSV file: squared Mahalanobis
+distance of the truth (NEES), log score [nats] and energy score in units of
+the prior's standard deviations, probability integral transforms (PIT),
+errors, standard scores and deviations of the six coordinates of a twist
+about the source's centroid, mean displacement of the source's points [m],
+time, nearest-neighbour queries, flags. A table goes to the standard output,
+progress to the standard error.
+Of recordings the prior is the default one about a guess, log scores are in
+metres and radians and at least -50 a pair, and the table counts lost pairs
+(displaced by more than the recording's limit; they are left out of NEES/6),
+alarms (flags on good ones: not lost, NEES below 16.812) and misses (bad ones
+without a flag: lost, or NEES above 27.856).
+Results of another build of the methods have to be deleted by hand.
+Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the report.
+
+)" << options;
+  return help.str();
 }
 
 } // namespace
 
-CoverageOptions
+std::optional<CoverageOptions>
 parseCoverageOptions(int argc, const char* const* argv)
 {
-  const po::variables_map given = readCommandLine(argc, argv, description());
+  constexpr int num_quick_cases = 3;
   CoverageOptions options;
-  options.show_help = given.count("help") > 0;
-  if (options.show_help)
-    return options;
-  const auto text = [&given](const char* name) {
-    return given[name].as<std::string>();
-  };
-  options.scenes = split(text("scenes"), ',');
-  options.conditions = split(text("conditions"), ',');
-  options.methods = split(text("methods"), ',');
-  options.result_file = text("output");
-  options.real_folder = text("real");
-  options.has_report = given.count("report") > 0;
-  options.num_seeds = integerWithin(given, "seeds", 1, 1000000);
-  options.first_seed = seedOf(given, "first-seed");
-  options.num_threads = numThreadsOf(given);
-  if (options.result_file.empty())
-    throw io::UsageError("--output needs the name of a file");
+  const po::options_description description = describeOptions(options);
+  const po::variables_map given =
+      io::splitCommandLine(argc, argv, description, nullptr);
+  if (io::printHelpOrVersion(
+          given, "", [&description] { return helpText(description); }))
+    return std::nullopt;
+  io::takeOptions(given, description);
+  options.sequences.seed = options.first_seed;
   options.has_sequences =
       !options.real_folder.empty() && !hasManifest(options.real_folder);
-  options.sequences = sequenceOptionsOf(given);
   refuseMisplaced(given, options);
-  options.is_quick = given.count("quick") > 0;
   if (options.is_quick && given["seeds"].defaulted())
-    options.num_seeds = 3;
+    options.num_seeds = num_quick_cases;
+  if (options.is_quick && given["pairs"].defaulted())
+    options.sequences.max_pairs = num_quick_cases;
   return options;
-}
-
-std::string
-coverageHelp()
-{
-  std::ostringstream help;
-  help
-      << "Usage: pcl_bayesian_icp_evaluate coverage [options]\n\n"
-         "Is the posterior as wide as it should be? Registers pairs of scans whose "
-         "true\n"
-         "pose was drawn from the prior, by every method, and compares each posterior\n"
-         "with the truth. Every run is a row of a CSV file: squared Mahalanobis\n"
-         "distance of the truth (NEES), log score [nats] and energy score in units of\n"
-         "the prior's standard deviations, probability integral transforms (PIT),\n"
-         "errors, standard scores and deviations of the six coordinates of a twist\n"
-         "about the source's centroid, mean displacement of the source's points [m],\n"
-         "time, nearest-neighbour queries, flags. A table goes to the standard "
-         "output,\n"
-         "progress to the standard error.\n"
-         "Of recordings the prior is the default one about a guess, log scores are in\n"
-         "metres and radians and at least -50 a pair, and the table counts lost pairs\n"
-         "(displaced by more than the recording's limit; they are left out of "
-         "NEES/6),\n"
-         "alarms (flags on good ones: not lost, NEES below 16.812) and misses (bad "
-         "ones\n"
-         "without a flag: lost, or NEES above 27.856).\n"
-         "Results of another build of the methods have to be deleted by hand.\n"
-         "Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the "
-         "report.\n\n"
-      << description();
-  return help.str();
 }
 
 } // namespace bayesian_icp::evaluate

@@ -6,6 +6,7 @@
 #include "coverage/coverage_sequences.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,14 +14,13 @@ namespace bayesian_icp::evaluate {
 
 /** \brief What is run, and where it is kept. */
 struct CoverageOptions {
-  bool show_help = false;
   /** Names as given; empty: all there are, but for the scenes of the set lidar. */
   std::vector<std::string> scenes;
   std::vector<std::string> conditions;
   std::vector<std::string> methods;
   int num_seeds = 20;
   std::uint64_t first_seed = 1;
-  std::string result_file;
+  std::string result_file = "results/coverage.csv";
   /** Folder of real pairs with a manifest.json, or of recordings; empty: simulated
    * scenes. */
   std::string real_folder;
@@ -32,13 +32,10 @@ struct CoverageOptions {
   bool is_quick = false;
 };
 
-/** \throws io::UsageError or boost::program_options::error with a message for the user
- */
-CoverageOptions
+/** \brief Read the command line.
+ * \return nothing if it asks for help, which has been printed
+ * \throws io::UsageError with a message for the user */
+std::optional<CoverageOptions>
 parseCoverageOptions(int argc, const char* const* argv);
-
-/** \brief What --help prints. */
-std::string
-coverageHelp();
 
 } // namespace bayesian_icp::evaluate

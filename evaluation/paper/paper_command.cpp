@@ -1,6 +1,72 @@
 #include "paper/paper_command.h"
 
+#include "io/cloud_file.h"
+#include "io/folders.h"
+#include "study/option_values.h"
+#include "study/report_program.h"
+
+#include <iostream>
+#include <sstream>
+
 namespace bayesian_icp::evaluate {
+
+namespace po = boost::program_options;
+
+namespace {
+
+constexpr int incomplete_exit_code = 3;
+
+std::string
+helpText(const std::string& name,
+         const std::string& summary,
+         const po::options_description& options)
+{
+  std::ostringstream help;
+  help << "Usage: pcl_bayesian_icp_evaluate " << name << " [options]\n\n"
+       << summary << R"(
+
+The output folder gets a CSV file with one row for each run, and the data of the
+pictures. Python with pandas and matplotlib makes report.md, report.html and the
+pictures from these; the tool prints medians without it. An interrupted run
+continues where it stopped. A pair that is missing or broken is named and skipped.
+Delete the results of another build of the methods yourself.
+Exit codes: 0 good, 2 usage, 3 cannot read or write a file, left a pair out, or
+made no report.
+
+)" << options;
+  return help.str();
+}
+
+/** Read options and pairs, make the output folder, run the experiments, and have the
+ * report made; progress goes to the standard error. */
+int
+runExperiments(const std::string& summary,
+               const Experiment& run,
+               int argc,
+               const char* const* argv)
+{
+  PaperStudy study;
+  study.command = argv[0];
+  const po::options_description description = paperOptionsDescription(study.options);
+  const po::variables_map given =
+      io::splitCommandLine(argc, argv, description, nullptr);
+  if (io::printHelpOrVersion(
+          given, "", [&] { return helpText(argv[0], summary, description); }))
+    return 0;
+  takePaperOptions(given, description, study.options);
+  io::silencePcl();
+  study.pairs = readPairs(study.options, std::cerr, study.num_skipped);
+  study.report = [](const std::string& line) { std::cerr << line << std::endl; };
+  io::makeFolder(study.options.output_folder);
+  run(study);
+  if (study.num_skipped > 0)
+    std::cerr << study.num_skipped << " pairs were skipped" << std::endl;
+  const int report_code =
+      study.options.has_report ? makeReport(study.options.output_folder) : 0;
+  return study.num_skipped > 0 ? incomplete_exit_code : report_code;
+}
+
+} // namespace
 
 const std::vector<NamedExperiment>&
 paperExperiments()
@@ -8,10 +74,9 @@ paperExperiments()
   static const std::vector<NamedExperiment> experiments = {
       {"distribution",
        "the paper's Table I: divergence of every method from Monte Carlo ICP",
-       "KL(baseline || method) of every method, the baseline being the results of\n"
-       "Monte Carlo ICP, beside the paper's; marginal densities, pictures of the "
-       "clouds,\n"
-       "and scores against the true pose.",
+       R"(KL(baseline || method) of every method, the baseline being the results of
+Monte Carlo ICP, beside the paper's; marginal densities, pictures of the clouds,
+and scores against the true pose.)",
        distributionExperiment},
       {"samples",
        "the same divergence as a function of the number of draws",
@@ -26,18 +91,25 @@ paperExperiments()
        burnInExperiment},
       {"runtime",
        "seconds per 1000 draws, for 1, 2 and 4 threads",
-       "Wall time and processor time per 1000 draws of the presets paper, exact and\n"
-       "calibrated for 1, 2 and 4 threads, beside the paper's; each pair is timed as "
-       "often\nas there are repeats. Run nothing else meanwhile.",
+       R"(Wall time and processor time per 1000 draws of the presets paper, exact and
+calibrated for 1, 2 and 4 threads, beside the paper's; each pair is timed as often
+as there are repeats. Run nothing else meanwhile.)",
        runtimeExperiment},
       {"accuracy",
        "errors of posterior means, SGD-ICP and ICP from random starts",
-       "Translation and rotation error of Bayesian ICP's mean (presets paper, exact "
-       "and\n"
-       "calibrated), SGD-ICP and ICP to completion, from 50 starts in ±1 m, ±0.3 rad "
-       "(5 with\n--quick).",
+       R"(Translation and rotation error of Bayesian ICP's mean (presets paper, exact and
+calibrated), SGD-ICP and ICP to completion, from 50 starts in ±1 m, ±0.3 rad (5 with
+--quick).)",
        accuracyExperiment}};
   return experiments;
+}
+
+int
+runExperimentCommand(const NamedExperiment& experiment,
+                     int argc,
+                     const char* const* argv)
+{
+  return runExperiments(experiment.details, experiment.run, argc, argv);
 }
 
 int
@@ -53,7 +125,7 @@ runPaperCommand(int argc, const char* const* argv)
       experiment.run(study);
     }
   };
-  return runExperiments({summary, run_all}, argc, argv);
+  return runExperiments(summary, run_all, argc, argv);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -24,9 +24,16 @@ struct NamedExperiment {
 const std::vector<NamedExperiment>&
 paperExperiments();
 
+/** \brief Run the sub-command of an experiment.
+ * \return the exit code: 0, or 3 if a pair had to be skipped or there is no report
+ * \throws io::UsageError, io::FileError */
+int
+runExperimentCommand(const NamedExperiment& experiment,
+                     int argc,
+                     const char* const* argv);
+
 /** \brief Run the sub-command `paper`: all experiments into one folder.
- * \return the exit code, see runExperiments()
- * \throws io::UsageError, io::FileError, boost::program_options::error */
+ * \return and \throws as runExperimentCommand() */
 int
 runPaperCommand(int argc, const char* const* argv);
 

@@ -37,20 +37,6 @@ struct PaperStudy {
  * \throws io::FileError */
 using Experiment = std::function<void(const PaperStudy&)>;
 
-/** \brief A sub-command that makes experiments. */
-struct ExperimentCommand {
-  /** What --help says that it does. */
-  std::string summary;
-  Experiment run;
-};
-
-/** \brief Read options and pairs, make the output folder, run the command, and have the
- * report made; progress goes to the standard error.
- * \return the exit code: 0, or 3 if a pair had to be skipped or there is no report
- * \throws io::UsageError, io::FileError, boost::program_options::error */
-int
-runExperiments(const ExperimentCommand& command, int argc, const char* const* argv);
-
 /** \brief Table I with everything around it. */
 void
 distributionExperiment(const PaperStudy& study);

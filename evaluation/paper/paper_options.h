@@ -17,13 +17,12 @@ namespace bayesian_icp::evaluate {
 
 /** \brief Defaults are those of the standard report. */
 struct PaperStudyOptions {
-  bool show_help = false;
   /** Where the pairs are (see scan_pairs.h), and names as given; none: all there are.
    */
-  std::string data_folder;
+  std::string data_folder = "data";
   std::vector<std::string> pairs;
   /** Everything goes here, and what is there is not made again. */
-  std::string output_folder;
+  std::string output_folder = "results/paper";
   std::uint64_t seed = 1;
   int num_threads = 1;
   /** Source points that are used, chosen at random; 0: all. */
@@ -40,13 +39,16 @@ struct PaperStudyOptions {
   bool has_report = true;
 };
 
-/** \brief Their description. An experiment with options of its own adds these to it. */
+/** \brief Their description. They fill \p options, which has to outlive them. */
 boost::program_options::options_description
-paperOptionsDescription();
+paperOptionsDescription(PaperStudyOptions& options);
 
-/** \throws io::UsageError with a message for the user */
-PaperStudyOptions
-paperOptionsOf(const boost::program_options::variables_map& given);
+/** \brief Take them from a command line.
+ * \throws io::UsageError with a message for the user */
+void
+takePaperOptions(const boost::program_options::variables_map& given,
+                 const boost::program_options::options_description& description,
+                 PaperStudyOptions& options);
 
 /** \brief The pairs asked for. A missing or broken one is named, with the reason, on
  * \p log and left out.

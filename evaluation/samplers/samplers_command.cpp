@@ -27,11 +27,10 @@ titleOf(const Problem& problem)
 int
 runSamplersCommand(int argc, const char* const* argv)
 {
-  const SamplersOptions options = parseSamplersOptions(argc, argv);
-  if (options.show_help) {
-    std::cout << samplersHelp();
+  const std::optional<SamplersOptions> asked = parseSamplersOptions(argc, argv);
+  if (!asked)
     return 0;
-  }
+  const SamplersOptions& options = *asked;
   io::silencePcl();
   ResultFile results(options.result_file);
   bool all_converged = true;

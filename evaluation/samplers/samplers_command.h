@@ -9,7 +9,7 @@ namespace bayesian_icp::evaluate {
 /** \brief Run the sub-command.
  * \param[in] argc,argv the command line from the sub-command's name on
  * \return the exit code 0, or 1 if a gold standard did not converge
- * \throws io::UsageError, io::FileError, boost::program_options::error */
+ * \throws io::UsageError, io::FileError */
 int
 runSamplersCommand(int argc, const char* const* argv);
 

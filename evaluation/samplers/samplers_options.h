@@ -5,6 +5,7 @@
 
 #include "samplers/sampler_problem.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,15 @@ namespace bayesian_icp::evaluate {
 
 /** \brief What is compared, and where it is kept. */
 struct SamplersOptions {
-  bool show_help = false;
-  std::string data_folder;
-  std::string cache_folder;
-  std::string result_file;
+  std::string data_folder = "data";
+  std::string cache_folder = "results";
+  std::string result_file = "results/samplers.csv";
   bool has_report = false;
-  std::vector<std::string> scenes;
+  bool is_quick = false;
+  std::vector<std::string> scenes = {"can", "bowl", "mug", "table", "corridor"};
   std::vector<Cell> cells;
-  std::vector<std::string> samplers;
+  std::vector<std::string> samplers = {
+      "exact", "exact-metropolis", "paper", "walk", "mala"};
   int num_seeds = 5;
   int num_points = 2000;
   int num_threads = 1;
@@ -32,13 +34,10 @@ struct SamplersOptions {
   wants(const std::string& sampler) const;
 };
 
-/** \throws io::UsageError or boost::program_options::error with a message for the user
- */
-SamplersOptions
+/** \brief Read the command line.
+ * \return nothing if it asks for help, which has been printed
+ * \throws io::UsageError with a message for the user */
+std::optional<SamplersOptions>
 parseSamplersOptions(int argc, const char* const* argv);
-
-/** \brief What --help prints. */
-std::string
-samplersHelp();
 
 } // namespace bayesian_icp::evaluate

@@ -1,16 +1,18 @@
 #include "sbc/sbc_command.h"
 
-#include "io/errors.h"
 #include "io/folders.h"
 #include "sbc/rank_study.h"
 #include "sbc/rank_table.h"
-#include "sbc/sbc_options.h"
+#include "study/option_values.h"
 #include "study/report_program.h"
 
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 
 namespace bayesian_icp::evaluate {
+
+namespace po = boost::program_options;
 
 namespace {
 
@@ -35,21 +37,85 @@ chosenSamplers(const std::vector<std::string>& names)
   return chosen;
 }
 
+/** What the command line says besides what is run. */
+struct SbcOptions {
+  /** Names as given; empty: all there are. */
+  std::vector<std::string> samplers;
+  std::string result_file = "results/sbc.csv";
+  bool has_report = false;
+};
+
+void
+takeSamplers(const std::string& text, SbcOptions& options)
+{
+  for (const std::string& name : split(text, ','))
+    if (name == "exact")
+      options.samplers.insert(options.samplers.end(),
+                              {"exact-langevin", "exact-metropolis"});
+    else
+      options.samplers.push_back(name);
+}
+
+po::options_description
+describeOptions(SbcOptions& options, RankStudy& study)
+{
+  po::options_description description("Options", 88);
+  // clang-format off
+  description.add_options()
+    ("sampler", taken("", [&options](const std::string& text) {
+       takeSamplers(text, options);
+     }),
+     "exact-langevin, exact-metropolis, calibrated, calibrated-scans, or several of "
+     "them, separated by commas; exact means the first two. The default is all")
+    ("runs", integer(study.num_runs, 1, 1000000), "number of runs of each sampler")
+    ("seed", integer(study.first_seed, 0, max_seed), "seed of the first run")
+    ("output", outputName("file", options.result_file),
+     "CSV file of the results, one row for each run. Runs that it already has are "
+     "skipped")
+    ("report", io::flag(options.has_report),
+     "also make a report, with figures, of all results in that folder")
+    ("threads", threads(study.num_threads),
+     "number of runs at the same time; 0 means as many as there are cores")
+    ("help", "show this text");
+  // clang-format on
+  return description;
+}
+
+std::string
+helpText(const po::options_description& options)
+{
+  std::ostringstream help;
+  help << R"(Usage: pcl_bayesian_icp_evaluate sbc [options]
+
+Simulation-based calibration: are the draws of a sampler draws of the
+posterior? True poses are drawn from the prior and data from the very
+likelihood; the rank of the true pose among 99 draws is then uniform, in
+each of the six coordinates. calibrated-scans ranks true poses of simulated
+scans, of which the likelihood is no exact model. Every run is a row of a
+CSV file. A table goes to the standard output, progress to the standard
+error. Results of another build have to be deleted by hand.
+Exit codes: 0 good, 1 ranks are not uniform or draws are no good, 2 usage,
+3 cannot read or write a file, or make the report.
+
+)" << options;
+  return help.str();
+}
+
 } // namespace
 
 int
 runSbcCommand(int argc, const char* const* argv)
 {
-  const SbcOptions options = parseSbcOptions(argc, argv);
-  if (options.show_help) {
-    std::cout << sbcHelp();
-    return 0;
-  }
+  SbcOptions options;
   RankStudy study;
+  const po::options_description description = describeOptions(options, study);
+  const po::variables_map given =
+      io::splitCommandLine(argc, argv, description, nullptr);
+  if (io::printHelpOrVersion(
+          given, "", [&description] { return helpText(description); }))
+    return 0;
+  io::takeOptions(given, description);
   study.samplers = chosenSamplers(options.samplers);
-  study.num_runs = options.num_runs;
-  study.first_seed = options.first_seed;
-  study.num_threads = options.num_threads;
   study.report = [](std::size_t num_done, std::size_t num_all) {
     if (num_done % 50 == 0 || num_done == num_all)
       std::cerr << num_done << " of " << num_all << " runs" << std::endl;

@@ -1,9 +1,6 @@
 #include "study/option_values.h"
 
-#include "io/errors.h"
-
-#include <boost/program_options/parsers.hpp>
-#include <boost/program_options/positional_options.hpp>
+#include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
 #include <sstream>
@@ -14,31 +11,63 @@ namespace bayesian_icp::evaluate {
 namespace po = boost::program_options;
 
 po::typed_value<std::string>*
-textOption(const char* standard)
+taken(const std::string& standard, const std::function<void(const std::string&)>& take)
 {
-  return po::value<std::string>()->default_value(standard);
+  return po::value<std::string>()->default_value(standard)->notifier(take);
+}
+
+po::typed_value<std::string>*
+text(std::string& value)
+{
+  return po::value<std::string>(&value)->default_value(value);
+}
+
+po::typed_value<std::string>*
+outputName(const std::string& kind, std::string& value)
+{
+  return taken(value, [kind, &value](const std::string& name) {
+    if (name.empty())
+      throw io::BadValue(" needs the name of a " + kind);
+    value = name;
+  });
+}
+
+po::typed_value<std::string>*
+list(std::vector<std::string>& words)
+{
+  return taken(boost::algorithm::join(words, ","),
+               [&words](const std::string& text) { words = split(text, ','); });
+}
+
+po::typed_value<double>*
+positiveNumber(double& value, double most)
+{
+  return po::value<double>()
+      ->default_value(value, io::textOf(value))
+      ->notifier([&value, most](double number) {
+        if (!(number > 0.0) || number > most)
+          throw io::BadValue(" must be positive");
+        value = number;
+      });
 }
 
 po::typed_value<int>*
-intOption(int standard)
+threads(int& value)
 {
-  return po::value<int>()->default_value(standard);
+  constexpr int max_threads = 256;
+  return po::value<int>()->default_value(0)->notifier([&value](int number) {
+    requireWithin(number, 0, max_threads);
+    const int num_cores = static_cast<int>(std::thread::hardware_concurrency());
+    value = number > 0 ? number : std::max(1, num_cores);
+  });
 }
 
-po::variables_map
-readCommandLine(int argc,
-                const char* const* argv,
-                const po::options_description& options)
+void
+requireWithin(int value, int least, int most)
 {
-  namespace style = po::command_line_style;
-  po::variables_map given;
-  po::store(po::command_line_parser(argc, argv)
-                .options(options)
-                .positional(po::positional_options_description())
-                .style(style::unix_style & ~style::allow_guessing)
-                .run(),
-            given);
-  return given;
+  if (value < least || value > most)
+    throw io::BadValue(" is " + std::to_string(value) + ", but must be in [" +
+                       std::to_string(least) + ", " + std::to_string(most) + "]");
 }
 
 std::vector<std::string>
@@ -49,37 +78,6 @@ split(const std::string& text, char separator)
   for (std::string item; std::getline(stream, item, separator);)
     items.push_back(item);
   return items;
-}
-
-int
-integerWithin(const po::variables_map& given,
-              const std::string& name,
-              int least,
-              int most)
-{
-  const int value = given[name].as<int>();
-  if (value < least || value > most)
-    throw io::UsageError("--" + name + " is " + std::to_string(value) +
-                         ", but must be in [" + std::to_string(least) + ", " +
-                         std::to_string(most) + "]");
-  return value;
-}
-
-std::uint64_t
-seedOf(const po::variables_map& given, const std::string& name)
-{
-  constexpr int max_seed = 1000000000;
-  return static_cast<std::uint64_t>(integerWithin(given, name, 0, max_seed));
-}
-
-int
-numThreadsOf(const po::variables_map& given)
-{
-  constexpr int max_threads = 256;
-  const int num_threads = integerWithin(given, "threads", 0, max_threads);
-  return num_threads > 0
-             ? num_threads
-             : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 } // namespace bayesian_icp::evaluate

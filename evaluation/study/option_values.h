@@ -1,52 +1,63 @@
 /** \file
- * \brief Reading the options of a sub-command.
+ * \brief Where the values of a study's options go, as the functions in
+ * io/command_line.h. The default of an option is what its place has before.
  */
 #pragma once
 
-#include <boost/program_options/options_description.hpp>
-#include <boost/program_options/value_semantic.hpp>
-#include <boost/program_options/variables_map.hpp>
+#include "io/command_line.h"
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief A text option and its default. */
+constexpr int max_seed = 1000000000;
+
+/** \brief A text with a default, which \p take gets; it may throw an io::BadValue. */
 boost::program_options::typed_value<std::string>*
-textOption(const char* standard);
+taken(const std::string& standard, const std::function<void(const std::string&)>& take);
 
-/** \brief An int option and its default. */
+/** \brief A text. */
+boost::program_options::typed_value<std::string>*
+text(std::string& value);
+
+/** \brief A name of a \p kind ("file"), which is not empty. */
+boost::program_options::typed_value<std::string>*
+outputName(const std::string& kind, std::string& value);
+
+/** \brief Words separated by commas. */
+boost::program_options::typed_value<std::string>*
+list(std::vector<std::string>& words);
+
+/** \brief A positive number up to \p most. */
+boost::program_options::typed_value<double>*
+positiveNumber(double& value, double most = std::numeric_limits<double>::max());
+
+/** \brief A number of threads up to 256; 0 becomes as many as there are cores. */
 boost::program_options::typed_value<int>*
-intOption(int standard);
+threads(int& value);
 
-/** \brief Read a command line without guessing: an abbreviated or misspelt option, or a
- * word that is none, is an error.
- * \throws boost::program_options::error */
-boost::program_options::variables_map
-readCommandLine(int argc,
-                const char* const* argv,
-                const boost::program_options::options_description& options);
+/** \throws io::BadValue if the value is not within [least, most] */
+void
+requireWithin(int value, int least, int most);
+
+/** \brief A whole number within [least, most]. */
+template <typename Integer>
+boost::program_options::typed_value<int>*
+integer(Integer& value, int least, int most)
+{
+  return boost::program_options::value<int>()
+      ->default_value(static_cast<int>(value))
+      ->notifier([&value, least, most](int number) {
+        requireWithin(number, least, most);
+        value = static_cast<Integer>(number);
+      });
+}
 
 /** \brief The pieces between separators; none of an empty text. */
 std::vector<std::string>
 split(const std::string& text, char separator);
-
-/** \brief The value of an int option.
- * \throws io::UsageError if it is not within [least, most] */
-int
-integerWithin(const boost::program_options::variables_map& given,
-              const std::string& name,
-              int least,
-              int most);
-
-/** \brief The value of the option `name` as a seed. */
-std::uint64_t
-seedOf(const boost::program_options::variables_map& given, const std::string& name);
-
-/** \brief The value of the option `threads`, as many as there are cores for 0. */
-int
-numThreadsOf(const boost::program_options::variables_map& given);
 
 } // namespace bayesian_icp::evaluate

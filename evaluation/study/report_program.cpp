@@ -51,13 +51,14 @@ lastLineOf(const std::string& text)
 void
 printHelp()
 {
-  std::cout
-      << "Usage: pcl_bayesian_icp_evaluate report FOLDER\n\n"
-         "Makes report.md, report.html and figures (SVG and PNG) of all studies\n"
-         "whose CSV files are in the folder, by Python with pandas and matplotlib\n"
-         "(Debian's packages python3-pandas and python3-matplotlib). Nothing is\n"
-         "registered or sampled.\n"
-         "Exit codes: 0 good, 2 usage, 3 no report.\n";
+  std::cout << R"(Usage: pcl_bayesian_icp_evaluate report FOLDER
+
+Makes report.md, report.html and figures (SVG and PNG) of all studies
+whose CSV files are in the folder, by Python with pandas and matplotlib
+(Debian's packages python3-pandas and python3-matplotlib). Nothing is
+registered or sampled.
+Exit codes: 0 good, 2 usage, 3 no report.
+)";
 }
 
 } // namespace
