@@ -1,21 +1,14 @@
-#include "coverage/coverage_baselines.h"
-
 #include "calibrated/surface/surface_model.h"
+#include "coverage/coverage_methods.h"
 #include "methods/baseline_problem.h"
-#include "methods/pcl_baselines.h"
 #include "methods/point_to_point_sandwich.h"
 #include "methods/published_covariances.h"
 
 namespace bayesian_icp::evaluate {
 
-using Eigen::Index;
-using Eigen::Matrix3Xd;
-using Eigen::Vector3d;
-
 namespace {
 
-using Baseline =
-    std::function<MethodResult(const CoverageCase&, const BaselineProblem&)>;
+using Baseline = std::function<MethodResult(const BaselineProblem&)>;
 
 MethodResult
 naive(const BaselineProblem& problem)
@@ -48,20 +41,10 @@ sandwich(const BaselineProblem& problem)
                                   pointToPointSandwich(problem, fit, variance, noise));
 }
 
-/** The registration of a case by PCL. */
-PclProblem
-pclProblem(const CoverageCase& coverage_case, const BaselineProblem& problem)
-{
-  return {coverage_case.source,
-          coverage_case.target,
-          problem.sourceColumns(),
-          problem.priorMean()};
-}
-
 MethodResult
-gicpWithHessian(const CoverageCase& coverage_case, const BaselineProblem& problem)
+gicpWithHessian(const BaselineProblem& problem)
 {
-  const GicpFit gicp = fitPclGicp(pclProblem(coverage_case, problem));
+  const GicpFit gicp = fitPclGicp(problem.ofPcl());
   MethodResult result;
   if (gicp.moved.cols() == 0) {
     result.notes = "too few points";
@@ -81,8 +64,8 @@ gicpWithHessian(const CoverageCase& coverage_case, const BaselineProblem& proble
 Baseline
 poseOnly(PclFit (*fit)(const PclProblem&))
 {
-  return [fit](const CoverageCase& coverage_case, const BaselineProblem& problem) {
-    const PclFit found = fit(pclProblem(coverage_case, problem));
+  return [fit](const BaselineProblem& problem) {
+    const PclFit found = fit(problem.ofPcl());
     MethodResult result;
     result.is_valid = result.is_pose_only = true;
     result.mean = found.pose;
@@ -102,17 +85,8 @@ method(const std::string& name, const Baseline& baseline)
               refused.notes = "empty cloud";
               return refused;
             }
-            return baseline(coverage_case, BaselineProblem(coverage_case));
+            return baseline(BaselineProblem(coverage_case));
           }};
-}
-
-/** A baseline that needs only the problem. */
-Baseline
-ofProblem(MethodResult (*run)(const BaselineProblem&))
-{
-  return [run](const CoverageCase&, const BaselineProblem& problem) {
-    return run(problem);
-  };
 }
 
 } // namespace
@@ -120,9 +94,9 @@ ofProblem(MethodResult (*run)(const BaselineProblem&))
 std::vector<CoverageMethod>
 baselineMethods()
 {
-  return {method("naive", ofProblem(naive)),
-          method("closed-form", ofProblem(closedForm)),
-          method("point-to-point-sandwich", ofProblem(sandwich)),
+  return {method("naive", naive),
+          method("closed-form", closedForm),
+          method("point-to-point-sandwich", sandwich),
           method("gicp-hessian", gicpWithHessian),
           method("gicp", poseOnly(fitPclGicpAsIs)),
           method("icp", poseOnly(fitPclIcp))};

@@ -1,5 +1,3 @@
-#include "coverage/coverage_calibrated.h"
-
 #include "calibrated/calibrated_report.h"
 #include "coverage/coverage_methods.h"
 #include "study/formatted_text.h"

@@ -1,7 +1,5 @@
 #include "coverage/coverage_methods.h"
 
-#include "coverage/coverage_baselines.h"
-#include "coverage/coverage_calibrated.h"
 #include "geometry/twist.h"
 
 #include <Eigen/LU>

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "calibrated/calibrated_estimate.h"
 #include "study/coverage_case.h"
 
 #include <bayesian_icp/pipeline.h>
@@ -43,5 +44,43 @@ resultOf(const CoverageCase& problem, const PosteriorEstimate& estimate);
 /** \brief The case's prior, about the source's centroid. */
 Prior
 priorOf(const CoverageCase& problem);
+
+/** \brief What others make of a registration's uncertainty.
+ *
+ * All that have a covariance combine with the case's prior as a calibrated user would:
+ * the method's information and the prior's add up in twists about the moved source's
+ * centroid, and the mean is one Newton step from the method's pose. At most 2000 source
+ * points are registered, a random choice, unless said otherwise. All use one thread and
+ * leave MethodResult::seconds to the caller.
+ *
+ * In this order:
+ * - `naive`: point-to-point ICP with the prior; sigma^2 H^-1, sigma^2 the residuals'
+ *   variance, every point independent;
+ * - `closed-form`: point-to-plane ICP with the prior from there; Censi's covariance,
+ *   sigma from the residuals' median;
+ * - `point-to-point-sandwich`: the pose of `naive`; scores clustered in space and
+ *   curvature by secants;
+ * - `gicp-hessian`: PCL's GICP from the prior's mean; the inverse of its Hessian, in
+ *   which a point is known to 1 m in its plane and 0.03 m across, whatever the scene;
+ * - `gicp`: PCL's GICP as it comes, but with 50 iterations, from the prior's mean and
+ *   with all source points; a pose only;
+ * - `icp`: PCL's ICP from the prior's mean; a pose only. */
+std::vector<CoverageMethod>
+baselineMethods();
+
+/** \brief The estimate behind both methods below, from at most 2000 source points.
+ */
+CalibratedEstimate
+calibratedEstimateOf(const CoverageCase& problem);
+
+/** \brief The calibrated Gaussian; notes are its flags and the number of directions
+ * held by the prior only. */
+MethodResult
+runCalibrated(const CoverageCase& problem);
+
+/** \brief What a user gets: 2000 draws of the preset, from all modes, with its status
+ * as a flag. */
+MethodResult
+runCalibratedDraws(const CoverageCase& problem);
 
 } // namespace bayesian_icp::evaluate

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "baselines/closed_form_covariance.h"
+#include "methods/pcl_baselines.h"
 #include "study/coverage_case.h"
 
 #include <bayesian_icp/kd_tree.h>
@@ -69,6 +70,13 @@ public:
 
   Eigen::Isometry3d
   priorMean() const;
+
+  /** \brief The registration by PCL, from the prior's mean. */
+  PclProblem
+  ofPcl() const
+  {
+    return {case_.source, case_.target, source_columns_, priorMean()};
+  }
 
   /** \brief Nearest-neighbour queries until now. */
   long

@@ -1,7 +1,5 @@
 #include "methods/published_covariances.h"
 
-#include "methods/pcl_baselines.h"
-
 #include <Eigen/Eigenvalues>
 
 #include <nanoflann.hpp>
@@ -128,10 +126,7 @@ TwistGaussian
 gicpHessian(const CoverageCase& coverage_case)
 {
   const BaselineProblem problem(coverage_case);
-  const GicpFit gicp = fitPclGicp({coverage_case.source,
-                                   coverage_case.target,
-                                   problem.sourceColumns(),
-                                   problem.priorMean()});
+  const GicpFit gicp = fitPclGicp(problem.ofPcl());
   const Vector3d centre = problem.centreAt(gicp.fit.pose);
   return {gicp.fit.pose,
           hessianCovariance(generalizedIcpHessian(gicp.moved, gicp.covariances, centre),

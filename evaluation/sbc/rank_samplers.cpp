@@ -1,6 +1,5 @@
 #include "sbc/rank_samplers.h"
 
-#include "coverage/coverage_calibrated.h"
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_methods.h"
 #include "sbc/rank_models.h"

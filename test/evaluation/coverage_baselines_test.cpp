@@ -1,5 +1,5 @@
 // The baselines of the coverage study, on scans of a wavy surface.
-#include "coverage/coverage_baselines.h"
+#include "coverage/coverage_methods.h"
 #include "geometry/twist.h"
 #include "methods/baseline_problem.h"
 #include "methods/pcl_baselines.h"

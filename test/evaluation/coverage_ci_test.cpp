@@ -6,8 +6,8 @@
  * an ANEES of 1 with a Monte Carlo error of 0.04, and coverages of 95 and 50 % with
  * errors of 1.5 and 3.4 %.
  */
-#include "coverage/coverage_calibrated.h"
 #include "coverage/coverage_cases.h"
+#include "coverage/coverage_methods.h"
 #include "coverage/coverage_score.h"
 #include "coverage/coverage_summary.h"
 #include "io/numbers.h"
