@@ -42,13 +42,6 @@ const std::map<std::string, std::set<std::string>> keys_of_groups = {
     {"preconditioned_sgld", {"step-size", "adjust_noise", "decay-rate"}},
     {"preconditioned_sgld2", {"step-size", "adjust_noise", "decay-rate"}}};
 
-[[noreturn]] void
-refuse(const std::string& path, const json& value, const std::string& expected)
-{
-  throw io::UsageError(path + " is " + io::quoted(value.dump()) + ", but must be " +
-                       expected);
-}
-
 /** The program reads true and false, 1 and 0. */
 bool
 flagOf(const std::string& path, const json& value)

@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "io/errors.h"
+
 #include <Eigen/Core>
 
 #include <nlohmann/json.hpp>
@@ -20,6 +22,17 @@ keyPath(std::string group, const std::string& key)
   group += '.';
   group += key;
   return group;
+}
+
+/** \brief Refuse the value at \p path ("group.key").
+ * \throws io::UsageError */
+[[noreturn]] inline void
+refuse(const std::string& path,
+       const nlohmann::json& value,
+       const std::string& expected)
+{
+  throw io::UsageError(path + " is " + io::quoted(value.dump()) + ", but must be " +
+                       expected);
 }
 
 inline nlohmann::ordered_json

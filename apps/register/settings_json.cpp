@@ -54,13 +54,6 @@ struct SettingsWriter {
   }
 };
 
-[[noreturn]] void
-refuse(const std::string& path, const json& value, const std::string& expected)
-{
-  throw io::UsageError(path + " is " + io::quoted(value.dump()) + ", but must be " +
-                       expected);
-}
-
 /** Reads one value; \p path names it in errors. */
 class ValueReader {
 public:
