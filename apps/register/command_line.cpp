@@ -127,9 +127,9 @@ parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
+  // Those of SGD-ICP have been refused before, unless help is asked for.
   po::options_description all;
-  all.add(options).add(
-      describeSgdOptions()); // refused before, unless help is asked for
+  all.add(options).add(describeSgdOptions());
   const po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
   if (io::printHelpOrVersion(given,
                              "pcl_bayesian_icp " BAYESIAN_ICP_VERSION,

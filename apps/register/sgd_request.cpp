@@ -83,37 +83,27 @@ po::options_description
 describeSgdOptions(SgdRequest& request)
 {
   auto& options = request.options;
-  const auto withDefault = [](const std::string& help, const std::string& value) {
-    return help + " (default " + value + ")";
+  const auto withDefault = [](const char* help, const std::string& value) {
+    return std::string(help) + " (default " + value + ")";
   };
-  const std::string optimizer = withDefault(
-      "Optimizer that turns gradients into steps: fixed, momentum, adadelta, "
-      "adam or rmsprop.",
-      toString(options.optimizer));
-  const std::string translation_epsilon = withDefault(
-      "A pose is still while its translation is nearer than this to where it "
-      "came to rest [m]. 0 means never.",
-      io::textOf(options.translation_epsilon));
-  const std::string rotation_epsilon =
-      withDefault("A pose is still only while the sum of the changes of its angles is "
-                  "below this [rad].",
-                  io::textOf(options.rotation_epsilon));
-  const std::string still_iterations = withDefault(
-      "Number of consecutive still steps after which the descent has converged.",
-      io::textOf(options.num_still_iterations));
   po::options_description group("Method sgd-icp only");
   // clang-format off
   group.add_options()
     ("optimizer", io::taken("NAME", [&options](const std::string& name) {
        takeOptimizer(name, options.optimizer);
      }),
-     optimizer.c_str())
+     withDefault("Optimizer that turns gradients into steps: fixed, momentum, adadelta, "
+                 "adam or rmsprop.", toString(options.optimizer)).c_str())
     ("translation-epsilon", io::number("M", options.translation_epsilon),
-     translation_epsilon.c_str())
+     withDefault("A pose is still while its translation is nearer than this to where it "
+                 "came to rest [m]. 0 means never.",
+                 io::textOf(options.translation_epsilon)).c_str())
     ("rotation-epsilon", io::number("RAD", options.rotation_epsilon),
-     rotation_epsilon.c_str())
+     withDefault("A pose is still only while the sum of the changes of its angles is "
+                 "below this [rad].", io::textOf(options.rotation_epsilon)).c_str())
     ("still-iterations", io::number("N", options.num_still_iterations),
-     still_iterations.c_str())
+     withDefault("Number of consecutive still steps after which the descent has "
+                 "converged.", io::textOf(options.num_still_iterations)).c_str())
     ("keep-duplicates",
      "Let a target point be in several pairs of a mini-batch. Without it, only the "
      "pair with the nearest source point counts.");
