@@ -75,7 +75,10 @@ struct IcpPair {
     if (std::isfinite(options.max_distance))
       icp.setMaxCorrespondenceDistance(options.max_distance);
     icp.setTransformationEpsilon(options.transformation_epsilon);
-    icp.setTransformationRotationEpsilon(options.rotation_epsilon);
+    // PCL 1.13 takes the other epsilon's where there is none, and later ones 0.99999.
+    icp.setTransformationRotationEpsilon(options.rotation_epsilon > 0.0
+                                             ? options.rotation_epsilon
+                                             : 1.0 - options.transformation_epsilon);
     icp.setEuclideanFitnessEpsilon(options.euclidean_fitness_epsilon);
     icp.getConvergeCriteria()->setAbsoluteMSE(options.absolute_fitness_epsilon);
   }

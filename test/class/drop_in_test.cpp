@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -254,6 +255,69 @@ TEST_P(DropInClouds, WithAReadyTreeOfHalfOfTheTarget)
   });
 }
 
+/** PCL's tree has returned whether it has been built since 1.14. */
+using Built = decltype(Tree().setInputCloud(Cloud::ConstPtr()));
+
+/** A tree that searches by itself, as KdTreeNanoflann of PCL 1.15.1 does: it derives
+ * from PCL's tree and has null where that one has its FLANN. */
+struct OwnSearch : Tree {
+  using Tree::nearestKSearch;
+  using Tree::radiusSearch;
+
+  OwnSearch() { tree_.reset(); }
+
+  Built
+  setInputCloud(const Cloud::ConstPtr& cloud,
+                const IndicesConstPtr& indices = IndicesConstPtr()) override
+  {
+    input_ = cloud;
+    indices_ = indices;
+    return (searched.setInputCloud(cloud, indices));
+  }
+
+  int
+  nearestKSearch(const PointXYZ& point,
+                 int k,
+                 Indices& indices,
+                 std::vector<float>& squared_distances) const override
+  {
+    ++num_queries;
+    return (searched.nearestKSearch(point, k, indices, squared_distances));
+  }
+
+  int
+  radiusSearch(const PointXYZ& point,
+               double radius,
+               Indices& indices,
+               std::vector<float>& squared_distances,
+               unsigned int max_nn = 0) const override
+  {
+    return (searched.radiusSearch(point, radius, indices, squared_distances, max_nn));
+  }
+
+  Tree searched;
+  mutable std::atomic<int> num_queries{0};
+};
+
+/** Has null inside, and nothing in its place. PCL's functions dereference it. */
+struct Hollow : Tree {
+  Hollow() { tree_.reset(); }
+};
+
+TEST_P(DropInClouds, WithTreesThatSearchByThemselves)
+{
+  expectSameWith([](Icp& icp) {
+    icp.setUseReciprocalCorrespondences(true);
+    icp.setSearchMethodTarget(pcl::make_shared<OwnSearch>());
+    icp.setSearchMethodSource(pcl::make_shared<OwnSearch>());
+  });
+  expectSameWith([this](Icp& icp) {
+    const auto tree = pcl::make_shared<OwnSearch>();
+    tree->setInputCloud(target);
+    icp.setSearchMethodTarget(tree, true);
+  });
+}
+
 /** Distances along z count ten times. */
 struct Stretched : PointRepresentation<PointXYZ> {
   Stretched() { nr_dimensions_ = 3; }
@@ -404,6 +468,126 @@ TEST_P(DropInClouds, ThePairsOfTheDefaultEstimationCanBeAskedForAfterwards)
   usePaper(bayesian);
   expectSamePairs(pairsAfterAlign(bayesian), pairsAfterAlign(icp));
 }
+
+/** Calls the setters of our class, which PCL's class does not have. */
+class DropInTrees : public DropInClouds {
+protected:
+  Snapshot
+  alignedWith(const std::function<void(BayesianIcp&)>& settings,
+              bayesian_icp::Preset preset = bayesian_icp::Preset::Paper)
+  {
+    Recorder<BayesianIcp> bayesian;
+    useFewSamples(bayesian);
+    bayesian.setPreset(preset);
+    bayesian.setInputSource(source);
+    bayesian.setInputTarget(target);
+    settings(bayesian);
+    bayesian.alignAndRecord(no_guess);
+    num_draws = bayesian.getSummary().num_draws;
+    return (bayesian.snapshots[0]);
+  }
+
+  const QuietConsole quiet;
+  const Snapshot expected = alignedWith([](BayesianIcp&) {});
+  std::size_t num_draws = 0;
+};
+
+TEST_P(DropInTrees, ATreeThatSearchesByItselfIsUsedByEveryPreset)
+{
+  for (const auto preset : {bayesian_icp::Preset::Paper,
+                            bayesian_icp::Preset::Exact,
+                            bayesian_icp::Preset::Calibrated}) {
+    const auto tree = pcl::make_shared<OwnSearch>();
+    expectSame(alignedWith([&](auto& icp) { icp.setSearchMethodTarget(tree); }, preset),
+               expected);
+    EXPECT_GT(tree->num_queries, 0);
+    EXPECT_GT(num_draws, 0u);
+  }
+}
+
+TEST_P(DropInTrees, ATreeWithNothingInsideIsGivenATree)
+{
+  expectSame(alignedWith([](auto& icp) {
+               icp.setSearchMethodTarget(pcl::make_shared<Hollow>());
+             }),
+             expected);
+  const auto reciprocal = [](auto& icp) { icp.setUseReciprocalCorrespondences(true); };
+  expectSame(alignedWith([&](auto& icp) {
+               reciprocal(icp);
+               icp.setSearchMethodSource(pcl::make_shared<Hollow>());
+             }),
+             alignedWith(reciprocal));
+}
+
+TEST_P(DropInTrees, ANullPointerInPlaceOfATreeIsRefused)
+{
+  expectSame(alignedWith([](auto& icp) {
+               icp.setSearchMethodTarget(nullptr);
+               icp.setSearchMethodTarget(nullptr, true);
+               icp.setSearchMethodSource(nullptr);
+             }),
+             expected);
+}
+
+TEST_P(DropInTrees, ARepresentationThatTheTreeCannotBeToldOfIsRefused)
+{
+  const auto own_search = pcl::make_shared<OwnSearch>();
+  expectSame(alignedWith([&](auto& icp) {
+               icp.setSearchMethodTarget(own_search);
+               icp.setPointRepresentation(pcl::make_shared<Stretched>());
+             }),
+             expected);
+  const auto stretched = alignedWith(
+      [](auto& icp) { icp.setPointRepresentation(pcl::make_shared<Stretched>()); });
+  ASSERT_NE(stretched.final_transformation, expected.final_transformation);
+  own_search->num_queries = 0;
+  expectSame(alignedWith([&](auto& icp) {
+               icp.setPointRepresentation(pcl::make_shared<Stretched>());
+               icp.setSearchMethodTarget(own_search);
+             }),
+             stretched);
+  EXPECT_EQ(own_search->num_queries, 0);
+  // Once it is not wanted any more, the tree is welcome.
+  expectSame(alignedWith([&](auto& icp) {
+               icp.setPointRepresentation(pcl::make_shared<Stretched>());
+               icp.setPointRepresentation(nullptr);
+               icp.setSearchMethodTarget(own_search);
+             }),
+             expected);
+}
+
+TEST(DropInTree, IsNotLookedIntoUnlessItIsOfPcl)
+{
+  EXPECT_FALSE(bayesian_icp_detail::isDefaultTree(Hollow()));
+  EXPECT_FALSE(bayesian_icp_detail::isDefaultTree(OwnSearch()));
+  EXPECT_TRUE(bayesian_icp_detail::isDefaultTree(Tree()));
+}
+
+TEST(DropInThreads, AreSetForIcpAndForThePosteriorByOneCall)
+{
+  BayesianIcp icp;
+  icp.setNumberOfThreads(3);
+  EXPECT_EQ(icp.getOptions().chains.num_threads, 3);
+#if PCL_VERSION_COMPARE(>=, 1, 15, 0)
+  struct Exposed : Estimation {
+    using Estimation::num_threads_;
+  };
+  const auto estimation = pcl::make_shared<Exposed>();
+  icp.setCorrespondenceEstimation(estimation);
+  EXPECT_EQ(estimation->num_threads_, 1u); // as PCL's
+  icp.setNumberOfThreads(3);
+  EXPECT_EQ(estimation->num_threads_, 3u);
+#else
+  GTEST_SKIP() << "ICP of PCL before 1.15 has one thread";
+#endif
+}
+
+INSTANTIATE_TEST_SUITE_P(UniqueAndTied,
+                         DropInTrees,
+                         ::testing::Bool(),
+                         [](const auto& tied) {
+                           return tied.param ? "Tied" : "Unique";
+                         });
 
 INSTANTIATE_TEST_SUITE_P(UniqueAndTied,
                          DropInClouds,

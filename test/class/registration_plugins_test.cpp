@@ -310,6 +310,9 @@ TEST(Plugins, RejectorsThatNeedNormalsGetThoseOfTheMovedMiniBatch)
   EXPECT_GT(icp.getSamples().rows(), 0);
 }
 
+/** PCL's tree has returned whether it has been built since 1.14. */
+using Built = decltype(search::KdTree<PointXYZ>().setInputCloud(Cloud::ConstPtr()));
+
 /** A search tree that counts queries. */
 struct CountingTree : search::KdTree<PointXYZ> {
   using search::KdTree<PointXYZ>::nearestKSearch;
@@ -323,12 +326,12 @@ struct CountingTree : search::KdTree<PointXYZ> {
     return (
         search::KdTree<PointXYZ>::nearestKSearch(point, k, indices, squared_distances));
   }
-  void
+  Built
   setInputCloud(const PointCloudConstPtr& cloud,
                 const IndicesConstPtr& indices = IndicesConstPtr()) override
   {
     ++num_builds;
-    search::KdTree<PointXYZ>::setInputCloud(cloud, indices);
+    return (search::KdTree<PointXYZ>::setInputCloud(cloud, indices));
   }
   mutable std::size_t num_queries = 0;
   std::size_t num_builds = 0;

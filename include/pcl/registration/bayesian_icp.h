@@ -204,13 +204,12 @@ public:
     options_.chains.seed = seed;
   }
 
-  /** \brief OpenMP threads, 0 is automatic. No result depends on it. */
+  /** \brief OpenMP threads, 0 is automatic. No result depends on it. With PCL 1.15 and
+   * later they are also those of ICP, which has one if this is not called, as PCL's:
+   * those of the correspondence estimation that is installed at the time of the call.
+   */
   void
-  setNumberOfThreads(unsigned int nr_threads = 0)
-  {
-    options_.chains.num_threads = static_cast<int>(nr_threads);
-    this->own_tree_->seeded->num_threads = options_.chains.num_threads;
-  }
+  setNumberOfThreads(unsigned int nr_threads = 0);
 
   /** \brief Told of every step of the chains; returns false to cancel them. */
   void

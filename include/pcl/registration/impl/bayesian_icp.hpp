@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcl/registration/bayesian_icp.h>
+#include <pcl/pcl_config.h> // for PCL_VERSION_COMPARE
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,20 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getMeanTransfor
     const
 {
   return (bayesian_icp::matrixOf(estimate_.summary.mean).template cast<Scalar>());
+}
+
+// Not inline: PCL's function has threads only where it is compiled with OpenMP, as this
+// library is and its users need not be.
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setNumberOfThreads(
+    unsigned int nr_threads)
+{
+#if PCL_VERSION_COMPARE(>=, 1, 15, 0)
+  Icp::setNumberOfThreads(nr_threads);
+#endif
+  options_.chains.num_threads = static_cast<int>(nr_threads);
+  this->own_tree_->seeded->num_threads = options_.chains.num_threads;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

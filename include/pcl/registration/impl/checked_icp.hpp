@@ -44,7 +44,34 @@ private:
   T original_;
 };
 
-/** Whether a search tree answers as PCL's own, with PCL's own idea of a point. */
+/** Stands where a search tree of PCL should hold a tree of FLANN and holds null. */
+template <typename PointT>
+struct StandIn : KdTreeFLANN<PointT> {};
+
+/** Whether a search tree was made without a tree of FLANN inside, as KdTreeNanoflann of
+ * PCL 1.15.1 is: it finds points by itself. It is given a StandIn, as PCL's functions
+ * that are not virtual dereference what is inside. A tree that leaves everything to the
+ * one inside has a usable one then. */
+template <typename PointT>
+bool
+searchesByItself(search::KdTree<PointT>& tree)
+{
+  struct Opened : search::KdTree<PointT> {
+    static auto&
+    insideOf(search::KdTree<PointT>& closed)
+    {
+      return (closed.*(&Opened::tree_));
+    }
+  };
+  auto& inside = Opened::insideOf(tree);
+  if (!inside)
+    inside = pcl::make_shared<StandIn<PointT>>();
+  const auto& found = *inside;
+  return (typeid(found) == typeid(StandIn<PointT>));
+}
+
+/** Whether a search tree answers as PCL's own, with PCL's own idea of a point. What is
+ * inside is looked at where the type says that there is something. */
 template <typename PointT>
 bool
 isDefaultTree(const search::KdTree<PointT>& tree)
@@ -181,6 +208,9 @@ public:
   using PointCloudTarget = typename Base::PointCloudTarget;
   using PointCloudTargetPtr = typename Base::PointCloudTargetPtr;
   using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
+  using KdTreePtr = typename Base::KdTreePtr;
+  using KdTreeReciprocalPtr = typename Base::KdTreeReciprocalPtr;
+  using PointRepresentationConstPtr = typename Base::PointRepresentationConstPtr;
 
   using Base::convergence_criteria_; // public in PCL's class, too
   using Base::getClassName;
@@ -228,6 +258,27 @@ public:
    */
   void
   setInputTarget(const PointCloudTargetConstPtr& cloud) override;
+
+  /** \brief Set the search tree of the target, as PCL's. Refused, with a message, are a
+   * null pointer, and a tree that cannot be told of the point representation that was
+   * set: one without PCL's tree inside. The tree that was there is kept then.
+   * \param[in] tree where points are searched
+   * \param[in] force_no_recompute whether it is ready, and not given the target */
+  void
+  setSearchMethodTarget(const KdTreePtr& tree, bool force_no_recompute = false);
+
+  /** \brief Set the search tree of the source, for reciprocal pairs, as PCL's; a null
+   * pointer is refused.
+   * \param[in] tree where points are searched
+   * \param[in] force_no_recompute whether it is ready, and not given the source */
+  void
+  setSearchMethodSource(const KdTreeReciprocalPtr& tree,
+                        bool force_no_recompute = false);
+
+  /** \brief Set how points are compared, as PCL's. Refused, with a message, if the
+   * search tree of the target cannot be told [see setSearchMethodTarget]. */
+  void
+  setPointRepresentation(const PointRepresentationConstPtr& representation);
 
   /** \brief Mean squared distance [m^2] of the transformed source to the target, as
    * PCL's, leaving out non-finite points (PCL 1.13 aborts on them, also where it is
@@ -302,12 +353,72 @@ protected:
       pcl::make_shared<SeededKdTree<PointTarget>>();
 
 private:
+  /** Says why a plug-in is not taken.
+   * \return \p is_refused */
+  bool
+  refuse(bool is_refused, const char* setter, const char* reason) const;
+
   bool
   targetIsUsable() const;
 
   void
   failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess);
+
+  /** PCL's class keeps it for itself. */
+  PointRepresentationConstPtr point_representation_;
 };
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::refuse(
+    bool is_refused, const char* setter, const char* reason) const
+{
+  if (is_refused)
+    PCL_ERROR("[pcl::%s::%s] Not taken: %s.\n", getClassName().c_str(), setter, reason);
+  return (is_refused);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setSearchMethodTarget(
+    const KdTreePtr& tree, bool force_no_recompute)
+{
+  if (refuse(!tree, "setSearchMethodTarget", "the search tree is a null pointer"))
+    return;
+  // A ready tree may be in use by others, and PCL leaves it as it is.
+  if (!force_no_recompute &&
+      refuse(searchesByItself(*tree) && point_representation_,
+             "setSearchMethodTarget",
+             "the search tree cannot be given the point representation"))
+    return;
+  Base::setSearchMethodTarget(tree, force_no_recompute);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setSearchMethodSource(
+    const KdTreeReciprocalPtr& tree, bool force_no_recompute)
+{
+  if (refuse(!tree, "setSearchMethodSource", "the search tree is a null pointer"))
+    return;
+  if (!force_no_recompute)
+    searchesByItself(*tree);
+  Base::setSearchMethodSource(tree, force_no_recompute);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void
+CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setPointRepresentation(
+    const PointRepresentationConstPtr& representation)
+{
+  if (representation && !force_no_recompute_ &&
+      refuse(searchesByItself(*tree_),
+             "setPointRepresentation",
+             "the search tree cannot be given the point representation"))
+    return;
+  point_representation_ = representation;
+  Base::setPointRepresentation(representation);
+}
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void
