@@ -48,7 +48,11 @@ alongTheSurface(const Secants& secants,
     return steps;
   const Axes V = steps(Eigen::all, firm);
   const Eigen::MatrixXd H = V.transpose() * secants.curvature * V;
-  const Eigen::MatrixXd change = V.transpose() * secants.differences(Eigen::all, loose);
+  // A product copies its factors, with a vector of indices in them if it is not mapped.
+  const Eigen::Map<const Eigen::VectorXi> columns(
+      loose.data(), static_cast<Eigen::Index>(loose.size()));
+  const Eigen::MatrixXd change =
+      V.transpose() * secants.differences(Eigen::all, columns);
   const Axes turns = V * H.ldlt().solve(change);
   const auto lengthOf = [&](const Vector6d& step) {
     return std::sqrt(step.dot(prior_precision * step));
