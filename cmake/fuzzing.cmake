@@ -2,7 +2,7 @@
 # AddressSanitizer and UndefinedBehaviorSanitizer, and with assertions.
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   message(FATAL_ERROR "BAYESIAN_ICP_BUILD_FUZZERS needs Clang, which has libFuzzer: "
-                      "-D CMAKE_CXX_COMPILER=clang++-14")
+                      "-D CMAKE_CXX_COMPILER=clang++")
 endif()
 set(BUILD_SHARED_LIBS OFF)
 add_compile_options(

@@ -21,6 +21,13 @@ elseif(BAYESIAN_ICP_SANITIZER STREQUAL thread)
                         "sanitizer does not see what GCC's libgomp synchronizes")
   endif()
   set(sanitizer_options -fsanitize=thread)
+  # The tool of libomp that explains its barriers and tasks to the sanitizer.
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-resource-dir
+                  OUTPUT_VARIABLE clang_files OUTPUT_STRIP_TRAILING_WHITESPACE)
+  find_library(ARCHER archer PATHS ${clang_files}/../.. NO_DEFAULT_PATH REQUIRED)
+  file(WRITE ${PROJECT_BINARY_DIR}/archer.cmake
+       "set(ENV{OMP_TOOL_LIBRARIES} \"${ARCHER}\")\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${PROJECT_BINARY_DIR}/archer.cmake)
 elseif(BAYESIAN_ICP_SANITIZER)
   message(FATAL_ERROR "BAYESIAN_ICP_SANITIZER=${BAYESIAN_ICP_SANITIZER}: not address, "
                       "thread or empty")

@@ -1,7 +1,7 @@
 # fuzz.build configures and builds the fuzzers in build/fuzz; fuzz.<name> runs one over its
 # corpus and a number of new inputs that takes seconds, always the same ones;
 # fuzz.<name>.long for a minute, over others each time.
-find_program(CLANGXX NAMES clang++-14 clang++)
+find_program(CLANGXX clang++)
 find_program(BASH bash REQUIRED)
 if(NOT CLANGXX)
   message(WARNING "clang++ is not here (see scripts/bootstrap): nothing is fuzzed")

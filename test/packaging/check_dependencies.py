@@ -8,14 +8,11 @@ import xml.etree.ElementTree as ElementTree
 # Debian's packages whose key in rosdep is another name; None: comes with every ROS.
 KEYS = {
     "chromium": "chromium-browser",
-    "clang-format-14": "clang-format",
-    "clang-tidy-14": "clang-tidy",
     "colcon": "python3-colcon-common-extensions",
     "g++": None,
     "gnuplot-nox": "gnuplot",
     "libeigen3-dev": "eigen",
     "libgtest-dev": "gtest",
-    "libomp-14-dev": "libomp-dev",
     "libopenmpi-dev": "mpi",
     "libpcl-dev": "libpcl-all-dev",
     "nlohmann-json3-dev": "nlohmann-json-dev",
