@@ -1,71 +1,20 @@
 // Exports against draws that are moved through each target's own coordinates, written
 // here a second time with quaternions; their text is read back by test/cli/.
+#include "exports/some_estimate.h"
 #include "support/test_support.h"
 
 #include <bayesian_icp/exports.h>
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <functional>
-#include <sstream>
 
 using namespace bayesian_icp;
+using namespace bayesian_icp::test;
 
 namespace {
-
-constexpr int num_draws = 20000;
-
-/** A covariance of full rank with deviations of about so much in every coordinate. */
-Matrix6d
-someCovariance(double deviation)
-{
-  Random random(7, 0);
-  Matrix6d factor;
-  for (int i = 0; i < 6; ++i)
-    for (int k = 0; k < 6; ++k)
-      factor(i, k) = random.normal();
-  return deviation * deviation / 6.0 *
-         (factor * factor.transpose() + Matrix6d::Identity());
-}
-
-const Vector6d&
-meanPoseOfTests()
-{
-  static const Vector6d mean =
-      (Vector6d() << 2.0, -1.0, 0.5, 0.4, -0.7, 2.5).finished();
-  return mean;
-}
-
-PoseMatrix
-drawsAboutMean(double deviation)
-{
-  Random random(11, 0);
-  const Matrix6d L = someCovariance(deviation).llt().matrixL();
-  PoseMatrix draws(num_draws, 6);
-  for (int i = 0; i < num_draws; ++i) {
-    const Vector6d z = random.normal6();
-    draws.row(i) =
-        poseFromError(L * z, meanPoseOfTests(), CovarianceConvention::RightSE3)
-            .transpose();
-  }
-  return draws;
-}
-
-/** What a run with these draws would hand to the exports. */
-PoseEstimate
-estimateOf(const PoseMatrix& draws)
-{
-  PoseEstimate estimate;
-  estimate.status = Status::Ok;
-  estimate.mean = meanPoseOfTests();
-  for (std::size_t i = 0; i < 4; ++i)
-    estimate.covariances[i] =
-        covarianceAbout(estimate.mean, draws, static_cast<CovarianceConvention>(i));
-  return estimate;
-}
 
 using Error = std::function<Vector6d(const Eigen::Isometry3d& mean,
                                      const Eigen::Isometry3d& draw)>;
@@ -120,34 +69,6 @@ rosError(const Eigen::Isometry3d& mean, const Eigen::Isometry3d& draw)
   Vector6d error;
   error << draw.translation() - mean.translation(), rotation.angle() * rotation.axis();
   return error;
-}
-
-/** Largest difference, in units of the deviations. */
-double
-relativeDifference(const Matrix6d& found, const Matrix6d& expected)
-{
-  const Vector6d scale = expected.diagonal().cwiseSqrt().cwiseInverse();
-  return (scale.asDiagonal() * (found - expected) * scale.asDiagonal())
-      .cwiseAbs()
-      .maxCoeff();
-}
-
-std::vector<double>
-numbersOf(const std::string& text)
-{
-  std::istringstream stream(text);
-  std::vector<double> numbers;
-  for (std::string word; stream >> word;) {
-    std::size_t end = 0;
-    try {
-      const double number = std::stod(word, &end);
-      if (end == word.size())
-        numbers.push_back(number);
-    }
-    catch (const std::invalid_argument&) { // a word
-    }
-  }
-  return numbers;
 }
 
 } // namespace

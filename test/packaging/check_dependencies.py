@@ -13,6 +13,7 @@ KEYS = {
     "gnuplot-nox": "gnuplot",
     "libeigen3-dev": "eigen",
     "libgtest-dev": "gtest",
+    "libgtsam-dev": "gtsam",
     "libopenmpi-dev": "mpi",
     "libpcl-dev": "libpcl-all-dev",
     "nlohmann-json3-dev": "nlohmann-json-dev",
