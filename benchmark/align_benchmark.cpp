@@ -1,6 +1,7 @@
 // align() of the class with presets `exact` and `calibrated` (ICP and posterior)
 // against PCL's ICP and GICP, all with their defaults and from the same guess, in real
 // time. In `calibrated_on_pcls_tree` ICP searches in PCL's tree in place of ours.
+// PCL's ICP has threads from PCL 1.15 on: then it is measured with two, too.
 //
 //   align_benchmark source.pcd target.pcd [T_init.txt] [Google Benchmark options]
 #include "benchmark_clouds.h"
@@ -9,6 +10,7 @@
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
 #include <pcl/search/kdtree.h>
+#include <pcl/pcl_config.h>
 
 #include <benchmark/benchmark.h>
 
@@ -76,13 +78,14 @@ addExact(const Input& input, const std::string& scale, double sigma, double n)
 
 template <typename Registration>
 void
-addPcl(const char* name, const Input& input)
+addPcl(
+    const char* name,
+    const Input& input,
+    const std::function<void(Registration&)>& prepare = [](Registration&) {})
 {
-  benchmark::RegisterBenchmark(name,
-                               [input](benchmark::State& state) {
-                                 align<Registration>(
-                                     state, input, [](Registration&) {});
-                               })
+  benchmark::RegisterBenchmark(
+      name,
+      [=](benchmark::State& state) { align<Registration>(state, input, prepare); })
       ->UseRealTime()
       ->MeasureProcessCPUTime()
       ->Unit(benchmark::kMillisecond);
@@ -107,7 +110,11 @@ main(int argc, char** argv)
   std::printf("source %zu points, target %zu points\n",
               input.source->size(),
               input.target->size());
-  addPcl<pcl::IterativeClosestPoint<Point, Point>>("pcl_icp", input);
+  using Icp = pcl::IterativeClosestPoint<Point, Point>;
+  addPcl<Icp>("pcl_icp", input);
+#if PCL_VERSION_COMPARE(>=, 1, 15, 0)
+  addPcl<Icp>("pcl_icp/threads:2", input, [](Icp& icp) { icp.setNumberOfThreads(2); });
+#endif
   addPcl<pcl::GeneralizedIterativeClosestPoint<Point, Point>>("pcl_gicp", input);
   addBayesian(input, "calibrated", [](BayesianIcp& icp) {
     icp.setPreset(bayesian_icp::Preset::Calibrated);
