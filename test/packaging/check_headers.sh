@@ -1,26 +1,27 @@
-# Fails unless every installed header compiles alone, as C++14 and without a warning: PCL
-# 1.13 and its users are at C++14. Arguments: include folder, compilers.
+# Fails unless every installed header compiles alone and without a warning: those of the core
+# as C++14, which is that of PCL 1.13 and its users, the others by PCL's own standard.
+# Arguments: include folder, PCL's standard, compilers.
 set -euo pipefail
-include=$1
-shift
+include=$1 pcl_standard=$2
+shift 2
 cd "$include"
 mapfile -t headers < <(find bayesian_icp -name '*.h' | sort)
 read -ra libraries < <(pkg-config --cflags-only-I eigen3 pcl_registration)
 ((${#headers[@]})) || { echo "no headers in $include"; exit 1; }
 
-# compile <compiler> <header>
+# compile <compiler> <standard> <header>
 compile() {
-  "$1" -std=c++14 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I "$include" \
-    "${libraries[@]/#-I/-isystem}" -include "$2" -x c++ /dev/null
+  "$1" -std="$2" -fsyntax-only -Wall -Wextra -Wpedantic -Werror -I "$include" \
+    "${libraries[@]/#-I/-isystem}" -include "$3" -x c++ /dev/null
 }
 
 for compiler in "$@"; do
   for header in "${headers[@]}"; do
     echo "$compiler $header"
-    compile "$compiler" "$header"
+    compile "$compiler" c++14 "$header"
   done
 done
 for header in pcl/registration/{bayesian_icp,stochastic_gradient_icp}.h; do
   echo "$1 $header"
-  compile "$1" "$header"
+  compile "$1" "$pcl_standard" "$header"
 done
