@@ -1,7 +1,6 @@
 // align() of the class with presets `exact` and `calibrated` (ICP and posterior)
 // against PCL's ICP and GICP, all with their defaults and from the same guess, in real
 // time. In `calibrated_on_pcls_tree` ICP searches in PCL's tree in place of ours.
-// PCL's ICP has threads from PCL 1.15 on: then it is measured with two, too.
 //
 //   align_benchmark source.pcd target.pcd [T_init.txt] [Google Benchmark options]
 #include "benchmark_clouds.h"
@@ -10,7 +9,6 @@
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
 #include <pcl/search/kdtree.h>
-#include <pcl/pcl_config.h>
 
 #include <benchmark/benchmark.h>
 
@@ -112,7 +110,7 @@ main(int argc, char** argv)
               input.target->size());
   using Icp = pcl::IterativeClosestPoint<Point, Point>;
   addPcl<Icp>("pcl_icp", input);
-#if PCL_VERSION_COMPARE(>=, 1, 15, 0)
+#if PCL_VERSION_COMPARE(>=, 1, 15, 0) // PCL's ICP has threads since
   addPcl<Icp>("pcl_icp/threads:2", input, [](Icp& icp) { icp.setNumberOfThreads(2); });
 #endif
   addPcl<pcl::GeneralizedIterativeClosestPoint<Point, Point>>("pcl_gicp", input);
