@@ -48,13 +48,13 @@ private:
 template <typename PointT>
 struct StandIn : KdTreeFLANN<PointT> {};
 
-/** Whether a search tree was made without a tree of FLANN inside, as KdTreeNanoflann of
- * PCL 1.15.1 is: it finds points by itself. It is given a StandIn, as PCL's functions
- * that are not virtual dereference what is inside. A tree that leaves everything to the
- * one inside has a usable one then. */
+/** Give a search tree that was made without a tree of FLANN inside, as KdTreeNanoflann
+ * of PCL 1.15.1 is, a StandIn: PCL's functions that are not virtual dereference what is
+ * inside. A tree that leaves everything to the one inside has a usable one then.
+ * \return whether it has a StandIn: it may find points by itself */
 template <typename PointT>
 bool
-searchesByItself(search::KdTree<PointT>& tree)
+fillHollow(search::KdTree<PointT>& tree)
 {
   struct Opened : search::KdTree<PointT> {
     static auto&
@@ -387,7 +387,7 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setSearchMethodT
     return;
   // A ready tree may be in use by others, and PCL leaves it as it is.
   if (!force_no_recompute &&
-      refuse(searchesByItself(*tree) && point_representation_,
+      refuse(fillHollow(*tree) && point_representation_,
              "setSearchMethodTarget",
              "the search tree cannot be given the point representation"))
     return;
@@ -402,7 +402,7 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setSearchMethodS
   if (refuse(!tree, "setSearchMethodSource", "the search tree is a null pointer"))
     return;
   if (!force_no_recompute)
-    searchesByItself(*tree);
+    fillHollow(*tree);
   Base::setSearchMethodSource(tree, force_no_recompute);
 }
 
@@ -412,7 +412,7 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setPointRepresen
     const PointRepresentationConstPtr& representation)
 {
   if (representation && !force_no_recompute_ &&
-      refuse(searchesByItself(*tree_),
+      refuse(fillHollow(*tree_),
              "setPointRepresentation",
              "the search tree cannot be given the point representation"))
     return;
