@@ -1,5 +1,6 @@
 // Messages of ROS are filled with the numbers of rosYaml(), in types with the fields of
-// ROS 1, of ROS 2 and, where they are installed, in the real ones of ROS 1.
+// ROS 1, of ROS 2 and, where they are installed, in the real ones of ROS 1 and those
+// that ROS 2's generator makes.
 #include "exports/some_estimate.h"
 
 #include <bayesian_icp/ros_messages.h>
@@ -14,6 +15,10 @@
 #ifdef BAYESIAN_ICP_TEST_ROS1
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/Odometry.h>
+#endif
+#ifdef BAYESIAN_ICP_TEST_ROS2
+#include <geometry_msgs/msg/pose_with_covariance_stamped.hpp>
+#include <nav_msgs/msg/odometry.hpp>
 #endif
 
 using namespace bayesian_icp;
@@ -64,43 +69,67 @@ struct OdometryOf {
   int twist = 17;
 };
 
-std::uint32_t
-nanosecondsOf(const Stamp2& stamp)
+template <typename Stamp>
+auto
+nanosecondsOf(const Stamp& stamp) -> decltype(stamp.nanosec)
 {
   return stamp.nanosec;
 }
 
 template <typename Stamp>
-std::uint32_t
-nanosecondsOf(const Stamp& stamp)
+auto
+nanosecondsOf(const Stamp& stamp) -> decltype(stamp.nsec)
 {
   return stamp.nsec;
 }
 
-template <typename StampedT, typename OdometryT>
-struct Messages {
-  using Stamped = StampedT;
-  using Odometry = OdometryT;
+template <typename Stamp>
+struct MessagesOf {
+  using Stamped = PoseWithCovarianceStampedOf<Stamp>;
+  using Odometry = OdometryOf<Stamp>;
 };
+struct LikeRos1 : MessagesOf<Stamp1> {
+  static constexpr const char* name = "LikeRos1";
+};
+struct LikeRos2 : MessagesOf<Stamp2> {
+  static constexpr const char* name = "LikeRos2";
+};
+#ifdef BAYESIAN_ICP_TEST_ROS1
+struct Ros1 {
+  using Stamped = geometry_msgs::PoseWithCovarianceStamped;
+  using Odometry = nav_msgs::Odometry;
+  static constexpr const char* name = "Ros1";
+};
+#endif
+#ifdef BAYESIAN_ICP_TEST_ROS2
+struct Ros2 {
+  using Stamped = geometry_msgs::msg::PoseWithCovarianceStamped;
+  using Odometry = nav_msgs::msg::Odometry;
+  static constexpr const char* name = "Ros2";
+};
+#endif
 
-template <typename Types>
+template <typename Messages>
 class RosMessages : public ::testing::Test {};
 
-using MessageTypes = ::testing::Types<
-    Messages<PoseWithCovarianceStampedOf<Stamp1>, OdometryOf<Stamp1>>,
-    Messages<PoseWithCovarianceStampedOf<Stamp2>, OdometryOf<Stamp2>>
+using MessageTypes = ::testing::Types<LikeRos1,
+                                      LikeRos2
 #ifdef BAYESIAN_ICP_TEST_ROS1
-    ,
-    Messages<geometry_msgs::PoseWithCovarianceStamped, nav_msgs::Odometry>
+                                      ,
+                                      Ros1
 #endif
-    >;
+#ifdef BAYESIAN_ICP_TEST_ROS2
+                                      ,
+                                      Ros2
+#endif
+                                      >;
 
 struct Names {
-  template <typename Types>
+  template <typename Messages>
   static std::string
-  GetName(int index)
+  GetName(int)
   {
-    return index == 0 ? "LikeRos1" : index == 1 ? "LikeRos2" : "Ros1";
+    return Messages::name;
   }
 };
 TYPED_TEST_SUITE(RosMessages, MessageTypes, Names);

@@ -1,0 +1,87 @@
+#include "localization/parameters.h"
+
+#include "io/command_line.h"
+#include "io/errors.h"
+#include "register/settings_options.h"
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+namespace po = boost::program_options;
+
+namespace {
+
+/** What messages state, or what a localization has no use for. */
+constexpr std::array<const char*, 6> excluded = {
+    "guess", "mean", "normalize-cloud", "prior-frame", "prior-mean", "prior-variance"};
+
+/** One parameter as an argument of a command line; empty if it is false. */
+std::string
+argumentOf(const std::string& parameter,
+           const std::string& text,
+           const po::options_description& options)
+{
+  std::string name = parameter;
+  std::replace(name.begin(), name.end(), '_', '-');
+  const auto& known = options.options();
+  const auto option = std::find_if(known.begin(), known.end(), [&](const auto& one) {
+    return one->long_name() == name;
+  });
+  if (option == known.end() || parameter.find('-') != std::string::npos ||
+      std::find(excluded.begin(), excluded.end(), name) != excluded.end())
+    throw io::UsageError("there is no parameter " + io::quoted(parameter));
+  if (text.empty())
+    throw io::UsageError("the parameter " + parameter + " is empty");
+  if ((*option)->semantic()->max_tokens() > 0)
+    return "--" + name + "=" + text;
+  if (text != "true" && text != "false")
+    throw io::UsageError("the parameter " + parameter + " is " + io::quoted(text) +
+                         ", but must be true or false");
+  return text == "true" ? "--" + name : "";
+}
+
+} // namespace
+
+LocalizerOptions
+readParameters(const std::map<std::string, std::string>& parameters)
+{
+  LocalizerOptions options;
+  po::options_description own, all;
+  own.add_options()("map-frame", io::text("", options.map_frame), "");
+  own.add_options()("cloud-frame", io::text("", options.cloud_frame), "");
+  own.add_options()("max-prior-age-s", io::number("", options.max_prior_age), "");
+  own.add_options()(
+      "prior-floor-m", io::number("", options.prior_floor.translation), "");
+  own.add_options()(
+      "prior-floor-rad", io::number("", options.prior_floor.rotation), "");
+  all.add(own);
+  describeSettings(options.settings, all);
+
+  std::vector<std::string> texts = {"parameters"};
+  for (const auto& [name, text] : parameters) {
+    const std::string argument = argumentOf(name, text, all);
+    if (!argument.empty())
+      texts.push_back(argument);
+  }
+  std::vector<const char*> arguments;
+  arguments.reserve(texts.size());
+  for (const std::string& text : texts)
+    arguments.push_back(text.c_str());
+  const po::variables_map given = io::splitCommandLine(
+      static_cast<int>(arguments.size()), arguments.data(), all, nullptr);
+  io::takeOptions(given, own);
+  std::string note;
+  options.settings = settingsFrom(given, options.settings, note);
+  if (!note.empty())
+    std::cerr << note << '\n';
+  const std::string complaint = options.validate();
+  if (!complaint.empty())
+    throw io::UsageError(complaint);
+  return options;
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,124 @@
+#include "localization/stated_pose.h"
+
+#include "io/numbers.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** How far the length of a quaternion may be from 1: programs that keep three digits.
+ */
+constexpr double quaternion_tolerance = 1e-2;
+/** Closer than this to a pitch of +-pi/2, roll and yaw are no coordinates [rad]. */
+constexpr double min_distance_to_gimbal_lock = 1e-2;
+/** Least eigenvalue of a correlation matrix, for rounding of the numbers in messages.
+ */
+constexpr double least_eigenvalue = -1e-6;
+
+Vector6d
+meanOf(const StatedPose& pose)
+{
+  if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite())
+    throw Refusal("the prior's pose is not finite");
+  const double length = pose.orientation.norm();
+  if (std::abs(length - 1.0) > quaternion_tolerance)
+    throw Refusal("the prior's orientation is a quaternion of length " +
+                  io::textOf(length) + ", but the length must be 1");
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = pose.orientation.normalized().toRotationMatrix();
+  T.translation() = pose.position;
+  const Vector6d mean = poseOf(T.matrix());
+  if (std::abs(std::cos(mean[4])) < min_distance_to_gimbal_lock)
+    throw Refusal("the prior's pitch is " + io::textOf(mean[4]) +
+                  " rad: at +-pi/2 roll and yaw have no separate variances");
+  return mean;
+}
+
+void
+raiseTo(const PriorFloor& floor, Matrix6d& covariance)
+{
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const double least = k < 3 ? floor.translation : floor.rotation;
+    covariance(k, k) = std::max(covariance(k, k), least * least);
+  }
+}
+
+/** Divided by the standard deviations of its rows and columns. */
+Matrix6d
+correlationsOf(const Matrix6d& covariance)
+{
+  const Vector6d scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
+  return scale.asDiagonal() * covariance * scale.asDiagonal();
+}
+
+/** \return the symmetric part, with the floor */
+Matrix6d
+checkedCovariance(const Matrix6d& stated, const PriorFloor& floor)
+{
+  static constexpr std::array<const char*, 6> axes = {
+      "x", "y", "z", "rotation about x", "rotation about y", "rotation about z"};
+  if (!stated.allFinite())
+    throw Refusal("the prior's covariance is not finite");
+  Matrix6d covariance = 0.5 * (stated + stated.transpose());
+  for (Eigen::Index k = 0; k < 6; ++k)
+    if (covariance(k, k) < 0.0)
+      throw Refusal("the prior's variance of " + std::string(axes[k]) + " is " +
+                    io::textOf(covariance(k, k)) + ", but must be positive");
+  raiseTo(floor, covariance);
+  for (Eigen::Index k = 0; k < 6; ++k)
+    if (!(covariance(k, k) > 0.0))
+      throw Refusal("the prior's variance of " + std::string(axes[k]) +
+                    " is 0, but must be positive; the parameters prior_floor_m and "
+                    "prior_floor_rad give least standard deviations");
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(correlationsOf(covariance),
+                                                       Eigen::EigenvaluesOnly);
+  if (!(solver.eigenvalues()[0] >= least_eigenvalue))
+    throw Refusal("the prior's covariance is not positive semi-definite: its "
+                  "correlations have the eigenvalue " +
+                  io::textOf(solver.eigenvalues()[0]));
+  return covariance;
+}
+
+/** To first order, the change of roll, pitch and yaw by rotations about the fixed axes.
+ */
+Eigen::Matrix3d
+angleRates(const Vector6d& pose)
+{
+  const auto derivatives = rotationDerivativesOf(pose);
+  const Eigen::Matrix3d back = rotationOf(pose).transpose();
+  Eigen::Matrix3d rotations; // by the angles
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Eigen::Matrix3d cross = derivatives[static_cast<std::size_t>(k)] * back;
+    rotations.col(k) << cross(2, 1), cross(0, 2), cross(1, 0);
+  }
+  return rotations.inverse();
+}
+
+} // namespace
+
+PriorOptions
+priorFrom(const StatedPose& pose, const PriorFloor& floor, double& widening)
+{
+  PriorOptions prior;
+  prior.mean = meanOf(pose);
+  prior.frame = PriorFrame::Origin;
+  Matrix6d rates = Matrix6d::Identity();
+  rates.bottomRightCorner<3, 3>() = angleRates(prior.mean);
+  const Matrix6d covariance =
+      rates * checkedCovariance(pose.covariance, floor) * rates.transpose();
+  // By Gershgorin's theorem, the difference to the stated covariance has no negative
+  // eigenvalue.
+  const Vector6d factors = correlationsOf(covariance).cwiseAbs().rowwise().sum();
+  widening = std::max(1.0, factors.maxCoeff());
+  prior.variance = covariance.diagonal().cwiseProduct(factors);
+  return prior;
+}
+
+} // namespace bayesian_icp::app
