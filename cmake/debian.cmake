@@ -1,4 +1,4 @@
-# Debian packages: cpack -G DEB in the build folder writes three, each of an install
+# Debian packages: cpack -G DEB in the build folder writes one for each part, each of an install
 # component. That of the shared libraries is called by their soname, as Debian does it.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME pcl-bayesian-icp)
@@ -61,6 +61,17 @@ if(BAYESIAN_ICP_BUILD_APPS)
   # They draw their charts by these, pcl_bayesian_icp_evaluate by Python.
   set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS
       "gnuplot-nox | gnuplot, python3-matplotlib, python3-pandas")
+endif()
+
+if(TARGET bayesian_icp_python_core)
+  debian_package(python python3-bayesian-icp python "This package has the Python module.")
+  set(python ${BAYESIAN_ICP_PYTHON_VERSION})
+  string(REGEX REPLACE "^3\\.(.*)" "\\1" minor ${python})
+  math(EXPR next "${minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "${library_dependency}, python3 (>= ${python}), python3 (<< 3.${next}), python3-numpy")
+  # The program of python3 -m bayesian_icp, and the charts of reports.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "pcl-bayesian-icp-tools, gnuplot-nox | gnuplot")
 endif()
 
 # What Debian wants otherwise than it is installed elsewhere.

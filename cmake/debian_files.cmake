@@ -64,7 +64,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
     compress(${page})
   endforeach()
   # In /usr the dynamic linker finds the libraries by itself.
-  file(GLOB_RECURSE files ${root}/bin/* ${root}/lib/*.so.*)
+  file(GLOB_RECURSE files ${root}/bin/* ${root}/lib/*.so.* ${root}/lib/python3/*.so)
   foreach(file IN LISTS files)
     if(NOT IS_SYMLINK ${file})
       file(RPATH_REMOVE FILE ${file})

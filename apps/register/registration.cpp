@@ -1,17 +1,16 @@
 #include "register/registration.h"
 
+#include "register/configure.h"
 #include "register/normalization.h"
 
 #include <bayesian_icp/pose.h>
 
 #include <pcl/registration/bayesian_icp.h>
-#include <pcl/registration/correspondence_rejection_one_to_one.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 namespace bayesian_icp::app {
 
@@ -29,19 +28,6 @@ cloudOf(const Eigen::Matrix3Xf& points)
     cloud->push_back({points(0, i), points(1, i), points(2, i)});
   cloud->is_dense = points.allFinite();
   return cloud;
-}
-
-void
-configure(const Settings& settings, Icp& icp)
-{
-  icp.setOptions(settings.options);
-  icp.setMaximumIterations(settings.icp_iterations);
-  icp.setUseReciprocalCorrespondences(settings.is_reciprocal);
-  if (std::isfinite(settings.max_distance))
-    icp.setMaxCorrespondenceDistance(settings.max_distance);
-  if (settings.is_one_to_one)
-    icp.addCorrespondenceRejector(
-        pcl::make_shared<pcl::registration::CorrespondenceRejectorOneToOne>());
 }
 
 std::vector<Chain>

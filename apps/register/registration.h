@@ -15,6 +15,8 @@ namespace bayesian_icp::app {
 
 /** \brief What a run found. Matrices are T_target_source. */
 struct RegistrationResult {
+  /** Whether ICP has run: not where the core was called by itself. */
+  bool has_icp = true;
   bool icp_has_converged = false;
   Eigen::Matrix4d icp_matrix = Eigen::Matrix4d::Identity();
   /** Mean squared distance of the source, moved by ICP, to the target [m^2]. */

@@ -151,15 +151,16 @@ runTable(const Run& run)
   table.caption = "The run";
   table.header = {"", ""};
   table.first_column_of_words = 1;
+  const std::string icp_time =
+      result.has_icp ? "ICP " + io::fixedTextOf(result.icp_seconds, 2) + " s, " : "";
   table.rows = {
       {"source", cloudText(run.source)},
       {"target", cloudText(run.target)},
-      {"ICP", icpText(result)},
+      {"ICP", result.has_icp ? icpText(result) : "was not run"},
       {"final transformation",
        result.is_final_the_mean ? "the posterior mean" : "ICP's result"},
       {"time",
-       "ICP " + io::fixedTextOf(result.icp_seconds, 2) + " s, sampling " +
-           io::fixedTextOf(result.sampling_seconds, 2) + " s"},
+       icp_time + "sampling " + io::fixedTextOf(result.sampling_seconds, 2) + " s"},
       {"versions",
        "pcl_bayesian_icp " BAYESIAN_ICP_VERSION ", PCL " PCL_VERSION_PRETTY ", Eigen " +
            io::textOf(EIGEN_WORLD_VERSION) + '.' + io::textOf(EIGEN_MAJOR_VERSION) +

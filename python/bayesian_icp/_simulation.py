@@ -1,0 +1,65 @@
+"""Pairs of scans with a known pose."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from . import _tools
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class ScanPair(NamedTuple):
+    """Two scans of a scene."""
+
+    source: NDArray[np.float32]
+    """(N, 3) points [m]."""
+    target: NDArray[np.float32]
+    """(M, 3) points [m]."""
+    T_target_source: NDArray[np.float64]
+    """(4, 4) the true pose."""
+
+
+def simulate(scene: str, *, seed: int = 1, **options: Any) -> ScanPair:
+    """Scan a simulated scene twice, as the program pcl_bayesian_icp_simulate does.
+
+    Parameters
+    ----------
+    scene : str
+        One of `scenes`.
+    seed : int
+        Of the noise. The same arguments give the same points.
+    **options
+        The options of the program with underscores: ``noise=2``, ``sensor="lidar64"``,
+        ``width=160, height=120``, ``source_eye=(1, 0, 0.5)``, ``same_view=True``. Its
+        ``--help`` explains them.
+
+    Raises
+    ------
+    ValueError
+        If there is no such scene or option, or a value is out of range.
+
+    Examples
+    --------
+    >>> scans = simulate("mug", width=160, height=120)
+    >>> scans.source.shape[1], scans.T_target_source.shape
+    (3, (4, 4))
+    """
+    arguments = [f"--scene={scene}", f"--seed={seed}", "--output=none"]
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if isinstance(value, bool):
+            arguments += [option] if value else []
+        elif np.ndim(value):
+            arguments.append(option + "=" + ",".join(repr(float(number)) for number in value))
+        else:
+            arguments.append(f"{option}={value}")
+    return ScanPair(*_tools.simulate(arguments))
+
+
+def scenes() -> dict[str, str]:
+    """The scenes of `simulate`: name, and what they are and leave unobservable."""
+    return {name: f"{what}; unobservable: {unseen}" for name, what, unseen in _tools.scenes()}

@@ -1,0 +1,169 @@
+#include "bindings.h"
+#include "converters.h"
+#include "fields.h"
+
+#include <bayesian_icp/exports.h>
+#include <bayesian_icp/options.h>
+
+namespace py = pybind11;
+
+namespace bayesian_icp::python {
+
+namespace {
+
+void
+bindShared(py::module_& module)
+{
+  Fields<PriorOptions>(module,
+                       "PriorOptions",
+                       "What is known about the pose before the clouds are seen.")
+      .add("mean",
+           &PriorOptions::mean,
+           "(6,) x, y, z, roll, pitch, yaw [m, rad]; six NaN mean the initial guess.")
+      .add("variance",
+           &PriorOptions::variance,
+           "(6,) variances [m^2, rad^2], positive; infinity means no prior on a "
+           "coordinate, which preset calibrated refuses.")
+      .add("frame",
+           &PriorOptions::frame,
+           "The point whose translation x, y, z describe: origin, source-centroid or "
+           "automatic.");
+  Fields<ChainOptions>(module, "ChainOptions", "How many chains and draws.")
+      .add("num_chains", &ChainOptions::num_chains, "Independent chains, positive.")
+      .add("num_draws",
+           &ChainOptions::num_draws,
+           "Draws kept over all chains, at least one per chain.")
+      .add("seed", &ChainOptions::seed, "Of all random numbers, 0 to 2^64-1.")
+      .add("num_threads",
+           &ChainOptions::num_threads,
+           "Threads, 1024 at most; 0: as many as OpenMP takes. No draw depends on it.");
+  Fields<LikelihoodScale>(
+      module, "LikelihoodScale", "The energy is N / sigma^2 times a mean over points.")
+      .add("effective_points",
+           &LikelihoodScale::effective_points,
+           "N of the paper's eq. (5), positive; not the size of the cloud.")
+      .add("measurement_sigma",
+           &LikelihoodScale::measurement_sigma,
+           "Standard deviation of a point-to-point distance [m], positive.");
+}
+
+void
+bindPaper(py::module_& module)
+{
+  Fields<SgldOptions>(module, "SgldOptions", "Constants of Algorithm 1.")
+      .add("step_size", &SgldOptions::step_size, "alpha, positive.")
+      .add("decay_rate", &SgldOptions::decay_rate, "beta, in [0, 1).")
+      .add("lambda_rms", &SgldOptions::lambda_rms, "lambda [m, m^2/rad], positive.")
+      .add("noise_factor",
+           &SgldOptions::noise_factor,
+           "Factor on the variance of the injected noise; 1 is right.")
+      .add("block_decay_factor",
+           &SgldOptions::block_decay_factor,
+           "Multiplies alpha at the end of a chain, in (0, 1]; 1 is off.")
+      .add("block_decay_interval",
+           &SgldOptions::block_decay_interval,
+           "Steps between two reductions, positive.")
+      .add("block_decay_start",
+           &SgldOptions::block_decay_start,
+           "Where reductions begin, as a fraction of the chain, in [0, 1].");
+  Fields<PaperOptions>(module, "PaperOptions", "Options of preset paper.")
+      .add("scale", &PaperOptions::scale, "Scale of the likelihood.")
+      .add("batch_size", &PaperOptions::batch_size, "Source points in each step.")
+      .add("sampling",
+           &PaperOptions::sampling,
+           "How they are chosen: with-replacement or shuffled-epochs.")
+      .add("sgld", &PaperOptions::sgld, "Constants of Algorithm 1.")
+      .add("max_distance",
+           &PaperOptions::max_distance,
+           "Gate on the distance of corresponding points [m]; infinity is none.")
+      .add("num_burn_in", &PaperOptions::num_burn_in, "First steps, not kept.")
+      .add("thinning", &PaperOptions::thinning, "Steps per kept draw, positive.")
+      .add("initial_spread",
+           &PaperOptions::initial_spread,
+           "(6,) standard deviation of the starts about the guess [m, rad].");
+}
+
+void
+bindExact(py::module_& module)
+{
+  Fields<ResidualOptions>(module, "ResidualOptions", "Energy of a source point.")
+      .add("residual", &ResidualOptions::residual, "point-to-point or point-to-plane.")
+      .add("kernel", &ResidualOptions::kernel, "none, huber or tukey.")
+      .add("kernel_width", &ResidualOptions::kernel_width, "[m], positive.")
+      .add("max_distance",
+           &ResidualOptions::max_distance,
+           "Gate on the distance to the nearest target point [m]; infinity is none.");
+  Fields<ExactOptions>(module, "ExactOptions", "Options of preset exact.")
+      .add("scale", &ExactOptions::scale, "Scale of the likelihood.")
+      .add("residual", &ExactOptions::residual, "Residual, kernel and gate.")
+      .add("metropolis",
+           &ExactOptions::metropolis,
+           "Metropolis steps: automatic, never or always.")
+      .add("batch_size",
+           &ExactOptions::batch_size,
+           "Source points in each Langevin step; None: found.")
+      .add("max_step_size",
+           &ExactOptions::max_step_size,
+           "Largest size of a Langevin step, in (0, 1].")
+      .add("num_burn_in",
+           &ExactOptions::num_burn_in,
+           "Steps after the warm-up that are not kept; None: found.")
+      .add("thinning", &ExactOptions::thinning, "Steps per kept draw; None: found.")
+      .add("initial_spread",
+           &ExactOptions::initial_spread,
+           "(6,) standard deviation of the starts about the guess [m, rad]; None: the "
+           "prior's, at most 0.5.")
+      .add("max_source_points",
+           &ExactOptions::max_source_points,
+           "Largest number of source points that are used.");
+}
+
+} // namespace
+
+void
+bindOptions(py::module_& module)
+{
+  bindShared(module);
+  bindPaper(module);
+  bindExact(module);
+  Fields<CalibratedOptions>(
+      module, "CalibratedOptions", "Options of preset calibrated.")
+      .add("max_source_points",
+           &CalibratedOptions::max_source_points,
+           "Largest number of source points that are used, at least 30.")
+      .add("num_mode_points",
+           &CalibratedOptions::num_mode_points,
+           "Of these, the number used to follow the starts to their modes.")
+      .add("num_burn_in",
+           &CalibratedOptions::num_burn_in,
+           "First steps of each chain, not kept; None: found.")
+      .add("thinning",
+           &CalibratedOptions::thinning,
+           "Steps per kept draw; None: found.");
+  Fields<Options>(module,
+                  "Options",
+                  "All options of the posterior: what all presets share, and those of "
+                  "each preset.\n\nOnly those of the chosen preset are used.")
+      .add("preset", &Options::preset, "paper, exact or calibrated.")
+      .add("prior", &Options::prior, "The prior.")
+      .add("chains", &Options::chains, "Chains, draws, seed, threads.")
+      .add("paper", &Options::paper, "Options of preset paper.")
+      .add("exact", &Options::exact, "Options of preset exact.")
+      .add("calibrated", &Options::calibrated, "Options of preset calibrated.")
+      .get()
+      .def("validate",
+           &Options::validate,
+           "The first bad field with its value and range, in words; empty if all are "
+           "good.");
+  Fields<ExportOptions>(module, "ExportOptions", "What exports need besides the pose.")
+      .add("target_frame", &ExportOptions::target_frame, "Name of the target's frame.")
+      .add("source_frame", &ExportOptions::source_frame, "Name of the source's frame.")
+      .add("timestamp_ns", &ExportOptions::timestamp_ns, "Since the epoch [ns].")
+      .add("target_vertex", &ExportOptions::target_vertex, "Vertex of a pose graph.")
+      .add("source_vertex", &ExportOptions::source_vertex, "Vertex of a pose graph.")
+      .add("accept_unreliable",
+           &ExportOptions::accept_unreliable,
+           "Also export a posterior whose status is worse than doubtful.");
+}
+
+} // namespace bayesian_icp::python

@@ -1,0 +1,159 @@
+#include "bindings.h"
+#include "converters.h"
+
+#include <bayesian_icp/diagnostics.h>
+#include <bayesian_icp/exports.h>
+#include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/ros_messages.h>
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+namespace py = pybind11;
+
+namespace bayesian_icp::python {
+
+namespace {
+
+/** The fields of a geometry_msgs/msg/PoseWithCovarianceStamped. */
+struct RosMessage {
+  struct {
+    struct {
+      std::int32_t sec;
+      std::uint32_t nanosec;
+    } stamp;
+    std::string frame_id;
+  } header;
+  struct {
+    struct {
+      struct {
+        double x, y, z;
+      } position;
+      struct {
+        double x, y, z, w;
+      } orientation;
+    } pose;
+    std::array<double, 36> covariance;
+  } pose;
+};
+
+/** A dict of names and values, in their order. */
+py::dict
+dictOf(std::initializer_list<std::pair<const char*, py::object>> items)
+{
+  py::dict dict;
+  for (const auto& [name, value] : items)
+    dict[name] = value;
+  return dict;
+}
+
+py::dict
+rosDict(const PoseEstimate& estimate, const ExportOptions& options)
+{
+  RosMessage message;
+  fillPoseWithCovarianceStamped(estimate, options, message);
+  const auto& stamp = message.header.stamp;
+  const auto& [position, orientation] = message.pose.pose;
+  const auto number = [](double value) { return py::float_(value); };
+  const py::dict pose = dictOf({{"position",
+                                 dictOf({{"x", number(position.x)},
+                                         {"y", number(position.y)},
+                                         {"z", number(position.z)}})},
+                                {"orientation",
+                                 dictOf({{"x", number(orientation.x)},
+                                         {"y", number(orientation.y)},
+                                         {"z", number(orientation.z)},
+                                         {"w", number(orientation.w)}})}});
+  const py::dict header = dictOf(
+      {{"stamp",
+        dictOf({{"sec", py::int_(stamp.sec)}, {"nanosec", py::int_(stamp.nanosec)}})},
+       {"frame_id", py::str(message.header.frame_id)}});
+  return dictOf(
+      {{"header", header},
+       {"pose",
+        dictOf({{"pose", pose}, {"covariance", py::cast(message.pose.covariance)}})}});
+}
+
+/** Binds an export of an estimate. */
+template <typename Function>
+void
+bindExport(py::module_& module, const char* name, const Function& function)
+{
+  module.def(
+      name,
+      [function](const PosteriorEstimate& estimate, const ExportOptions& options) {
+        return function(PoseEstimate(estimate.summary), options);
+      });
+}
+
+void
+bindPoses(py::module_& module)
+{
+  module.def("matrix_from_pose",
+             &matrixOf,
+             py::arg("pose"),
+             "4x4 T_target_source of a pose (x, y, z, roll, pitch, yaw) [m, rad].");
+  module.def(
+      "pose_from_matrix",
+      &poseOf,
+      py::arg("T_target_source"),
+      "Pose (x, y, z, roll, pitch, yaw) [m, rad] of a 4x4 matrix, whose rotation "
+      "is first made the nearest one.");
+  module.def("pose_error",
+             &poseError,
+             py::arg("pose"),
+             py::arg("mean"),
+             py::arg("convention") = CovarianceConvention::Parameters,
+             "(6,) error of a pose relative to a mean [m, rad]; the covariance of a "
+             "convention is the second moment of this.");
+  module.def(
+      "pose_from_error",
+      &poseFromError,
+      py::arg("error"),
+      py::arg("mean"),
+      py::arg("convention") = CovarianceConvention::Parameters,
+      "The pose that has an error relative to a mean: the inverse of pose_error().");
+  module.def("mean_pose",
+             &meanPose,
+             py::arg("draws"),
+             "Bi-invariant mean on SE(3) of (n, 6) draws [m, rad].");
+  module.def("covariance_about",
+             &covarianceAbout,
+             py::arg("mean"),
+             py::arg("draws"),
+             py::arg("convention") = CovarianceConvention::Parameters,
+             "6x6 second moment of the errors of (n, 6) draws about a mean.");
+  module.def(
+      "exp_se3", &expSE3, py::arg("twist"), "4x4 matrix of a twist (v, w) [m, rad].");
+  module.def("log_se3", &logSE3, py::arg("transform"), "Twist (v, w) of a 4x4 matrix.");
+  module.def("gtsam_covariance",
+             &gtsamCovariance,
+             py::arg("right_se3"),
+             "Covariance of convention right_se3 in GTSAM's order, rotation first.");
+  module.def(
+      "g2o_covariance",
+      &g2oCovariance,
+      py::arg("right_se3"),
+      "Covariance of convention right_se3 in g2o's coordinates: translation, then "
+      "the vector part of the quaternion.");
+}
+
+} // namespace
+
+void
+bindPosesAndExports(py::module_& module)
+{
+  bindPoses(module);
+  for (const auto& [name, function] : {std::pair("rhat", &rhat),
+                                       std::pair("bulk_ess", &bulkEss),
+                                       std::pair("tail_ess", &tailEss),
+                                       std::pair("mcse_mean", &mcseMean)})
+    module.def(name, function, py::arg("draws"));
+  bindExport(module, "ros", &rosDict);
+  bindExport(module, "g2o", &g2oEdge);
+  bindExport(module, "gtsam", &gtsamText);
+  bindExport(module, "tum", &tumLine);
+}
+
+} // namespace bayesian_icp::python

@@ -1,0 +1,48 @@
+"""Clouds that the tests share."""
+
+import os
+import pathlib
+import sys
+
+import hypothesis
+import numpy as np
+import pytest
+
+import bayesian_icp
+
+# The same inputs in each run, and no files of them.
+hypothesis.settings.register_profile("repeatable", database=None, derandomize=True)
+hypothesis.settings.load_profile("repeatable")
+
+DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+
+
+@pytest.fixture(scope="session")
+def mug():
+    """Source, target and the true pose."""
+    folder = DATA / "mug"
+    return (
+        bayesian_icp.read_pcd(folder / "source.pcd"),
+        bayesian_icp.read_pcd(folder / "target.pcd"),
+        np.loadtxt(folder / "T_target_source.txt"),
+    )
+
+
+@pytest.fixture(scope="session")
+def result(mug):
+    return bayesian_icp.align(source=mug[0], target=mug[1])
+
+
+@pytest.fixture(scope="session")
+def program():
+    """The command line tool of the build."""
+    path = os.environ.get("PCL_BAYESIAN_ICP", "")
+    if not path:
+        pytest.skip("PCL_BAYESIAN_ICP names no program")
+    return path
+
+
+@pytest.fixture
+def python():
+    """A Python of its own that finds the package."""
+    return [sys.executable, "-B"]

@@ -1,0 +1,126 @@
+"""Readers, report, simulator, the program, and what importing costs."""
+
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import bayesian_icp
+
+from conftest import DATA
+
+
+def test_reads_finite_points(tmp_path):
+    file = tmp_path / "cloud.pcd"
+    header = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n"
+    file.write_text(header + "1 2 3\nnan nan nan\n4 5 6\n7 8 9\n")
+    assert bayesian_icp.read_pcd(file).tolist() == [[1, 2, 3], [4, 5, 6], [7, 8, 9]]
+    assert bayesian_icp.read_pcd(str(file)).dtype == np.float32
+
+
+def test_reads_ply(tmp_path):
+    file = tmp_path / "cloud.ply"
+    file.write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                    "end_header\n1 2 3\n4 5 6\n7 8 9\n")
+    assert bayesian_icp.read_ply(file).shape == (3, 3)
+
+
+@pytest.mark.parametrize("name, content, pattern", [
+    ("missing.pcd", None, "missing.pcd"), ("broken.pcd", "DATA ascii\n", "broken.pcd"),
+    ("cloud.txt", "1 2 3", "neither .pcd nor .ply"),
+])
+def test_bad_files(tmp_path, name, content, pattern):
+    if content:
+        (tmp_path / name).write_text(content)
+    with pytest.raises(OSError, match=pattern):
+        bayesian_icp.read_pcd(tmp_path / name)
+
+
+def test_writes_the_report(mug, result, tmp_path):
+    page = tmp_path / "report.html"
+    result.write_report(page, source=mug[0], target=mug[1])
+    text = page.read_text()
+    assert "<svg" in text and "was not run" in text and "bayesian_icp.align" in text
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError, match="file"):
+        result.write_report(tmp_path / "file" / "report.html", source=mug[0], target=mug[1])
+    with pytest.raises(ValueError, match="source has the shape"):
+        result.write_report(page, source=mug[0].T, target=mug[1])
+
+
+def test_simulates_as_the_program_did():
+    scans = bayesian_icp.simulate("mug", seed=5, width=160, height=120)
+    again = bayesian_icp.simulate("mug", seed=5, width=160, height=120)
+    other = bayesian_icp.simulate("mug", seed=6, width=160, height=120)
+    assert np.array_equal(scans.source, again.source) and not np.array_equal(scans.source, other.source)
+    assert scans.source.dtype == np.float32 and scans.T_target_source.shape == (4, 4)
+    same_view = bayesian_icp.simulate("mug", width=160, height=120, same_view=True, offset=(0, 0, 0, 0, 0, 0))
+    assert np.allclose(same_view.T_target_source, np.eye(4))
+    assert "mug" in bayesian_icp.scenes()
+
+
+@pytest.mark.parametrize("keywords, pattern", [
+    ({"scene": "castle"}, "castle"), ({"scene": "mug", "nois": 2}, "nois"),
+    ({"scene": "mug", "noise": -1}, "noise"), ({"scene": "mug", "noise": "loud"}, "loud"),
+    ({"scene": "mug", "source_eye": (1, 2)}, "source-eye"), ({"scene": "mug", "help": True}, "help"),
+])
+def test_bad_simulations(keywords, pattern):
+    with pytest.raises(ValueError, match=pattern):
+        bayesian_icp.simulate(**keywords)
+
+
+def test_module_is_the_program(python, program, tmp_path):
+    def run(*arguments):
+        environment = {**os.environ, "PATH": os.path.dirname(program) + ":" + os.environ["PATH"]}
+        return subprocess.run([*python, "-m", "bayesian_icp", *arguments], env=environment, capture_output=True, text=True)
+
+    clouds = [str(DATA / "mug" / name) for name in ("source.pcd", "target.pcd")]
+    direct = subprocess.run([program, *clouds, "--json"], capture_output=True, text=True)
+    forwarded = run(*clouds, "--json")
+    assert forwarded.returncode == direct.returncode == 0
+    found, expected = (json.loads(run.stdout) for run in (forwarded, direct))
+    assert found.pop("time") and expected.pop("time")
+    assert found == expected
+    assert run("--no-such-option").returncode == 2
+    assert run("missing.pcd", "missing.pcd").returncode == 3
+
+
+def test_module_without_the_program(python, tmp_path):
+    if (pathlib.Path(bayesian_icp.__file__).parent / "bin").exists():
+        pytest.skip("the package is of a wheel, which has the program in it")
+    run = subprocess.run([*python, "-m", "bayesian_icp"], env={**os.environ, "PATH": str(tmp_path)},
+                         capture_output=True, text=True)
+    assert run.returncode == 1 and "pcl_bayesian_icp is not in PATH" in run.stderr
+
+
+def test_importing_loads_neither_pcl_nor_boost(python):
+    code = ("import bayesian_icp; text = open('/proc/self/maps').read(); "
+            "print('libpcl_common' in text, 'libboost' in text, '_tools' in text)")
+    assert subprocess.check_output([*python, "-c", code], text=True).split() == ["False"] * 3
+
+
+def test_importing_takes_at_most_twice_as_long_as_numpy(python):
+    def seconds(module):
+        code = f"import time; start = time.perf_counter(); import {module}; print(time.perf_counter() - start)"
+        return min(float(subprocess.check_output([*python, "-c", code])) for _ in range(7))
+
+    assert seconds("bayesian_icp") < 2 * seconds("numpy")
+
+
+def test_open3d(mug, result):
+    open3d = pytest.importorskip("open3d", reason="Open3D is not here (python3-open3d): its clouds are not tested")
+    clouds = {}
+    for name, points in (("source", mug[0]), ("target", mug[1])):
+        clouds[name] = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points.astype(float)))
+    assert np.array_equal(bayesian_icp.align(**clouds).samples, result.samples)
+
+
+def test_clouds_with_points_are_taken(mug, result):
+    class Cloud:
+        def __init__(self, points):
+            self.points = points.astype(float)
+
+    assert np.array_equal(bayesian_icp.align(source=Cloud(mug[0]), target=Cloud(mug[1])).samples, result.samples)

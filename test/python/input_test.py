@@ -1,0 +1,146 @@
+"""Input that is refused, with its name and value in the text, and input of any layout."""
+
+import hypothesis.extra.numpy as arrays
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import bayesian_icp
+
+RNG = np.random.default_rng(1)
+CLOUD = RNG.normal(size=(100, 3))
+
+
+def refused(error, pattern, **keywords):
+    with pytest.raises(error, match=pattern):
+        bayesian_icp.align(**{"source": CLOUD, "target": CLOUD, **keywords})
+
+
+def test_clouds_are_keywords():
+    with pytest.raises(TypeError, match="positional"):
+        bayesian_icp.align(CLOUD, CLOUD)
+
+
+@pytest.mark.parametrize("cloud, error, pattern", [
+    (CLOUD.T, ValueError, r"source has the shape \(3, 100\), but must have \(N, 3\)"),
+    (CLOUD[0], ValueError, r"source has the shape \(3,\)"),
+    (CLOUD[:, :2], ValueError, r"\(100, 2\)"),
+    (CLOUD[None], ValueError, r"\(1, 100, 3\)"),
+    (CLOUD[:10], ValueError, "the source has 10 finite points, but preset calibrated needs 30"),
+    (CLOUD[:0], ValueError, "source"),
+    (CLOUD + 1j, TypeError, "source has the dtype complex128, but must be an array of real numbers"),
+    (CLOUD > 0, TypeError, "source has the dtype bool"),
+    (CLOUD.astype(str), TypeError, "source has the dtype <U32"),
+    (CLOUD.astype(object), TypeError, "source has the dtype object"),
+    ([[1, 2, 3], [4, 5]], TypeError, "source is of type list, but must be an array of real numbers"),
+    ("source.pcd", TypeError, "source is of type str"),
+    (None, TypeError, "source is of type NoneType"),
+])
+def test_bad_clouds(cloud, error, pattern):
+    refused(error, pattern, source=cloud)
+    with pytest.raises(error, match=pattern.replace("source", "target")):
+        bayesian_icp.align(source=CLOUD, target=cloud)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_points_that_are_not_finite(value):
+    cloud = CLOUD.copy()
+    cloud[17, 1] = value
+    refused(ValueError, r"source\[17\] is array.*must be finite", source=cloud)
+    with pytest.raises(ValueError, match=r"target\[17\]"):
+        bayesian_icp.Target(cloud)
+
+
+@pytest.mark.parametrize("keywords, error, pattern", [
+    ({"init_T_target_source": np.eye(3)}, ValueError, r"init_T_target_source has the shape \(3, 3\)"),
+    ({"init_T_target_source": 2 * np.eye(4)}, ValueError, "init_T_target_source is not a rotation"),
+    ({"init_T_target_source": np.diag([1, 1, -1, 1])}, ValueError, "init_T_target_source is not a rotation"),
+    ({"init_T_target_source": np.full((4, 4), np.nan)}, ValueError, "init_T_target_source is not finite"),
+    ({"init_T_target_source": "here"}, TypeError, "init_T_target_source is 'here'"),
+    ({"prior_mean": np.zeros(5)}, ValueError, r"prior_mean has the shape \(5,\)"),
+    ({"prior_std": np.ones(3)}, ValueError, r"prior_std has the shape \(3,\)"),
+    ({"prior_std": (0.1, -0.2)}, ValueError, r"prior_std is \(0.1, -0.2\), but must be positive"),
+    ({"prior_std": (np.inf, 1)}, ValueError, "variance"),
+    ({"prior_std": (1, 1), "prior_variance": (1, 1)}, ValueError, "both given"),
+    ({"prior_frame": "middle"}, ValueError, "frame: 'middle' is none of .'origin', 'source-centroid', 'automatic'"),
+    ({"preset": "best"}, ValueError, "preset: 'best' is none of .'paper', 'exact', 'calibrated'"),
+    ({"preset": 3}, ValueError, "preset: 3 is none of"),
+    ({"seed": -1}, TypeError, "seed is -1"),
+    ({"seed": 1.5}, TypeError, "seed is 1.5"),
+    ({"num_threads": -2}, ValueError, "num_threads is -2"),
+    ({"progress": "bar"}, TypeError, "progress is 'bar'"),
+    ({"num_threads": "two"}, TypeError, "num_threads is 'two'"),
+])
+def test_bad_keywords(keywords, error, pattern):
+    refused(error, pattern, **keywords)
+
+
+@pytest.mark.parametrize("group, field, value", [
+    ("chains", "num_chains", 0), ("chains", "num_draws", 0), ("calibrated", "max_source_points", 3),
+    ("calibrated", "thinning", 0), ("prior", "variance", -np.ones(6)),
+])
+def test_options_out_of_range(group, field, value):
+    options = bayesian_icp.Options()
+    setattr(getattr(options, group), field, value)
+    refused(ValueError, field, options=options)
+
+
+def test_options_refuse_unknown_names_and_kinds():
+    options = bayesian_icp.Options()
+    with pytest.raises(AttributeError, match="colour"):
+        options.colour = 1
+    with pytest.raises(TypeError, match="num_draws is 'many'"):
+        options.chains.num_draws = "many"
+    with pytest.raises(ValueError, match="kernel: 'round' is none of .'none', 'huber', 'tukey'"):
+        options.exact.residual.kernel = "round"
+    with pytest.raises(ValueError, match="sampling: None is none of .'with-replacement', 'shuffled-epochs'.$"):
+        options.paper.sampling = None
+    with pytest.raises(TypeError, match="mean is"):
+        options.prior.mean = np.zeros(5)
+    assert options.exact.thinning is None
+    options.exact.thinning = 3
+    assert bayesian_icp.Options(options).exact.thinning == 3
+
+
+def few_draws():
+    options = bayesian_icp.Options()
+    options.chains.num_draws = 8
+    return options
+
+
+SHEET = RNG.uniform(-1, 1, (60, 3)) * [1, 1, 0.1]
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.sampled_from([">f8", "<f8", "<f4", ">f4", "<f2", "i1", "<i4", ">u2", "g"]),
+       st.sampled_from(["C", "F"]), st.integers(1, 3), st.booleans(), st.booleans())
+def test_any_layout_gives_the_same_draws(dtype, order, stride, is_backward, is_read_only):
+    values = np.round(SHEET * 100).clip(-100, 100)
+    values = np.abs(values) if "u" in dtype else values
+    cloud = np.repeat(values, stride, axis=0).astype(dtype, order=order)[::stride]
+    if is_backward:
+        cloud = cloud[::-1, ::-1][::-1, ::-1]
+    cloud.setflags(write=not is_read_only)
+    before = cloud.copy()
+    plain = np.ascontiguousarray(values, dtype=np.float64)
+    found = bayesian_icp.align(source=cloud, target=cloud, preset="exact", options=few_draws())
+    expected = bayesian_icp.align(source=plain, target=plain, preset="exact", options=few_draws())
+    assert np.array_equal(found.samples, expected.samples)
+    assert np.array_equal(cloud, before)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.one_of(
+    arrays.arrays(dtype=arrays.scalar_dtypes(), shape=arrays.array_shapes(min_dims=0, max_dims=3, max_side=5)),
+    arrays.arrays(dtype=arrays.floating_dtypes(), shape=st.tuples(st.integers(0, 40), st.just(3))),
+    st.lists(st.lists(st.floats())), st.text(), st.binary()))
+def test_whatever_is_given_is_registered_or_refused(cloud):
+    try:
+        found = bayesian_icp.align(source=cloud, target=SHEET, preset="exact", options=few_draws())
+    except (TypeError, ValueError) as error:
+        assert "source" in str(error)
+    else:
+        values = np.asarray(cloud)
+        assert values.shape[1:] == (3,) and np.isfinite(values).all()
+        assert found.status != "not_run"

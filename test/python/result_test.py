@@ -1,0 +1,119 @@
+"""What a result gives to others: covariances, exports, diagnostics, measurement."""
+
+import numpy as np
+import pytest
+
+import bayesian_icp
+
+CONVENTIONS = ("parameters", "r3xso3", "left_se3", "right_se3")
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+def test_covariance_is_that_of_the_draws(result, convention):
+    draws = result.samples.reshape(-1, 6)
+    errors = np.array([bayesian_icp.pose_error(draw, result.mean, convention) for draw in draws])
+    expected = errors.T @ errors / (len(draws) - 1)
+    assert np.allclose(result.covariance(convention), expected, rtol=1e-9, atol=1e-16)
+    assert np.allclose(bayesian_icp.covariance_about(result.mean, draws, convention), expected, rtol=1e-9, atol=1e-16)
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+def test_covariances_convert(result, convention):
+    converted = bayesian_icp.convert_covariance(result.covariance(), result.mean, "parameters", convention)
+    assert np.allclose(converted, result.covariance(convention), rtol=0.05, atol=1e-8)
+    back = bayesian_icp.convert_covariance(converted, result.mean, convention, "parameters")
+    assert np.allclose(back, result.covariance(), rtol=1e-5, atol=1e-12)
+
+
+def test_errors_and_poses_are_inverse():
+    mean, error = np.array([1, 2, 3, 0.1, -0.2, 3.0]), np.array([0.1, 0, -0.1, 0.01, 0.2, -0.1])
+    for convention in CONVENTIONS:
+        pose = bayesian_icp.pose_from_error(error, mean, convention)
+        assert np.allclose(bayesian_icp.pose_error(pose, mean, convention), error)
+    assert np.allclose(bayesian_icp.log_se3(bayesian_icp.exp_se3(error)), error)
+    T = bayesian_icp.matrix_from_pose(mean)
+    assert np.allclose(bayesian_icp.pose_from_matrix(T), mean)
+    left = bayesian_icp.pose_from_error(error, mean, "left_se3")
+    assert np.allclose(bayesian_icp.matrix_from_pose(left), bayesian_icp.exp_se3(error) @ T)
+
+
+def test_no_such_convention(result):
+    with pytest.raises(ValueError, match="'ros' is none of .'parameters', 'r3xso3', 'left_se3', 'right_se3'"):
+        result.covariance("ros")
+
+
+def test_to_ros_has_the_fields_of_the_message(result):
+    message = result.to_ros(frame_id="map", timestamp_ns=1_500_000_000)
+    assert message["header"] == {"stamp": {"sec": 1, "nanosec": 500_000_000}, "frame_id": "map"}
+    assert np.allclose(np.reshape(message["pose"]["covariance"], (6, 6)), result.covariance("r3xso3"))
+    position, q = message["pose"]["pose"]["position"], message["pose"]["pose"]["orientation"]
+    assert np.allclose([position[k] for k in "xyz"], result.mean[:3])
+    assert q["w"] ** 2 + q["x"] ** 2 + q["y"] ** 2 + q["z"] ** 2 == pytest.approx(1)
+    assert 2 * (q["x"] * q["y"] + q["z"] * q["w"]) == pytest.approx(result.T_target_source[1, 0])
+
+
+def test_texts(result):
+    words = result.to_g2o(target_vertex=3, source_vertex=5).split()
+    assert words[:3] == ["EDGE_SE3:QUAT", "3", "5"] and len(words) == 3 + 7 + 21
+    tum = [float(word) for word in result.to_tum(timestamp_ns=2_000_000_000).split()]
+    assert tum[0] == 2 and np.allclose(tum[1:4], result.mean[:3])
+    rows = [line for line in result.to_gtsam().splitlines() if not line.startswith("#")]
+    covariance = np.array([[float(x) for x in row.split()] for row in rows[4:10]])
+    assert np.allclose(covariance, bayesian_icp.gtsam_covariance(result.covariance("right_se3")))
+
+
+def test_exports_refuse_what_is_bad(result, mug):
+    with pytest.raises(ValueError, match="frame"):
+        result.to_ros(frame_id="no spaces here")
+    with pytest.raises(ValueError, match="-5"):
+        result.to_tum(timestamp_ns=-5)
+    with pytest.raises(ValueError, match="vert"):
+        result.to_g2o(target_vertex=1, source_vertex=1)
+    options = bayesian_icp.Options()
+    options.chains.num_draws = 40
+    unmixed = bayesian_icp.align(source=mug[0], target=mug[1], options=options)
+    with pytest.raises(ValueError, match="mixed"):
+        unmixed.to_tum()
+    assert unmixed.to_tum(accept_unreliable=True)
+
+
+def test_diagnostics_are_those_of_the_result(result):
+    errors = np.array([[bayesian_icp.pose_error(d, result.mean) for d in chain] for chain in result.samples])
+    assert np.allclose(bayesian_icp.rhat(errors), [c.rhat for c in result.coordinates.values()], atol=1e-3)
+    assert np.allclose(bayesian_icp.ess(errors), [c.bulk_ess for c in result.coordinates.values()], rtol=0.02)
+    assert np.allclose(bayesian_icp.ess(errors, "tail"), [c.tail_ess for c in result.coordinates.values()], rtol=0.05)
+    assert bayesian_icp.rhat(errors[:, :, 0]).shape == ()
+    assert bayesian_icp.mcse(errors).shape == (6,)
+    assert np.isnan(bayesian_icp.rhat(np.zeros((2, 3))))
+    with pytest.raises(ValueError, match="kind is 'all'"):
+        bayesian_icp.ess(errors, "all")
+    with pytest.raises(ValueError, match=r"draws has the shape \(6,\)"):
+        bayesian_icp.rhat(result.mean)
+
+
+def test_to_arviz(result):
+    groups = result.to_arviz()
+    assert list(groups) == ["posterior"]
+    assert list(groups["posterior"]) == list(bayesian_icp.COORDINATES)
+    assert all(values.shape == (4, 500) for values in groups["posterior"].values())
+    arviz = pytest.importorskip("arviz", reason="ArviZ is not here: only the groups are tested")
+    is_first_generation = hasattr(arviz, "InferenceData")
+    data = arviz.from_dict(**groups) if is_first_generation else arviz.from_dict(groups)
+    assert float(arviz.rhat(data)["x"]) == pytest.approx(float(bayesian_icp.rhat(result.samples[:, :, 0])), abs=1e-3)
+
+
+def test_without_prior(mug):
+    narrow = bayesian_icp.align(source=mug[0], target=mug[1], prior_mean=mug[2], prior_std=(0.005, 0.01))
+    wide = bayesian_icp.align(source=mug[0], target=mug[1])
+    measured = narrow.without_prior(mug[0])
+    assert measured.num_unmeasured == 0
+    assert np.allclose(measured.T_target_source, wide.T_target_source, atol=1e-3)
+    yaw = measured.covariances["parameters"][5, 5]
+    assert yaw > narrow.covariance()[5, 5]
+    assert yaw == pytest.approx(wide.covariance()[5, 5], rel=0.3)
+
+
+def test_result_shows_itself(result):
+    assert repr(result).startswith("<bayesian_icp.Result ok: x=0.0")
+    assert "observed" in repr(result.directions[0])
+    assert result.seconds > 0
