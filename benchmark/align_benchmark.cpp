@@ -1,8 +1,17 @@
-// align() of the class with presets `exact` and `calibrated` (ICP and posterior)
-// against PCL's ICP and GICP, all with their defaults and from the same guess, in real
-// time. In `calibrated_on_pcls_tree` ICP searches in PCL's tree in place of ours.
+// align() of the class against PCL's ICP and GICP, all with their defaults and from the
+// same guess, in real time and in processor time:
 //
-//   align_benchmark source.pcd target.pcd [T_init.txt] [Google Benchmark options]
+//   align_benchmark FOLDER... [Google Benchmark options]
+//
+// A folder has source.pcd, target.pcd and, optionally, the guess T_init.txt; or scans,
+// of which the second is registered to the first. Names of the benchmarks:
+//
+//   first       a new object for each align(), so that everything is made anew
+//   next        another source for an object that has the target already
+//   mean        with setUseMeanAsFinalTransformation(true): the posterior without ICP
+//   pcls_tree   ICP searches in PCL's tree in place of ours
+//   gate, tukey preset exact with a gate [m], or a kernel that is flat beyond its width
+//   [m]
 #include "benchmark_clouds.h"
 
 #include <pcl/registration/bayesian_icp.h>
@@ -12,25 +21,58 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace {
+
+namespace fs = std::filesystem;
 
 using Point = pcl::PointXYZ;
 
 struct Input {
+  std::string name;
   Cloud::Ptr source;
   Cloud::Ptr target;
   Eigen::Matrix4f guess;
 };
 
+Input
+readInput(fs::path folder)
+{
+  if (folder.filename().empty()) // a slash at the end
+    folder = folder.parent_path();
+  fs::path source = folder / "source.pcd", target = folder / "target.pcd";
+  if (!fs::exists(source)) {
+    std::vector<fs::path> scans;
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".pcd")
+        scans.push_back(entry.path());
+    std::sort(scans.begin(), scans.end());
+    if (scans.size() >= 2) {
+      target = scans[0];
+      source = scans[1];
+    }
+  }
+  return {folder.filename().string(),
+          readCloud(source.string()),
+          readCloud(target.string()),
+          readGuess((folder / "T_init.txt").string())};
+}
+
+template <typename Registration>
+using Prepare = std::function<void(Registration&)>;
+
 /** One object a run: trees and covariances are part of the time. */
 template <typename Registration>
 void
-align(benchmark::State& state,
-      const Input& input,
-      const std::function<void(Registration&)>& prepare)
+alignFirst(benchmark::State& state,
+           const Input& input,
+           const Prepare<Registration>& prepare)
 {
   Cloud output;
   for (auto _ : state) {
@@ -43,50 +85,109 @@ align(benchmark::State& state,
   }
 }
 
-using BayesianIcp = pcl::BayesianIterativeClosestPoint<Point, Point>;
-
+/** One object for all runs; the target is set once. */
+template <typename Registration>
 void
-addBayesian(const Input& input,
-            const std::string& name,
-            const std::function<void(BayesianIcp&)>& prepare)
+alignNext(benchmark::State& state,
+          const Input& input,
+          const Prepare<Registration>& prepare)
 {
-  for (const int num_threads : {1, 2})
-    benchmark::RegisterBenchmark(
-        (name + "/threads:" + std::to_string(num_threads)).c_str(),
-        [=](benchmark::State& state) {
-          align<BayesianIcp>(state, input, [=](BayesianIcp& icp) {
-            prepare(icp);
-            icp.setNumberOfThreads(static_cast<unsigned int>(num_threads));
-          });
-        })
-        ->UseRealTime()
-        ->MeasureProcessCPUTime()
-        ->Unit(benchmark::kMillisecond);
-}
-
-void
-addExact(const Input& input, const std::string& scale, double sigma, double n)
-{
-  addBayesian(input, "exact/" + scale, [=](BayesianIcp& icp) {
-    icp.setPreset(bayesian_icp::Preset::Exact);
-    icp.setMeasurementSigma(sigma);
-    icp.setEffectivePoints(n);
-  });
+  Cloud output;
+  Registration registration;
+  prepare(registration);
+  registration.setInputTarget(input.target);
+  registration.setInputSource(input.source);
+  registration.align(output, input.guess);
+  for (auto _ : state) {
+    registration.setInputSource(input.source);
+    registration.align(output, input.guess);
+    benchmark::DoNotOptimize(output.points.data());
+  }
 }
 
 template <typename Registration>
 void
-addPcl(
-    const char* name,
+add(
+    const std::string& name,
     const Input& input,
-    const std::function<void(Registration&)>& prepare = [](Registration&) {})
+    void (*align)(benchmark::State&, const Input&, const Prepare<Registration>&),
+    const Prepare<Registration>& prepare = [](Registration&) {})
 {
   benchmark::RegisterBenchmark(
-      name,
-      [=](benchmark::State& state) { align<Registration>(state, input, prepare); })
+      (input.name + "/" + name).c_str(),
+      [=](benchmark::State& state) { align(state, input, prepare); })
       ->UseRealTime()
       ->MeasureProcessCPUTime()
       ->Unit(benchmark::kMillisecond);
+}
+
+using Icp = pcl::IterativeClosestPoint<Point, Point>;
+using BayesianIcp = pcl::BayesianIterativeClosestPoint<Point, Point>;
+
+/** With one thread and with two. */
+void
+addBayesian(
+    const std::string& name,
+    const Input& input,
+    void (*align)(benchmark::State&, const Input&, const Prepare<BayesianIcp>&),
+    const Prepare<BayesianIcp>& prepare = [](BayesianIcp&) {})
+{
+  for (const int num_threads : {1, 2})
+    add<BayesianIcp>(name + "/threads:" + std::to_string(num_threads),
+                     input,
+                     align,
+                     [=](BayesianIcp& icp) {
+                       prepare(icp);
+                       icp.setNumberOfThreads(static_cast<unsigned int>(num_threads));
+                     });
+}
+
+Prepare<BayesianIcp>
+exactWith(double sigma, double n, const bayesian_icp::ResidualOptions& residual = {})
+{
+  return [=](BayesianIcp& icp) {
+    bayesian_icp::Options options = icp.getOptions();
+    options.preset = bayesian_icp::Preset::Exact;
+    options.exact.residual = residual;
+    icp.setOptions(options);
+    icp.setMeasurementSigma(sigma);
+    icp.setEffectivePoints(n);
+  };
+}
+
+void
+addAll(const Input& input)
+{
+  add<Icp>("pcl_icp", input, alignFirst);
+#if PCL_VERSION_COMPARE(>=, 1, 15, 0) // PCL's ICP has threads since
+  add<Icp>("pcl_icp/threads:2", input, alignFirst, [](Icp& icp) {
+    icp.setNumberOfThreads(2);
+  });
+#endif
+  add<pcl::GeneralizedIterativeClosestPoint<Point, Point>>(
+      "pcl_gicp", input, alignFirst);
+  const Prepare<BayesianIcp> mean = [](BayesianIcp& icp) {
+    icp.setUseMeanAsFinalTransformation(true);
+  };
+  addBayesian("calibrated/first", input, alignFirst);
+  addBayesian("calibrated/next", input, alignNext);
+  addBayesian("calibrated/mean/first", input, alignFirst, mean);
+  addBayesian("calibrated/mean/next", input, alignNext, mean);
+  addBayesian("calibrated/pcls_tree", input, alignFirst, [](BayesianIcp& icp) {
+    icp.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<Point>>());
+  });
+  addBayesian("paper", input, alignFirst, [](BayesianIcp& icp) {
+    icp.setPreset(bayesian_icp::Preset::Paper);
+  });
+  addBayesian("exact/sigma:1,N:6000", input, alignFirst, exactWith(1.0, 6000.0));
+  addBayesian("exact/sigma:0.0015,N:100", input, alignFirst, exactWith(0.0015, 100.0));
+  constexpr double limit = 0.3; // [m]
+  bayesian_icp::ResidualOptions gate, kernel;
+  gate.max_distance = limit;
+  kernel.kernel = bayesian_icp::RobustKernel::Tukey;
+  kernel.kernel_width = limit;
+  addBayesian("exact/gate:0.3", input, alignFirst, exactWith(1.0, 6000.0, gate));
+  addBayesian("exact/tukey:0.3", input, alignFirst, exactWith(1.0, 6000.0, kernel));
 }
 
 } // namespace
@@ -95,34 +196,29 @@ int
 main(int argc, char** argv)
 {
   benchmark::Initialize(&argc, argv);
-  Input input{Cloud::Ptr(new Cloud), Cloud::Ptr(new Cloud), readGuess("")};
-  if (argc > 2)
-    input = {
-        readCloud(argv[1]), readCloud(argv[2]), readGuess(argc > 3 ? argv[3] : "")};
-  if (input.source->empty() || input.target->empty()) {
-    std::fprintf(stderr,
-                 "Usage: %s source.pcd target.pcd [T_init.txt] [--benchmark_...]\n",
-                 argv[0]);
+  if (argc < 2) {
+    std::fprintf(stderr, "Usage: %s FOLDER... [--benchmark_...]\n", argv[0]);
     return 2;
   }
-  std::printf("source %zu points, target %zu points\n",
-              input.source->size(),
-              input.target->size());
-  using Icp = pcl::IterativeClosestPoint<Point, Point>;
-  addPcl<Icp>("pcl_icp", input);
-#if PCL_VERSION_COMPARE(>=, 1, 15, 0) // PCL's ICP has threads since
-  addPcl<Icp>("pcl_icp/threads:2", input, [](Icp& icp) { icp.setNumberOfThreads(2); });
-#endif
-  addPcl<pcl::GeneralizedIterativeClosestPoint<Point, Point>>("pcl_gicp", input);
-  addBayesian(input, "calibrated", [](BayesianIcp& icp) {
-    icp.setPreset(bayesian_icp::Preset::Calibrated);
-  });
-  addBayesian(input, "calibrated_on_pcls_tree", [](BayesianIcp& icp) {
-    icp.setPreset(bayesian_icp::Preset::Calibrated);
-    icp.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<Point>>());
-  });
-  addExact(input, "sigma:1,N:6000", 1.0, 6000.0);
-  addExact(input, "sigma:0.0015,N:100", 0.0015, 100.0);
+  for (int i = 1; i < argc; ++i) {
+    if (!fs::is_directory(argv[i])) {
+      std::fprintf(stderr, "%s: %s is not a folder\n", argv[0], argv[i]);
+      return 1;
+    }
+    const Input input = readInput(argv[i]);
+    if (input.source->empty() || input.target->empty()) {
+      std::fprintf(stderr,
+                   "%s: %s has no source.pcd and target.pcd, and no two scans\n",
+                   argv[0],
+                   argv[i]);
+      return 1;
+    }
+    std::printf("%s: source %zu points, target %zu points\n",
+                input.name.c_str(),
+                input.source->size(),
+                input.target->size());
+    addAll(input);
+  }
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

@@ -2,6 +2,7 @@
 #include "exact/exact.h"
 #include "paper/paper.h"
 #include "summary/estimates.h"
+#include "target_parts.h"
 
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/tree_search.h>
@@ -149,11 +150,11 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const ProgressCallback& progress)
 {
   if (options.preset == Preset::Calibrated)
-    return estimateCalibratedPosterior(source_points,
-                                       target_tree.points().cast<double>(),
-                                       initial_pose,
-                                       options,
-                                       progress);
+    return estimatePosterior(source_points,
+                             target_tree.points().cast<double>(),
+                             initial_pose,
+                             options,
+                             progress);
   const ResidualOptions& residual = options.exact.residual;
   const bool is_exact = options.preset == Preset::Exact;
   const bool needs_normals = is_exact && residual.residual == Residual::PointToPlane;
@@ -173,19 +174,24 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
 
 PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
-                  const Eigen::Matrix3Xd& target_points,
+                  const PreparedTarget& target,
                   const Vector6d& initial_pose,
                   const Options& options,
                   const ProgressCallback& progress)
 {
-  if (options.preset == Preset::Calibrated)
+  const int num_threads = options.chains.num_threads;
+  if (options.preset == Preset::Calibrated) {
+    const auto surface = [&]() -> const PreparedSurface& {
+      return target.parts().surface(num_threads);
+    };
     return estimateCalibratedPosterior(
-        source_points, target_points, initial_pose, options, progress);
+        source_points, surface, initial_pose, options, progress);
+  }
   const std::string complaint = options.validate();
   if (!complaint.empty())
     return failure(Status::InvalidOptions, complaint);
-  const KdTree target_tree(target_points.cast<float>(), options.chains.num_threads);
-  return estimatePosterior(source_points, target_tree, initial_pose, options, progress);
+  return estimatePosterior(
+      source_points, target.parts().tree(num_threads), initial_pose, options, progress);
 }
 
 } // namespace bayesian_icp

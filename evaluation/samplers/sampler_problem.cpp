@@ -95,7 +95,7 @@ Problem::makeGradient() const
   std::iota(all.begin(), all.end(), std::size_t(0));
   return [this, workspace, all](const Vector6d& phi, Vector6d& gradient) {
     const BatchTerms terms = energy_.batchTerms(
-        phi, all, BatchTerms::Nothing, energy_.residual(), *workspace);
+        phi, all, BatchTerms::Gradient, energy_.residual(), *workspace);
     gradient = energy_.weight() * terms.gradient + energy_.priorGradient(phi);
     return energy_.weight() * terms.energy + energy_.priorEnergy(phi);
   };

@@ -15,6 +15,8 @@
 
 namespace bayesian_icp {
 
+class NeighborCache;
+
 /** \brief The instructions a search is made of. All of them give the same bits. */
 enum class InstructionSet { Plain, Sse2, Avx2 };
 
@@ -94,6 +96,7 @@ public:
   numBytes() const;
 
 private:
+  friend class NeighborCache;
   struct Tree;
 
   Eigen::Matrix3Xf points_;

@@ -5,6 +5,7 @@
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
 #include "geometry/principal_axes.h"
+#include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
 
@@ -92,10 +93,17 @@ followStarts(const SurfaceScorer& scorer,
   }
   const Isometry3d prior_mean = isometryOf(prior.mean());
   fit.start_scale = startScale(prior, subset);
-  ends.best = fitRobustly(subset, prior, prior_mean, fit);
-  const RobustFit icp = fitPointToPoint(subset, prior, prior_mean);
-  fit.start_scale *= icp_to_prior_scale;
-  ends.other = fitRobustly(subset, prior, icp.pose, fit);
+  RobustFit icp;
+  forEachPiece(2, options.num_threads, [&](std::ptrdiff_t i) {
+    if (i == 0) {
+      ends.best = fitRobustly(subset, prior, prior_mean, fit);
+      return;
+    }
+    icp = fitPointToPoint(subset, prior, prior_mean);
+    RobustFitOptions from_icp = fit;
+    from_icp.start_scale *= icp_to_prior_scale;
+    ends.other = fitRobustly(subset, prior, icp.pose, from_icp);
+  });
   ends.num_queries = num_points * (ends.best.num_evaluations + icp.num_evaluations +
                                    ends.other.num_evaluations);
   if (ends.other.cost < ends.best.cost)
@@ -210,7 +218,8 @@ measureCurvature(const SurfaceScorer& scorer,
     const SecantPlan plan = {e.covariance,
                              e.displacement_metric,
                              e.prior.precision,
-                             min_step_to_noise * noise};
+                             min_step_to_noise * noise,
+                             options.num_threads};
     secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
     num_evaluations += secants.num_evaluations;
     debited = debit(secants, J, e);
@@ -250,8 +259,10 @@ estimateCalibrated(const SurfaceScorer& scorer,
 
   // 4: J.
   const double tau = e.residual_scale;
-  const ScoreCovariance J = scoreCovariance(
-      activeScores(e.scores, scorer.sourcePoints()), tau * tau * e.prior.precision);
+  const ScoreCovariance J =
+      scoreCovariance(activeScores(e.scores, scorer.sourcePoints()),
+                      tau * tau * e.prior.precision,
+                      options.num_threads);
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
   // 5: H; 6: what noise explains of it; 7: mean and covariance.

@@ -68,6 +68,8 @@ struct EstimateOptions {
   int num_mode_points = 500;
   /** Rounds of curvature. */
   int num_rounds = 3;
+  /** 0: as OpenMP would. No result depends on it. */
+  int num_threads = 1;
 };
 
 /** \brief The source points that the estimate uses. They cover the source evenly: near

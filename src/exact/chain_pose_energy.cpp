@@ -79,7 +79,7 @@ SplitGradient
 ChainPoseEnergy::gradient(const Vector6d& phi, std::size_t batch_size, Random& random)
 {
   const auto batch =
-      terms(phi, batches_.subset(batch_size, random), BatchTerms::Nothing);
+      terms(phi, batches_.subset(batch_size, random), BatchTerms::Gradient);
   return {pose_energy_.weight() * batch.gradient, pose_energy_.priorGradient(phi)};
 }
 

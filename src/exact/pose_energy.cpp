@@ -46,7 +46,7 @@ wrench(const Eigen::Vector3f& arm, const Eigen::Vector3f& force)
   return w;
 }
 
-/** Energy and gradient of one match, in rotation vectors. */
+/** Energy of one match, and its gradient in rotation vectors. */
 void
 addResidual(const ResidualOptions& residual,
             const Eigen::Vector3f& arm,
@@ -56,6 +56,8 @@ addResidual(const ResidualOptions& residual,
 {
   const double squared = static_cast<double>(r.squaredNorm());
   terms.energy += robustEnergy(residual, squared);
+  if (extras == BatchTerms::Nothing)
+    return;
   const Vector6d gradient = robustWeight(residual, squared) * wrench(arm, r);
   terms.gradient += gradient;
   if (extras == BatchTerms::SecondMoment)
@@ -121,7 +123,8 @@ PoseEnergy::energyGradient(const Vector6d& theta) const
   EnergyWorkspace workspace = makeWorkspace();
   const Vector6d phi = toPhi(theta);
   Vector6d gradient =
-      batchTerms(phi, allPoints(numPoints()), BatchTerms::Nothing, residual_, workspace)
+      batchTerms(
+          phi, allPoints(numPoints()), BatchTerms::Gradient, residual_, workspace)
           .gradient;
   // phi's translation is theta's plus R c - c.
   const Eigen::Vector3d Rc = rotationOf(theta) * centroid_;
@@ -171,7 +174,7 @@ PoseEnergy::batchTerms(const Vector6d& phi,
 {
   moveBatch(phi, indices, workspace);
   target_.match(
-      toTheta(phi), indices, workspace.moved, workspace.hints, workspace.matches);
+      toTheta(phi), indices, workspace.moved, workspace.neighbors, workspace.matches);
   const Eigen::Matrix3f R = rotationOf(phi).cast<float>();
   const bool is_plane = residual.residual == Residual::PointToPlane;
   const double size = static_cast<double>(indices.size());
@@ -243,7 +246,7 @@ EnergyWorkspace
 PoseEnergy::makeWorkspace() const
 {
   EnergyWorkspace workspace;
-  workspace.hints.assign(numPoints(), KdTree::none);
+  workspace.neighbors = NeighborCache(numPoints());
   return workspace;
 }
 

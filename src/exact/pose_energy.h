@@ -10,9 +10,9 @@
 
 namespace bayesian_icp {
 
-/** \brief Buffers of one thread, with the neighbours found so far. */
+/** \brief Buffers of one thread, with what it knows of the points' neighbours. */
 struct EnergyWorkspace {
-  NeighborHints hints;
+  NeighborCache neighbors;
   Eigen::Matrix3Xf arms;
   Eigen::Matrix3Xf moved;
   std::vector<TargetMatch> matches;
@@ -21,8 +21,8 @@ struct EnergyWorkspace {
 /** \brief Likelihood of a batch of source points: means over the batch, before the
  * weight. Derivatives are with respect to the centred pose of PoseEnergy. */
 struct BatchTerms {
-  /** \brief What is computed besides the gradient. */
-  enum Extras { Nothing, SecondMoment, Curvature };
+  /** \brief What is computed besides the energy; the last two include the gradient. */
+  enum Extras { Nothing, Gradient, SecondMoment, Curvature };
 
   /** Mean of rho(r_i) [m^2]. */
   double energy = 0.0;
@@ -83,7 +83,7 @@ public:
   /** \brief Likelihood terms of a batch at the centred pose \p phi.
    * \param[in] phi centred pose [m, rad]
    * \param[in] indices source points of the batch, at least one
-   * \param[in] extras what to compute besides the gradient
+   * \param[in] extras what to compute besides the energy
    * \param[in] residual replaces residual(): burn-in starts without a kernel
    * \param[in,out] workspace of this thread */
   BatchTerms

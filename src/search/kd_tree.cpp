@@ -30,12 +30,6 @@ kd_tree::searchesOf(InstructionSet instruction_set)
 // For users who compile as C++14, where a static member is no inline variable.
 constexpr std::uint32_t KdTree::none;
 
-struct KdTree::Tree {
-  kd_tree::Storage storage;
-  kd_tree::View view;
-  kd_tree::Searches searches;
-};
-
 KdTree::KdTree(Eigen::Matrix3Xf points, int num_threads)
 : KdTree(std::move(points), num_threads, supportedInstructionSets().back())
 {}

@@ -54,4 +54,12 @@ const Searches&
 searchesOf(InstructionSet instruction_set);
 
 } // namespace kd_tree
+
+/** \brief What a KdTree owns besides its points. */
+struct KdTree::Tree {
+  kd_tree::Storage storage;
+  kd_tree::View view;
+  kd_tree::Searches searches;
+};
+
 } // namespace bayesian_icp

@@ -76,6 +76,17 @@ struct NearestK {
   std::uint64_t* end;
 };
 
+/** The points that may be the nearest one when a query has moved a little, ranked by
+ * their reach: no nearer than that is a place where the point is as near as the one
+ * that is the nearest to the query. Squared reaches take the place of squared distances
+ * in the keys. The nearest point itself, and points equal to it, are none of them. */
+struct Rivals : NearestK {
+  float nearest[3];
+  /** The squared distance of the nearest point, and a little more for the rounding of
+   * distances. */
+  float threshold;
+};
+
 /** Keep the \p found.count nearest points, and lower the limit to the last of them. */
 void
 dropOthers(NearestK& found);
@@ -87,6 +98,9 @@ struct Searches {
   void (*nearest)(const View& tree, const float* query, std::uint32_t hint, Best& best);
   /** Add the points to \p found, which has none before. */
   void (*nearestK)(const View& tree, const float* query, NearestK& found);
+  void (*rivals)(const View& tree, const float* query, Rivals& found);
+  /** Improve \p best as above to the nearest point of one leaf. */
+  void (*nearestInLeaf)(const Leaf& leaf, const float* query, Best& best);
 };
 
 extern const Searches plain_searches;

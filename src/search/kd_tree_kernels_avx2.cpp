@@ -19,6 +19,7 @@ struct EightFloats {
   static Vector add(Vector a, Vector b) { return _mm256_add_ps(a, b); }
   static Vector sub(Vector a, Vector b) { return _mm256_sub_ps(a, b); }
   static Vector mul(Vector a, Vector b) { return _mm256_mul_ps(a, b); }
+  static Vector div(Vector a, Vector b) { return _mm256_div_ps(a, b); }
   static Vector min(Vector a, Vector b) { return _mm256_min_ps(a, b); }
   static Vector max(Vector a, Vector b) { return _mm256_max_ps(a, b); }
   static unsigned lessEqual(Vector a, Vector b) { return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ))); }
@@ -36,7 +37,7 @@ struct EightFloats {
 
 } // namespace
 
-const Searches avx2_searches = {nearest<EightFloats>, nearestK<EightFloats>};
+const Searches avx2_searches = searchesWith<EightFloats>();
 
 } // namespace kd_tree
 } // namespace bayesian_icp

@@ -16,6 +16,7 @@ struct OneFloat {
   static Vector add(Vector a, Vector b) { return a + b; }
   static Vector sub(Vector a, Vector b) { return a - b; }
   static Vector mul(Vector a, Vector b) { return a * b; }
+  static Vector div(Vector a, Vector b) { return a / b; }
   static Vector min(Vector a, Vector b) { return b < a ? b : a; }
   static Vector max(Vector a, Vector b) { return a < b ? b : a; }
   static float smallest(Vector a) { return a; }
@@ -26,7 +27,7 @@ struct OneFloat {
 
 } // namespace
 
-const Searches plain_searches = {nearest<OneFloat>, nearestK<OneFloat>};
+const Searches plain_searches = searchesWith<OneFloat>();
 
 } // namespace kd_tree
 } // namespace bayesian_icp

@@ -18,6 +18,7 @@ struct FourFloats {
   static Vector add(Vector a, Vector b) { return _mm_add_ps(a, b); }
   static Vector sub(Vector a, Vector b) { return _mm_sub_ps(a, b); }
   static Vector mul(Vector a, Vector b) { return _mm_mul_ps(a, b); }
+  static Vector div(Vector a, Vector b) { return _mm_div_ps(a, b); }
   static Vector min(Vector a, Vector b) { return _mm_min_ps(a, b); }
   static Vector max(Vector a, Vector b) { return _mm_max_ps(a, b); }
   static unsigned lessEqual(Vector a, Vector b) { return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a, b))); }
@@ -34,7 +35,7 @@ struct FourFloats {
 
 } // namespace
 
-const Searches sse2_searches = {nearest<FourFloats>, nearestK<FourFloats>};
+const Searches sse2_searches = searchesWith<FourFloats>();
 
 } // namespace kd_tree
 } // namespace bayesian_icp

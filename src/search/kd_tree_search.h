@@ -1,11 +1,13 @@
 /** \file
  * \brief Internal: the searches in a tree of boxes, written once for all instruction
- * sets, and for the nearest point (Best) and the k nearest ones (NearestK).
+ * sets, and for the nearest point (Best), the k nearest ones (NearestK) and those that
+ * are the nearest to a query close by (Rivals).
  *
  * Included by the kernels only. A kernel says what its vectors can do: a Pack is
- * `width` floats with load(), fill(), sub(), add(), mul(), min(), max(), lessEqual()
- * and equal() (a bit for each float), smallest() and store(). Everything here is in an
- * unnamed namespace, so that no kernel's code is ever taken for another's.
+ * `width` floats with load(), fill(), sub(), add(), mul(), div(), min(), max(),
+ * lessEqual() and equal() (a bit for each float), smallest() and store(). Everything
+ * here is in an unnamed namespace, so that no kernel's code is ever taken for
+ * another's.
  *
  * The kernels agree to the last bit: the same operations in the same order, none fused.
  * A rounded difference, square and sum are monotonous, so that the bound of a box,
@@ -23,7 +25,7 @@ namespace bayesian_icp {
 namespace kd_tree {
 namespace {
 
-/** A subtree still to be searched, and the squared distance of its box. */
+/** A subtree still to be searched, and the bound of its box. */
 struct Pending {
   float bound;
   std::uint32_t number;
@@ -104,6 +106,38 @@ pointDistances(const Leaf& leaf, std::size_t place, const float* query)
                            pointOffset<Pack>(leaf, 2, place, query));
 }
 
+/** The square of a reach: of the distance from the query to the plane half way between
+ * two points, of which \p squared_distance is one's distance from the other. */
+template <typename Pack>
+inline typename Pack::Vector
+squaredReach(typename Pack::Vector squared_query_distance,
+             typename Pack::Vector squared_distance,
+             const Rivals& found)
+{
+  const auto excess = Pack::max(
+      Pack::sub(squared_query_distance, Pack::fill(found.threshold)), Pack::fill(0.f));
+  return Pack::div(Pack::mul(excess, excess),
+                   Pack::mul(Pack::fill(4.f), squared_distance));
+}
+
+/** What points are ranked by: their squared distances, ... */
+template <typename Pack>
+inline typename Pack::Vector
+pointRanks(const Leaf& leaf, std::size_t place, const float* query, const NearestK&)
+{
+  return pointDistances<Pack>(leaf, place, query);
+}
+
+/** ... or their squared reaches. */
+template <typename Pack>
+inline typename Pack::Vector
+pointRanks(const Leaf& leaf, std::size_t place, const float* query, const Rivals& found)
+{
+  return squaredReach<Pack>(pointDistances<Pack>(leaf, place, query),
+                            pointDistances<Pack>(leaf, place, found.nearest),
+                            found);
+}
+
 /** Distance to an interval along one axis, 0 inside. */
 template <typename Pack>
 inline typename Pack::Vector
@@ -142,14 +176,14 @@ searchLeaf(const Leaf& leaf, const float* query, Best& best)
     best.is_tied = is_tied;
 }
 
-template <typename Pack>
+template <typename Pack, typename Found>
 inline void
-searchLeaf(const Leaf& leaf, const float* query, NearestK& found)
+searchLeaf(const Leaf& leaf, const float* query, Found& found)
 {
   alignas(64) float distances[leaf_size];
   unsigned wanted = 0;
   for (std::size_t place = 0; place < leaf_size; place += Pack::width) {
-    const auto some = pointDistances<Pack>(leaf, place, query);
+    const auto some = pointRanks<Pack>(leaf, place, query, found);
     wanted |= Pack::lessEqual(some, Pack::fill(found.limit)) << place;
     Pack::store(distances + place, some);
   }
@@ -163,18 +197,56 @@ searchLeaf(const Leaf& leaf, const float* query, NearestK& found)
     dropOthers(found);
 }
 
-/** Squared distances of the children's boxes; a bit for each child whose box is within
- * \p limit. */
+/** Squared distances of boxes. */
 template <typename Pack>
+inline typename Pack::Vector
+boxDistances(const Node& node, std::size_t child, const float* query)
+{
+  return squaredNorm<Pack>(boxOffset<Pack>(node, 0, child, query),
+                           boxOffset<Pack>(node, 1, child, query),
+                           boxOffset<Pack>(node, 2, child, query));
+}
+
+/** Distance to the far end of an interval along one axis. */
+template <typename Pack>
+inline typename Pack::Vector
+farOffset(const Node& node, std::size_t axis, std::size_t child, const float* query)
+{
+  const auto coordinate = Pack::fill(query[axis]);
+  return Pack::max(Pack::sub(coordinate, Pack::load(node.lower[axis] + child)),
+                   Pack::sub(Pack::load(node.upper[axis] + child), coordinate));
+}
+
+/** Not above the ranks of the points in boxes. */
+template <typename Pack, typename Found>
+inline typename Pack::Vector
+boxRanks(const Node& node, std::size_t child, const float* query, const Found&)
+{
+  return boxDistances<Pack>(node, child, query);
+}
+
+template <typename Pack>
+inline typename Pack::Vector
+boxRanks(const Node& node, std::size_t child, const float* query, const Rivals& found)
+{
+  return squaredReach<Pack>(
+      boxDistances<Pack>(node, child, query),
+      squaredNorm<Pack>(farOffset<Pack>(node, 0, child, found.nearest),
+                        farOffset<Pack>(node, 1, child, found.nearest),
+                        farOffset<Pack>(node, 2, child, found.nearest)),
+      found);
+}
+
+/** Bounds of the ranks of the children's points; a bit for each child whose bound is
+ * within the limit. */
+template <typename Pack, typename Found>
 inline unsigned
-boundChildren(const Node& node, const float* query, float limit, float* bounds)
+boundChildren(const Node& node, const float* query, const Found& found, float* bounds)
 {
   unsigned promising = 0;
   for (std::size_t child = 0; child < fan_out; child += Pack::width) {
-    const auto bound = squaredNorm<Pack>(boxOffset<Pack>(node, 0, child, query),
-                                         boxOffset<Pack>(node, 1, child, query),
-                                         boxOffset<Pack>(node, 2, child, query));
-    promising |= Pack::lessEqual(bound, Pack::fill(limit)) << child;
+    const auto bound = boxRanks<Pack>(node, child, query, found);
+    promising |= Pack::lessEqual(bound, Pack::fill(limitOf(found))) << child;
     Pack::store(bounds + child, bound);
   }
   return promising;
@@ -212,8 +284,7 @@ searchBelow(const View& tree,
     unsigned promising = 0;
     if (current.number < tree.first_leaf) {
       alignas(64) float bounds[fan_out];
-      promising = boundChildren<Pack>(
-          tree.nodes[current.number], query, limitOf(found), bounds);
+      promising = boundChildren<Pack>(tree.nodes[current.number], query, found, bounds);
       if (promising)
         current = descend(current.number, bounds, promising, end);
     }
@@ -244,11 +315,29 @@ nearest(const View& tree, const float* query, std::uint32_t hint, Best& best)
   searchBelow<Pack>(tree, top, leaf, query, best);
 }
 
-template <typename Pack>
+template <typename Pack, typename Found>
 void
-nearestK(const View& tree, const float* query, NearestK& found)
+searchAll(const View& tree, const float* query, Found& found)
 {
   searchBelow<Pack>(tree, {0.f, 0}, no_leaf, query, found);
+}
+
+template <typename Pack>
+void
+nearestInLeaf(const Leaf& leaf, const float* query, Best& best)
+{
+  searchLeaf<Pack>(leaf, query, best);
+}
+
+/** The searches of one instruction set. */
+template <typename Pack>
+constexpr Searches
+searchesWith()
+{
+  return {nearest<Pack>,
+          searchAll<Pack, NearestK>,
+          searchAll<Pack, Rivals>,
+          nearestInLeaf<Pack>};
 }
 
 } // namespace

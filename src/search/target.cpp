@@ -80,21 +80,22 @@ void
 TreeTarget::match(const Vector6d& /* pose */,
                   const std::vector<std::size_t>& indices,
                   const Eigen::Matrix3Xf& moved,
-                  NeighborHints& hints,
+                  NeighborCache& cache,
                   std::vector<TargetMatch>& matches) const
 {
   matches.clear();
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    std::uint32_t& hint = hints[indices[i]];
-    const auto neighbor = tree_.nearest(
-        moved.col(static_cast<Eigen::Index>(i)), max_squared_distance_, hint);
-    if (neighbor.index == KdTree::none)
+    const std::uint32_t neighbor =
+        cache.nearest(tree_,
+                      max_squared_distance_,
+                      indices[i],
+                      moved.col(static_cast<Eigen::Index>(i)));
+    if (neighbor == KdTree::none)
       continue;
-    hint = neighbor.index;
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
     if (normals_.cols() > 0)
-      normal = normals_.col(hint);
-    matches.push_back({i, tree_.points().col(hint), normal});
+      normal = normals_.col(neighbor);
+    matches.push_back({i, tree_.points().col(neighbor), normal});
   }
 }
 
@@ -104,7 +105,7 @@ void
 SearchTarget::match(const Vector6d& pose,
                     const std::vector<std::size_t>& indices,
                     const Eigen::Matrix3Xf& moved,
-                    NeighborHints& /* hints */,
+                    NeighborCache& /* cache */,
                     std::vector<TargetMatch>& matches) const
 {
   Correspondences pairs;

@@ -3,10 +3,11 @@
  */
 #pragma once
 
+#include "search/neighbor_cache.h"
+
 #include <bayesian_icp/correspondence.h>
 #include <bayesian_icp/kd_tree.h>
 
-#include <cstdint>
 #include <vector>
 
 namespace bayesian_icp {
@@ -21,10 +22,6 @@ struct TargetMatch {
   Eigen::Vector3f normal;
 };
 
-/** \brief Last neighbour of each source point; KdTree::none if unknown. Hints change
- * the speed of the search, but not its matches. Each thread has its own vector. */
-using NeighborHints = std::vector<std::uint32_t>;
-
 /** \brief Interface: finds matches within the gate. */
 class Target {
 public:
@@ -34,13 +31,14 @@ public:
    * \param[in] pose source-to-target pose that moved the points [m, rad]
    * \param[in] indices index in the source of each column of \p moved
    * \param[in] moved 3 x m, target frame [m]
-   * \param[in,out] hints one for each source point
+   * \param[in,out] cache of all source points and one thread; it changes the speed,
+   *                but not the matches
    * \param[out] matches at most one for each column, in the order of the columns */
   virtual void
   match(const Vector6d& pose,
         const std::vector<std::size_t>& indices,
         const Eigen::Matrix3Xf& moved,
-        NeighborHints& hints,
+        NeighborCache& cache,
         std::vector<TargetMatch>& matches) const = 0;
 
   /** \brief Whether several threads may call match() at the same time. */
@@ -65,7 +63,7 @@ public:
   match(const Vector6d& pose,
         const std::vector<std::size_t>& indices,
         const Eigen::Matrix3Xf& moved,
-        NeighborHints& hints,
+        NeighborCache& cache,
         std::vector<TargetMatch>& matches) const override;
 
 private:
@@ -74,7 +72,7 @@ private:
   Eigen::Matrix3Xf normals_;
 };
 
-/** \brief Matches of a user's CorrespondenceSearch, without hints and normals. */
+/** \brief Matches of a user's CorrespondenceSearch, without cache and normals. */
 class SearchTarget : public Target {
 public:
   /** \param[in] search must outlive this object */
@@ -84,7 +82,7 @@ public:
   match(const Vector6d& pose,
         const std::vector<std::size_t>& indices,
         const Eigen::Matrix3Xf& moved,
-        NeighborHints& hints,
+        NeighborCache& cache,
         std::vector<TargetMatch>& matches) const override;
 
   bool

@@ -44,7 +44,8 @@ runOn(const Eigen::Matrix3Xf& target, const Settings& settings)
       target,
       settings,
       [&told](const Progress& progress) {
-        told.poses.push_back(progress.pose);
+        if (progress.steps > 0) // not while ICP runs
+          told.poses.push_back(progress.pose);
         return true;
       },
       [&told](const Eigen::Matrix4d& T_target_source) {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 namespace bayesian_icp {
 namespace {
@@ -22,11 +23,11 @@ constexpr double noise = 0.003;
 
 /** A wavy surface of 1 x 0.6 m scanned twice, with noise. */
 struct Scans {
-  Eigen::Matrix3Xd source = surface(91, 1500);
+  Eigen::Matrix3Xd source;
   Eigen::Matrix3Xd target;
   Vector6d truth;
 
-  Scans()
+  explicit Scans(const Eigen::Matrix3Xd& points = surface(91, 1500)) : source(points)
   {
     truth << 0.01, -0.02, 0.015, 0.02, -0.03, 0.025;
     movePoints(truth, surface(92, 6000), target);
@@ -59,6 +60,39 @@ PosteriorEstimate
 estimateFrom(const Scans& scans, const Options& options = calibratedOptions())
 {
   return estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
+}
+
+TEST(Calibrated, APreparedTargetIsForManySourcesPresetsAndThreads)
+{
+  const Scans scans;
+  const Scans other_scans{Scans::surface(93, 1400)};
+  Options exact = calibratedOptions();
+  exact.preset = Preset::Exact;
+  exact.chains.num_draws = 40;
+  const PoseMatrix expected = estimateFrom(scans).samples;
+  const PoseMatrix of_other =
+      estimatePosterior(
+          other_scans.source, scans.target, Vector6d::Zero(), calibratedOptions())
+          .samples;
+  const PoseMatrix of_exact =
+      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), exact).samples;
+  ASSERT_GT(of_exact.rows(), 0);
+
+  const PreparedTarget target(scans.target);
+  const auto drawsOf = [&](const Eigen::Matrix3Xd& source, const Options& options) {
+    return estimatePosterior(source, target, Vector6d::Zero(), options).samples;
+  };
+  // Two threads meet an unprepared target.
+  PoseMatrix draws;
+  std::thread first([&] { draws = drawsOf(scans.source, calibratedOptions()); });
+  EXPECT_EQ(drawsOf(other_scans.source, calibratedOptions()), of_other);
+  first.join();
+  EXPECT_EQ(draws, expected);
+  target.prepare(Preset::Exact);
+  const PreparedTarget copy = target;
+  EXPECT_EQ(copy.points().data(), target.points().data());
+  EXPECT_EQ(estimatePosterior(scans.source, copy, Vector6d::Zero(), exact).samples,
+            of_exact);
 }
 
 TEST(Calibrated, FindsPoseNoiseAndSixObservedDirections)

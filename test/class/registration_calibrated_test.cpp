@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 
+#include <functional>
 #include <limits>
 
 namespace pcl {
@@ -100,11 +101,92 @@ TEST_F(CalibratedTest, RejectorsReciprocityAndTheGateAreForIcpAlone)
   EXPECT_EQ(icp.getSamples(), expected);
 }
 
-TEST_F(CalibratedTest, TheMeanCanBeTheFinalTransformation)
+TEST_F(CalibratedTest, TheMeanCanBeTheFinalTransformationInPlaceOfIcp)
 {
+  icp.align(output);
+  const auto expected = icp.getSamples();
+  int num_iterations = 0;
+  std::function<BayesianIcp::UpdateVisualizerCallbackSignature> count =
+      [&](const Cloud&, const Indices&, const Cloud&, const Indices&) {
+        ++num_iterations;
+      };
+  icp.registerVisualizationCallback(count);
+  num_iterations = 0;
   icp.setUseMeanAsFinalTransformation(true);
   icp.align(output);
+  EXPECT_EQ(num_iterations, 0);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_EQ(icp.getSamples(), expected);
   EXPECT_EQ(icp.getFinalTransformation(), icp.getMeanTransformation());
+}
+
+TEST_F(CalibratedTest, IcpRunsWhereThereIsNoUsableMean)
+{
+  icp.setPrior(bayesian_icp::Vector6d::Zero(), bayesian_icp::Vector6d::Constant(-1.0));
+  icp.align(output);
+  const Eigen::Matrix4f expected = icp.getFinalTransformation();
+  ASSERT_TRUE(icp.hasConverged());
+  icp.setUseMeanAsFinalTransformation(true);
+  icp.align(output);
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_EQ(icp.getFinalTransformation(), expected);
+}
+
+TEST_F(CalibratedTest, WithTheMeanACancelledRunStaysAtTheGuess)
+{
+  icp.setUseMeanAsFinalTransformation(true);
+  icp.setProgressCallback([](const bayesian_icp::Progress&) { return (false); });
+  Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+  guess(0, 3) = 0.01f;
+  icp.align(output, guess);
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::Cancelled);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_EQ(icp.getFinalTransformation(), guess);
+  EXPECT_NEAR(output[5].x, (*source)[5].x + 0.01f, 1e-6f);
+}
+
+TEST_F(CalibratedTest, CancellingEndsIcpAfterTheIteration)
+{
+  int num_calls = 0;
+  icp.setProgressCallback([&](const bayesian_icp::Progress& progress) {
+    EXPECT_EQ(progress.steps, 0u);
+    ++num_calls;
+    return (false);
+  });
+  icp.setMaximumIterations(50);
+  icp.setTransformationEpsilon(0.0);
+  icp.align(output);
+  EXPECT_EQ(num_calls, 1);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::Cancelled);
+  EXPECT_EQ(icp.getSamples().rows(), 0);
+}
+
+TEST_F(CalibratedTest, AnObjectThatKeepsItsTargetGivesWhatANewOneGives)
+{
+  icp.align(output);
+  const Cloud::Ptr other_source = bumpySurface<PointXYZ>(3, 1200);
+  const Cloud::Ptr other_target = bumpySurface<PointXYZ>(4, 7000);
+  const auto expectAsNew = [&](const Cloud::Ptr& cloud, const Cloud::Ptr& to) {
+    BayesianIcp fresh;
+    fresh.setInputSource(cloud);
+    fresh.setInputTarget(to);
+    fresh.align(output);
+    const Eigen::Matrix4f expected = fresh.getFinalTransformation();
+    icp.align(output);
+    EXPECT_EQ(icp.getSamples(), fresh.getSamples());
+    EXPECT_EQ(icp.getFinalTransformation(), expected);
+  };
+  icp.setInputSource(other_source);
+  expectAsNew(other_source, target);
+  icp.setInputTarget(other_target);
+  expectAsNew(other_source, other_target);
+  // The same cloud with other points.
+  for (auto& point : *other_target)
+    point.x += 0.01f;
+  icp.setInputTarget(other_target);
+  expectAsNew(other_source, other_target);
 }
 
 TEST_F(CalibratedTest, AnInfinitePriorIsRefused)

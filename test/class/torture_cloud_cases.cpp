@@ -203,7 +203,7 @@ casesOfOverlap()
          pair.has_truth = false;
        }),
        [](Options& options) { options.exact.residual.max_distance = 0.1; },
-       {refused(Status::TooFewCorrespondences, "maximum correspondence"),
+       {refused(Status::TooFewCorrespondences, "usable surface"),
         refused(Status::TooFewCorrespondences, "maximum correspondence"),
         refused(Status::TooFewCorrespondences, "maximum correspondence")}},
       {"Identical",

@@ -62,6 +62,11 @@ for tool in "$root"/usr/bin/*; do
   [[ -e $root/usr/share/man/man1/${tool##*/}.1.gz ]] ||
     [[ -z $(find "$build/man" -name '*.1' 2>/dev/null) ]]
 done
+python_package=$root/usr/lib/python3/dist-packages
+if [[ -d $python_package ]]; then
+  LD_LIBRARY_PATH=$root/usr/lib PYTHONPATH=$python_package "${PYTHON:-python3}" -B -c \
+    'import bayesian_icp; print(bayesian_icp.__file__, len(bayesian_icp.scenes()), "scenes")'
+fi
 diff -r "$here/../../include" "$root/usr/include"
 bash "$here/build_and_run.sh" "$here/core_consumer" "$work/core_consumer" core_consumer \
   "$cmake" -D CMAKE_PREFIX_PATH="$root/usr" -D CMAKE_CXX_COMPILER="$compiler" \

@@ -211,17 +211,20 @@ public:
   void
   setNumberOfThreads(unsigned int nr_threads = 0);
 
-  /** \brief Told of every step of the chains; returns false to cancel them. */
+  /** \brief Told of every step of the chains, and with zeros of every iteration of ICP;
+   * returns false to cancel. */
   void
   setProgressCallback(const bayesian_icp::ProgressCallback& callback)
   {
     progress_callback_ = callback;
   }
 
-  /** \brief Make the posterior mean the final transformation (and the output cloud), in
-   * place of ICP's result, where the status is Ok, Doubtful or NotMixed. A
-   * transformation estimation set by the user is given the last word: what it makes of
-   * the mean. */
+  /** \brief Make the posterior mean the final transformation (and move the output cloud
+   * by it) where the status is Ok, Doubtful or NotMixed. ICP does not run then: there
+   * are no correspondences, and hasConverged() says that there is such a mean. With
+   * any other status ICP runs as without this setting, unless the callback has
+   * cancelled. A transformation estimation set by the user is given the last word: what
+   * it makes of the mean. The posterior does not depend on this setting. */
   void
   setUseMeanAsFinalTransformation(bool use_mean)
   {
@@ -262,8 +265,12 @@ protected:
   keepFailure(bool is_guess_finite, const char* reason) override;
 
 private:
-  void
+  /** \return false if the progress callback has cancelled it */
+  bool
   runIcp(PointCloudSource& output, const Matrix4& guess);
+
+  bool
+  runInterruptibleIcp(PointCloudSource& output, const Matrix4& guess);
 
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
@@ -279,6 +286,10 @@ private:
   Eigen::Matrix3Xd
   searchedTargetPoints() const;
 
+  /** \brief Makes prepared_target_ that of searchedTargetPoints(). */
+  void
+  prepareTarget();
+
   void
   reportStatus() const;
 
@@ -291,6 +302,10 @@ private:
   std::shared_ptr<const bayesian_icp::KdTree>
   targetTree() const;
 
+  /** \brief The state of a registration without ICP and without a mean. */
+  void
+  stayAt(const Matrix4& guess);
+
   bool
   moveToMean(const PointCloudSource& source);
 
@@ -299,6 +314,7 @@ private:
   bool is_scale_stated_ = false;
   bayesian_icp::ProgressCallback progress_callback_;
   bayesian_icp::PosteriorEstimate estimate_;
+  bayesian_icp::PreparedTarget prepared_target_{Eigen::Matrix3Xd(3, 0)};
   bool use_mean_as_final_transformation_ = false;
 };
 

@@ -3,13 +3,16 @@
 #include "calibrated/score/score_clusters.h"
 #include "geometry/principal_axes.h"
 #include "geometry/twist.h"
+#include "threads/for_each_piece.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace bayesian_icp {
 
@@ -92,7 +95,7 @@ struct Holders {
   double facing = 1.0;
 };
 
-/** Makes secants about one mode. */
+/** Makes secants about one mode. Each thread has a copy. */
 class SecantMaker {
 public:
   SecantMaker(const SurfaceScorer& scorer,
@@ -305,6 +308,35 @@ trustIn(SecantMaker& maker, const Vector6d& step, int direction)
   return trust * std::clamp(0.5 * (ratio / min_squared_ratio - 1.0), 0.0, 1.0);
 }
 
+/** Measures direction \p k anew, unless its step is nearly that of \p previous. */
+void
+measureDirection(int k,
+                 const PrincipalAxes& principal,
+                 const SecantPlan& plan,
+                 const Secants& previous,
+                 SecantMaker& maker,
+                 Secants& secants)
+{
+  const Vector6d axis = principal.axes.col(k);
+  const double unit_change = maker.holdersOf(axis).unit_change;
+  const double deviation = std::sqrt(std::max(0.0, principal.variances[k]));
+  const double length = lengthOf(axis, deviation, unit_change, plan);
+  const Vector6d step = length * axis;
+  if (isNearly(step, previous.planned.col(k), plan.covariance.inverse()))
+    return;
+  // Directions are in the order of their spread: those that the data do not hold come
+  // last in every round, and what was tried on them need not be tried again.
+  const double shortest =
+      std::max(min_shortened * std::min(plan.min_displacement, 0.5 * unit_change),
+               previous.unclear_displacement[k]);
+  const Secant secant = clearSecant(maker, axis, length, shortest, k);
+  secants.unclear_displacement[k] = isClear(secant) ? 0.0 : length;
+  secants.planned.col(k) = step;
+  secants.steps.col(k) = secant.step;
+  secants.differences.col(k) = secant.difference;
+  secants.noise[static_cast<std::size_t>(k)] = secant.noise;
+}
+
 } // namespace
 
 Secants
@@ -316,32 +348,18 @@ measureSecants(const SurfaceScorer& scorer,
                const Secants& previous)
 {
   const PrincipalAxes principal(plan.covariance, plan.displacement_metric);
-  SecantMaker maker(scorer, mode, at_mode, tau);
-  const Matrix6d information = plan.covariance.inverse();
+  const SecantMaker about_mode(scorer, mode, at_mode, tau);
   Secants secants = previous;
-  for (int k = 0; k < 6; ++k) {
-    const Vector6d axis = principal.axes.col(k);
-    const double unit_change = maker.holdersOf(axis).unit_change;
-    const double deviation = std::sqrt(std::max(0.0, principal.variances[k]));
-    const double length = lengthOf(axis, deviation, unit_change, plan);
-    const Vector6d step = length * axis;
-    if (isNearly(step, previous.planned.col(k), information))
-      continue;
-    // Directions are in the order of their spread: those that the data do not hold come
-    // last in every round, and what was tried on them need not be tried again.
-    const double shortest =
-        std::max(min_shortened * std::min(plan.min_displacement, 0.5 * unit_change),
-                 previous.unclear_displacement[k]);
-    const Secant secant = clearSecant(maker, axis, length, shortest, k);
-    secants.unclear_displacement[k] = isClear(secant) ? 0.0 : length;
-    secants.planned.col(k) = step;
-    secants.steps.col(k) = secant.step;
-    secants.differences.col(k) = secant.difference;
-    secants.noise[static_cast<std::size_t>(k)] = secant.noise;
-  }
-  for (int k = 0; k < 6; ++k)
+  std::array<int, 6> num_evaluations;
+  forEachPiece(6, plan.num_threads, [&](std::ptrdiff_t piece) {
+    const int k = static_cast<int>(piece);
+    SecantMaker maker = about_mode;
+    measureDirection(k, principal, plan, previous, maker, secants);
     secants.trust[k] = trustIn(maker, secants.steps.col(k), k);
-  secants.num_evaluations = maker.numEvaluations();
+    num_evaluations[static_cast<std::size_t>(k)] = maker.numEvaluations();
+  });
+  secants.num_evaluations =
+      std::accumulate(num_evaluations.begin(), num_evaluations.end(), 0);
   secants.curvature = curvatureOf(secants);
   return secants;
 }

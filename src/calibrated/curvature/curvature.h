@@ -27,6 +27,8 @@ struct SecantPlan {
    * or of half the step that changes the residuals by their scale, whichever is less.
    */
   double min_displacement;
+  /** 0: as OpenMP would. No result depends on it. */
+  int num_threads = 1;
 };
 
 /** \brief Central differences of the total score along six steps. */

@@ -5,6 +5,7 @@
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/surface/even_choice.h"
 #include "geometry/principal_axes.h"
+#include "threads/for_each_piece.h"
 
 #include <algorithm>
 #include <array>
@@ -165,14 +166,14 @@ followStarts(const SurfaceScorer& subset,
   fit.tolerance = 0.1 * noise;
   Random random(options.seed, std::numeric_limits<std::uint64_t>::max() / 2);
   const Matrix6Xd starts = startDeviations(wide, prior, options.num_starts, random);
-  std::vector<RobustFit> ends;
-  for (Index i = 0; i < starts.cols(); ++i) {
+  std::vector<RobustFit> ends(static_cast<std::size_t>(starts.cols()));
+  forEachPiece(starts.cols(), options.estimate.num_threads, [&](std::ptrdiff_t i) {
     const RobustFit icp =
         fitPointToPoint(icp_points, prior, poseAt(starts.col(i), prior));
-    ends.push_back(fitRobustly(subset, prior, icp.pose, fit));
-    ends.back().num_evaluations +=
-        static_cast<int>(std::ceil(icp_part * icp.num_evaluations));
-  }
+    RobustFit& end = ends[static_cast<std::size_t>(i)];
+    end = fitRobustly(subset, prior, icp.pose, fit);
+    end.num_evaluations += static_cast<int>(std::ceil(icp_part * icp.num_evaluations));
+  });
   std::stable_sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) {
     return a.cost < b.cost;
   });

@@ -1,5 +1,7 @@
 #include "calibrated/score/score_clusters.h"
 
+#include "threads/for_each_piece.h"
+
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>
@@ -207,7 +209,9 @@ clusteredCovariance(const PointScores& points,
 }
 
 ScoreCovariance
-scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
+scoreCovariance(const PointScores& points,
+                const Matrix6d& fit_precision,
+                int num_threads)
 {
   const Matrix6d independent = points.scores * points.scores.transpose();
   const Matrix6d information = points.jacobians * points.jacobians.transpose();
@@ -219,18 +223,21 @@ scoreCovariance(const PointScores& points, const Matrix6d& fit_precision)
   const auto kappa = [&](const Matrix6d& covariance) {
     return metric.solve(covariance).trace() / size;
   };
-  const auto clustered = [&](int num_clusters, int num_partitions) {
+  constexpr int num_sizes = 4;
+  constexpr int num_clusters[num_sizes] = {12, 24, 48, 96};
+  constexpr int num_partitions[num_sizes] = {16, 12, 8, 8};
+  Matrix6d clustered[num_sizes];
+  forEachPiece(num_sizes, num_threads, [&](std::ptrdiff_t i) {
     ClusterOptions options;
-    options.num_clusters = num_clusters;
-    options.num_partitions = num_partitions;
-    options.stream = static_cast<std::uint64_t>(num_clusters);
-    return clusteredCovariance(points, working_information, options);
-  };
+    options.num_clusters = num_clusters[i];
+    options.num_partitions = num_partitions[i];
+    options.stream = static_cast<std::uint64_t>(num_clusters[i]);
+    clustered[i] = clusteredCovariance(points, working_information, options);
+  });
+  const double kappa_12 = kappa(clustered[0]), kappa_24 = kappa(clustered[1]);
+  const double kappa_96 = kappa(clustered[3]);
+  const Matrix6d& J_48 = clustered[2];
   ScoreCovariance result;
-  const Matrix6d J_48 = clustered(48, 8);
-  const double kappa_12 = kappa(clustered(12, 16));
-  const double kappa_24 = kappa(clustered(24, 12));
-  const double kappa_96 = kappa(clustered(96, 8));
   result.kappa_48 = kappa(J_48);
   // Points at the border of a square cluster of side a miss a part of their neighbours
   // that shrinks as 1 / a on each axis: sqrt(kappa) = sqrt(kappa_inf) (1 - b / a), and

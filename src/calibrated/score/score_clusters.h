@@ -67,6 +67,8 @@ struct ScoreCovariance {
  * \param[in] points their scores and positions
  * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
 ScoreCovariance
-scoreCovariance(const PointScores& points, const Matrix6d& fit_precision);
+scoreCovariance(const PointScores& points,
+                const Matrix6d& fit_precision,
+                int num_threads = 1);
 
 } // namespace bayesian_icp

@@ -59,27 +59,25 @@ private:
   std::vector<std::uint64_t> slots_;
 };
 
-/** One point of each cube of side \p cube, the first one in \p order; no more than
- * \p most + 1 of them. */
+/** One point of each cube of side \p cube, the first one; no more than \p most + 1 of
+ * them.
+ * \param[in] points relative to the corner of the first cube */
 void
 firstOfEachCube(const Eigen::Matrix3Xf& points,
-                const std::vector<Index>& order,
                 float cube,
                 Index most,
                 SeenNumbers& seen,
                 std::vector<Index>& columns)
 {
-  const Eigen::Array3f low = points.rowwise().minCoeff();
   columns.clear();
   seen.forget();
-  for (const Index column : order) {
-    const Eigen::Array3f place = (points.col(column).array() - low) / cube;
+  for (Index i = 0; i < points.cols(); ++i) {
     std::uint64_t number = 0;
     for (int k = 0; k < 3; ++k)
-      number = number << num_bits | static_cast<std::uint64_t>(place[k]);
+      number = number << num_bits | static_cast<std::uint64_t>(points(k, i) / cube);
     if (!seen.add(number))
       continue;
-    columns.push_back(column);
+    columns.push_back(i);
     if (static_cast<Index>(columns.size()) > most)
       return;
   }
@@ -227,24 +225,27 @@ evenChoice(const Eigen::Matrix3Xf& points, Index count)
   // In a random order, the first point of a cube is a random one of it.
   Random random(1, 3);
   shuffle(order, random);
-  const double extent =
-      double((points.rowwise().maxCoeff() - points.rowwise().minCoeff()).maxCoeff());
+  const Eigen::Vector3f corner = points.rowwise().minCoeff();
+  const double extent = double((points.rowwise().maxCoeff() - corner).maxCoeff());
+  const Eigen::Matrix3Xf placed = points(Eigen::all, order).colwise() - corner;
   double low = extent * smallest_cube, high = 2.0 * extent;
   // A surface: the number of cubes goes with the square of their side.
   double cube = extent / std::sqrt(static_cast<double>(count));
   SeenNumbers seen(count + 1);
-  // At random, should there be no grid: all in one place, or too far apart.
-  std::vector<Index> columns, best(order.begin(), order.begin() + count);
+  // Places in the order. At random, should there be no grid: all in one place, or too
+  // far apart.
+  std::vector<Index> places, best(static_cast<std::size_t>(count));
+  std::iota(best.begin(), best.end(), Index(0));
   for (int trial = 0; trial < max_trials && low < high && std::isfinite(extent);
        ++trial) {
-    firstOfEachCube(points, order, static_cast<float>(cube), count, seen, columns);
-    const auto found = static_cast<Index>(columns.size());
+    firstOfEachCube(placed, static_cast<float>(cube), count, seen, places);
+    const auto found = static_cast<Index>(places.size());
     if (found > count) {
       low = cube;
     }
     else {
       high = cube;
-      best = columns;
+      best = places;
       if (static_cast<double>(found) >= wanted_part * static_cast<double>(count))
         break;
     }
@@ -253,6 +254,8 @@ evenChoice(const Eigen::Matrix3Xf& points, Index count)
         found > count ? 1.3 * cube : cube * std::sqrt(double(found) / double(count));
     cube = guess > low && guess < high ? guess : std::sqrt(low * high);
   }
+  for (Index& place : best)
+    place = order[static_cast<std::size_t>(place)];
   std::sort(best.begin(), best.end());
   return best;
 }

@@ -50,9 +50,6 @@ constexpr int num_quartic_terms = 15;
 /** Points below which the quartic is no test of the quadric. */
 constexpr Eigen::Index min_points = 21;
 
-using QuarticTerms = Eigen::Matrix<double, num_quartic_terms, 1>;
-using QuarticMatrix = Eigen::Matrix<double, num_quartic_terms, num_quartic_terms>;
-
 /** Principal axes of a neighbourhood. */
 struct PrincipalFrame {
   /** Columns: widest, second, normal. */
@@ -131,39 +128,38 @@ placeOfTerm(int degree, int power_of_y)
   return degree * (degree + 1) / 2 + power_of_y;
 }
 
-/** Normal equations of the regression of heights on quartic terms of the plane, which
- * is scaled to the unit disc. */
+/** Normal equations of the regression of heights on the terms of the plane up to a
+ * degree, 2 or 4. The plane is scaled to the unit disc. */
+template <int degree>
 struct Regression {
-  QuarticMatrix normal_matrix;
-  QuarticTerms moments;
-  double squared_heights;
+  static constexpr int num_terms = placeOfTerm(degree + 1, 0);
+  Eigen::Matrix<double, num_terms, num_terms> normal_matrix;
+  Eigen::Matrix<double, num_terms, 1> moments;
 
   Regression(const PointRows& local, double radius)
   {
     const ProductTerms terms =
         productTerms(local.col(0) / radius, local.col(1) / radius);
-    moments = terms.leftCols<num_quartic_terms>().transpose() * local.col(2);
-    squared_heights = local.col(2).squaredNorm();
+    moments = terms.template leftCols<num_terms>().transpose() * local.col(2);
     fillNormalMatrix(terms.colwise().sum());
   }
 
 private:
-  static constexpr int max_degree = 4;
-  static constexpr int num_product_terms = placeOfTerm(2 * max_degree + 1, 0);
+  static constexpr int num_product_terms = placeOfTerm(2 * degree + 1, 0);
   /** One point per row. */
   using ProductTerms = Eigen::Matrix<double, Eigen::Dynamic, num_product_terms>;
 
-  /** Products of two quartic terms: those up to the eighth degree. */
+  /** Products of two terms: those up to twice the degree. */
   static ProductTerms
   productTerms(const Eigen::VectorXd& x, const Eigen::VectorXd& y)
   {
     ProductTerms terms(x.size(), num_product_terms);
     terms.col(0).setOnes();
-    for (int degree = 1; degree <= 2 * max_degree; ++degree) {
-      const int place = placeOfTerm(degree, 0), lower = placeOfTerm(degree - 1, 0);
-      for (int k = 0; k < degree; ++k)
+    for (int d = 1; d <= 2 * degree; ++d) {
+      const int place = placeOfTerm(d, 0), lower = placeOfTerm(d - 1, 0);
+      for (int k = 0; k < d; ++k)
         terms.col(place + k) = x.cwiseProduct(terms.col(lower + k));
-      terms.col(place + degree) = y.cwiseProduct(terms.col(place - 1));
+      terms.col(place + d) = y.cwiseProduct(terms.col(place - 1));
     }
     return terms;
   }
@@ -171,8 +167,8 @@ private:
   void
   fillNormalMatrix(const Eigen::Matrix<double, 1, num_product_terms>& sums)
   {
-    for (int p = 0; p <= max_degree; ++p)
-      for (int q = 0; q <= max_degree; ++q)
+    for (int p = 0; p <= degree; ++p)
+      for (int q = 0; q <= degree; ++q)
         for (int j = 0; j <= p; ++j)
           for (int k = 0; k <= q; ++k)
             normal_matrix(placeOfTerm(p, j), placeOfTerm(q, k)) =
@@ -182,15 +178,20 @@ private:
 
 /** F statistic of the quartic's extra terms. */
 double
-misfit(const Regression& regression, double quadric_rss, Eigen::Index num_points)
+misfit(const PointRows& local,
+       double radius,
+       double squared_heights,
+       double quadric_rss)
 {
-  QuarticMatrix matrix = regression.normal_matrix;
+  const Eigen::Index num_points = local.rows();
+  Regression<4> quartic(local, radius);
   // A scan line leaves some terms undetermined.
-  matrix.diagonal().array() += 1e-9 * static_cast<double>(num_points);
-  const QuarticTerms solution = matrix.ldlt().solve(regression.moments);
+  quartic.normal_matrix.diagonal().array() += 1e-9 * static_cast<double>(num_points);
+  const Eigen::Matrix<double, num_quartic_terms, 1> solution =
+      quartic.normal_matrix.ldlt().solve(quartic.moments);
   constexpr double least_rss = 1e-18;
-  const double rss = std::max(
-      least_rss, regression.squared_heights - solution.dot(regression.moments));
+  const double rss =
+      std::max(least_rss, squared_heights - solution.dot(quartic.moments));
   constexpr double extra_terms = num_quartic_terms - num_quadric_terms;
   return (quadric_rss - rss) / extra_terms /
          (rss / static_cast<double>(num_points - num_quartic_terms));
@@ -204,17 +205,14 @@ fitQuadric(const PointRows& local,
            SurfacePatch& patch)
 {
   const Eigen::Index num_points = local.rows();
-  const Regression regression(local, patch.radius);
-  using QuadricMatrix = Eigen::Matrix<double, num_quadric_terms, num_quadric_terms>;
-  const QuadricMatrix matrix =
-      regression.normal_matrix.topLeftCorner<num_quadric_terms, num_quadric_terms>();
-  const Vector6d moments = regression.moments.head<num_quadric_terms>();
-  const Eigen::LDLT<QuadricMatrix> factors = matrix.ldlt();
-  const Vector6d solution = factors.solve(moments);
+  const Regression<2> quadric(local, patch.radius);
+  const auto factors = quadric.normal_matrix.ldlt();
+  const Vector6d solution = factors.solve(quadric.moments);
   const double slope_variance =
       static_cast<double>(num_points) * std::max(factors.solve(Vector6d::Unit(1))[1],
                                                  factors.solve(Vector6d::Unit(2))[2]);
-  const double rss = std::max(0.0, regression.squared_heights - solution.dot(moments));
+  const double squared_heights = local.col(2).squaredNorm();
+  const double rss = std::max(0.0, squared_heights - solution.dot(quadric.moments));
   const double sigma =
       std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
   const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
@@ -225,7 +223,7 @@ fitQuadric(const PointRows& local,
       centroid_offset < options.max_centroid_offset * patch.radius &&
       patch.radius > options.min_radius_to_noise * sigma &&
       (sigma < negligible_misfit * patch.radius ||
-       misfit(regression, rss, num_points) < options.max_misfit) &&
+       misfit(local, patch.radius, squared_heights, rss) < options.max_misfit) &&
       evennessOf(local) > min_evenness;
   if (!is_quadric)
     return;

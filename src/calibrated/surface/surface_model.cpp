@@ -32,25 +32,6 @@ finiteColumns(const Matrix3Xd& points)
 
 } // namespace
 
-SurfaceOffset
-offsetFrom(const SurfacePatch& patch, const Vector3d& point)
-{
-  const auto& a = patch.quadric;
-  const Vector3d local = patch.axes.transpose() * (point - patch.origin);
-  const double x = local.x(), y = local.y();
-  const double height =
-      a[0] + a[1] * x + a[2] * y + a[3] * x * x + a[4] * x * y + a[5] * y * y;
-  const double slope_x = a[1] + 2.0 * a[3] * x + a[4] * y;
-  const double slope_y = a[2] + a[4] * x + 2.0 * a[5] * y;
-  const double length = std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
-  SurfaceOffset offset;
-  offset.distance = (local.z() - height) / length;
-  offset.normal = patch.axes * Vector3d(-slope_x, -slope_y, 1.0) / length;
-  const Vector3d from_centre = patch.axes.transpose() * (point - patch.centre);
-  offset.in_plane = std::max(local.head<2>().norm(), from_centre.head<2>().norm());
-  return offset;
-}
-
 SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
                            const SurfaceModelOptions& options,
                            int num_threads)

@@ -7,7 +7,9 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace bayesian_icp {
@@ -62,8 +64,27 @@ struct SurfaceOffset {
 };
 
 /** \brief \p point relative to \p patch, both in the frame of the model [m]. */
-SurfaceOffset
-offsetFrom(const SurfacePatch& patch, const Eigen::Vector3d& point);
+inline SurfaceOffset
+offsetFrom(const SurfacePatch& patch, const Eigen::Vector3d& point)
+{
+  const auto& a = patch.quadric;
+  const Eigen::Vector3d local = patch.axes.transpose() * (point - patch.origin);
+  const double x = local.x(), y = local.y();
+  const double height =
+      a[0] + a[1] * x + a[2] * y + a[3] * x * x + a[4] * x * y + a[5] * y * y;
+  const double slope_x = a[1] + 2.0 * a[3] * x + a[4] * y;
+  const double slope_y = a[2] + a[4] * x + 2.0 * a[5] * y;
+  const double length = std::sqrt(1.0 + slope_x * slope_x + slope_y * slope_y);
+  SurfaceOffset offset;
+  offset.distance = (local.z() - height) / length;
+  offset.normal = patch.axes * Eigen::Vector3d(-slope_x, -slope_y, 1.0) / length;
+  offset.in_plane = local.head<2>().norm();
+  if (patch.centre != patch.origin) {
+    const Eigen::Vector3d from_centre = patch.axes.transpose() * (point - patch.centre);
+    offset.in_plane = std::max(offset.in_plane, from_centre.head<2>().norm());
+  }
+  return offset;
+}
 
 /** \brief How patches are fitted. The defaults are those of docs/calibration.md. */
 struct SurfaceModelOptions {

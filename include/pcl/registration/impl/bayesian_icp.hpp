@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace pcl {
@@ -93,13 +96,22 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
     PointCloudSource& output,
     const Matrix4& guess)
 {
-  runIcp(output, guess);
+  if (!use_mean_as_final_transformation_) {
+    if (runIcp(output, guess))
+      samplePosterior(source, guess);
+    return (true);
+  }
   samplePosterior(source, guess);
-  return (!(use_mean_as_final_transformation_ && moveToMean(*source)));
+  stayAt(guess);
+  if (moveToMean(*source) ||
+      estimate_.summary.status == bayesian_icp::Status::Cancelled)
+    return (false);
+  runIcp(output, guess);
+  return (true);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void
+bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
     PointCloudSource& output, const Matrix4& guess)
 {
@@ -107,9 +119,47 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
   const bool may_remember = tree_ == this->own_tree_ && !force_no_recompute_;
   if (may_remember)
     this->own_tree_->seeded->beginAtLastAnswers(this->input_->size());
-  Icp::computeTransformation(output, guess);
+  const bool is_finished = runInterruptibleIcp(output, guess);
   if (may_remember)
     this->own_tree_->seeded->beginAtLastAnswers(0);
+  return (is_finished);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runInterruptibleIcp(
+    PointCloudSource& output, const Matrix4& guess)
+{
+  if (!progress_callback_) {
+    Icp::computeTransformation(output, guess);
+    return (true);
+  }
+  // PCL calls the visualizer in each iteration, and looks at the largest number of
+  // iterations after it.
+  bool is_cancelled = false;
+  const auto visualize = this->update_visualizer_;
+  const auto askAndVisualize = [&](const PointCloudSource& source,
+                                   const Indices& source_indices,
+                                   const PointCloudTarget& target,
+                                   const Indices& target_indices) {
+    if (visualize)
+      visualize(source, source_indices, target, target_indices);
+    is_cancelled = is_cancelled || !progress_callback_({0, 0, 0, 0});
+    if (is_cancelled)
+      convergence_criteria_->setMaximumIterations(0);
+  };
+  {
+    using Visualizer = decltype(this->update_visualizer_);
+    const bayesian_icp_detail::Substitution<Visualizer> asking(
+        this->update_visualizer_, Visualizer(askAndVisualize));
+    Icp::computeTransformation(output, guess);
+  }
+  if (!is_cancelled)
+    return (true);
+  this->converged_ = false;
+  estimate_.summary.status = bayesian_icp::Status::Cancelled;
+  estimate_.summary.message = "interrupted before the first draw";
+  return (false);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -129,14 +179,6 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
     const PointCloudSourceConstPtr& source, const Matrix4& guess)
 {
   auto& summary = estimate_.summary;
-  if (convergence_criteria_->getConvergenceState() ==
-      registration::DefaultConvergenceCriteria<
-          Scalar>::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES) {
-    summary.status = bayesian_icp::Status::TooFewCorrespondences;
-    summary.message = "ICP found too few correspondences within the maximum "
-                      "correspondence distance";
-    return; // ICP has reported it
-  }
   const Eigen::Matrix4d initial = guess.template cast<double>();
   if (!bayesian_icp_detail::isRigid(initial)) {
     summary.status = bayesian_icp::Status::InvalidInput;
@@ -176,14 +218,17 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
                "searches of the user's own are for ICP alone with preset calibrated, "
                "which matches points to the target's surface.\n",
                getClassName().c_str());
+    prepareTarget();
     return (bayesian_icp::estimatePosterior(
-        points, searchedTargetPoints(), start, options, progress_callback_));
+        points, prepared_target_, start, options, progress_callback_));
   }
   const bool is_exact = options.preset == bayesian_icp::Preset::Exact;
   double& gate =
       is_exact ? options.exact.residual.max_distance : options.paper.max_distance;
   gate = bayesian_icp_detail::smallerGate(gate, corr_dist_threshold_);
-  if (is_exact && hasPlainCorrespondences() && isTreeOfWholeTarget()) {
+  // A tree, or a point representation, of the user's own is asked itself by `paper`.
+  const bool is_own_tree = tree_ == this->own_tree_ && this->own_tree_->seeded->get();
+  if ((is_exact || is_own_tree) && hasPlainCorrespondences() && isTreeOfWholeTarget()) {
     return (bayesian_icp::estimatePosterior(
         points, *targetTree(), start, options, progress_callback_));
   }
@@ -239,6 +284,22 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::searchedTargetP
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::prepareTarget()
+{
+  Eigen::Matrix3Xd points = searchedTargetPoints();
+  const Eigen::Matrix3Xd& prepared = prepared_target_.points();
+  // To the last bit: points that are not finite are not equal to themselves.
+  const bool is_prepared =
+      points.cols() == prepared.cols() &&
+      std::memcmp(points.data(),
+                  prepared.data(),
+                  sizeof(double) * static_cast<std::size_t>(points.size())) == 0;
+  if (!is_prepared)
+    prepared_target_ = bayesian_icp::PreparedTarget(std::move(points));
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::isTreeOfWholeTarget()
     const
@@ -257,6 +318,19 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::targetTree() co
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
+void
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::stayAt(
+    const Matrix4& guess)
+{
+  this->nr_iterations_ = 0;
+  this->correspondences_->clear();
+  this->converged_ = false;
+  convergence_criteria_->setConvergenceState(
+      Base::State::CONVERGENCE_CRITERIA_NOT_CONVERGED);
+  final_transformation_ = guess;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::moveToMean(
     const PointCloudSource& source)
@@ -268,6 +342,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::moveToMean(
   if (!mean.allFinite())
     return (false);
   final_transformation_ = mean;
+  this->converged_ = true;
   return (true);
 }
 

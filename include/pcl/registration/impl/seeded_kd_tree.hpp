@@ -16,6 +16,7 @@
 #include <memory>
 #include <mutex>
 #include <typeinfo>
+#include <utility>
 #include <vector>
 
 namespace pcl {
@@ -57,17 +58,18 @@ public:
   {
     const bool is_plain =
         cloud && !indices && isDefault(*this->getPointRepresentation());
-    if (is_plain && !(tree_ && areSame(*cloud, tree_->points()))) {
-      tree_ = std::make_shared<const Tree>(pointMatrix<float>(*cloud), num_threads);
-      is_flann_built_ = false;
+    if (is_plain && !(is_plain_ && areSame(*cloud, points()))) {
+      points_ = pointMatrix<float>(*cloud);
+      tree_.reset();
+      is_tree_built_ = is_flann_built_ = false;
     }
-    if (is_plain && tree_->size() > 0) {
+    is_plain_ = is_plain && points().array().isFinite().colwise().all().any();
+    if (is_plain_) {
       this->input_ = cloud;
       this->indices_.reset();
       this->epsilon_ = 0.0f; // as FLANN does
     }
     else {
-      tree_.reset();
       is_flann_built_ = true;
       Base::setInputCloud(cloud, indices);
     }
@@ -79,7 +81,7 @@ public:
                  Indices& indices,
                  std::vector<float>& squared_distances) const override
   {
-    if (k == 1 && tree_) {
+    if (k == 1 && is_plain_) {
       const Tree::Neighbor nearest = nearestTo(point);
       // If none is found, FLANN asserts that the point is finite.
       if (nearest.index != Tree::none && !nearest.is_tied) {
@@ -103,11 +105,12 @@ public:
     return (Base::radiusSearch(point, radius, indices, squared_distances, max_nn));
   }
 
-  /** Null where FLANN is asked for everything. */
-  const std::shared_ptr<const Tree>&
+  /** The tree that is asked, built when it is first asked for; null where FLANN is
+   * asked for everything. */
+  std::shared_ptr<const Tree>
   get() const
   {
-    return (tree_);
+    return (is_plain_ ? builtTree() : nullptr);
   }
 
   /** From now on the search for a point begins at the last answer for what was at the
@@ -134,15 +137,34 @@ private:
   nearestTo(const PointT& point) const
   {
     constexpr float no_gate = std::numeric_limits<float>::max();
+    const Tree& tree = *builtTree();
     if (last_answers_.empty())
-      return (tree_->nearest(point.getVector3fMap(), no_gate));
+      return (tree.nearest(point.getVector3fMap(), no_gate));
     // Each point of an array has a slot of its own.
     const std::size_t slot = reinterpret_cast<std::uintptr_t>(&point) / sizeof(PointT);
     auto& last_answer = last_answers_[slot % last_answers_.size()];
-    const auto nearest = tree_->nearest(
+    const auto nearest = tree.nearest(
         point.getVector3fMap(), no_gate, last_answer.load(std::memory_order_relaxed));
     last_answer.store(nearest.index, std::memory_order_relaxed);
     return (nearest);
+  }
+
+  const Eigen::Matrix3Xf&
+  points() const
+  {
+    return (tree_ ? tree_->points() : points_);
+  }
+
+  const std::shared_ptr<const Tree>&
+  builtTree() const
+  {
+    if (!is_tree_built_.load(std::memory_order_acquire)) {
+      const std::lock_guard<std::mutex> lock(building_);
+      if (!tree_)
+        tree_ = std::make_shared<const Tree>(std::move(points_), num_threads);
+      is_tree_built_.store(true, std::memory_order_release);
+    }
+    return (tree_);
   }
 
   /** Over the points as they were given, if that has not been done. */
@@ -155,9 +177,9 @@ private:
     if (is_flann_built_.load(std::memory_order_relaxed))
       return;
     const auto copy = pcl::make_shared<PointCloud<PointT>>();
-    copy->resize(static_cast<std::size_t>(tree_->points().cols()));
+    copy->resize(static_cast<std::size_t>(points().cols()));
     for (std::size_t i = 0; i < copy->size(); ++i)
-      (*copy)[i].getVector3fMap() = tree_->points().col(static_cast<Eigen::Index>(i));
+      (*copy)[i].getVector3fMap() = points().col(static_cast<Eigen::Index>(i));
     auto& self = const_cast<SeededFlann&>(*this);
     const CloudConstPtr cloud = this->input_;
     const float epsilon = this->epsilon_;
@@ -167,7 +189,12 @@ private:
     is_flann_built_.store(true, std::memory_order_release);
   }
 
-  std::shared_ptr<const Tree> tree_;
+  /** Whether our tree can answer. */
+  bool is_plain_ = false;
+  /** Until they are in the tree. */
+  mutable Eigen::Matrix3Xf points_;
+  mutable std::shared_ptr<const Tree> tree_;
+  mutable std::atomic<bool> is_tree_built_{false};
   mutable std::vector<std::atomic<std::uint32_t>> last_answers_;
   mutable std::mutex building_;
   /** Without a cloud there is nothing to build. */

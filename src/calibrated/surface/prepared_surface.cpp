@@ -1,0 +1,119 @@
+#include "calibrated/surface/prepared_surface.h"
+
+#include "summary/plain_text.h"
+
+#include <bayesian_icp/options.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+
+namespace {
+
+/** A target that is narrower than this, in standard deviations of the noise, is a line.
+ * Patches that are fitted to its noise would hold motions along it. */
+constexpr double min_width_to_noise = 3.0;
+
+std::vector<Index>
+finiteColumns(const Matrix3Xd& points)
+{
+  std::vector<Index> columns;
+  columns.reserve(static_cast<std::size_t>(points.cols()));
+  for (Index i = 0; i < points.cols(); ++i)
+    if (points.col(i).allFinite())
+      columns.push_back(i);
+  return columns;
+}
+
+/** The \p columns of different points, each the first of its kind, in their order. */
+std::vector<Index>
+distinctColumns(const Matrix3Xd& points, std::vector<Index> columns)
+{
+  const auto isSame = [&points](Index a, Index b) {
+    return points.col(a) == points.col(b);
+  };
+  std::sort(columns.begin(), columns.end(), [&points](Index a, Index b) {
+    for (int k = 0; k < 3; ++k)
+      if (points(k, a) != points(k, b))
+        return points(k, a) < points(k, b);
+    return a < b;
+  });
+  columns.erase(std::unique(columns.begin(), columns.end(), isSame), columns.end());
+  std::sort(columns.begin(), columns.end());
+  return columns;
+}
+
+/** Standard deviation of the points across the line that fits them best, where they are
+ * widest [m]. */
+double
+widthOf(const Matrix3Xd& points)
+{
+  const Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Matrix3d covariance =
+      centred * centred.transpose() / static_cast<double>(points.cols());
+  const double variance =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+          .eigenvalues()[1];
+  return std::sqrt(std::max(variance, 0.0));
+}
+
+/** Why distances to the target's surface mean nothing; empty if they do. */
+std::string
+complaintAbout(const SurfaceModel& model, const Matrix3Xd& points)
+{
+  if (!(model.usableFraction() > 0.0))
+    return "the target has no usable surface: its points are too noisy, too sparse or "
+           "too tangled for distances to a surface";
+  if (!(model.medianSigma() > 0.0))
+    return "the target's points lie on their surface exactly: without noise there is "
+           "no scale";
+  const double width = widthOf(points);
+  if (width < min_width_to_noise * model.medianSigma())
+    return formatted("the target has no surface: it is a line to within %.2g m, %.1f "
+                     "times its noise (at least %.0f)",
+                     width,
+                     width / model.medianSigma(),
+                     min_width_to_noise);
+  return std::string();
+}
+
+PreparedSurface
+withoutSurface(Status status, const std::string& complaint)
+{
+  return {SurfaceModel(Matrix3Xd(3, 0)), complaint, status};
+}
+
+} // namespace
+
+PreparedSurface
+prepareSurface(const Matrix3Xd& points, int num_threads)
+{
+  const std::vector<Index> finite = finiteColumns(points);
+  if (finite.size() < std::size_t(min_calibrated_points))
+    return withoutSurface(Status::InvalidInput,
+                          "the target has " + std::to_string(finite.size()) +
+                              " finite points, but preset calibrated needs " +
+                              std::to_string(min_calibrated_points));
+  const Matrix3Xd distinct_points = points(Eigen::all, distinctColumns(points, finite));
+  if (distinct_points.cols() < min_calibrated_points)
+    return withoutSurface(Status::TooFewCorrespondences,
+                          "the target has no surface: only " +
+                              std::to_string(distinct_points.cols()) +
+                              " of its points differ");
+  PreparedSurface surface = {
+      SurfaceModel(distinct_points, SurfaceModelOptions(), num_threads), {}, {}};
+  surface.complaint = complaintAbout(surface.model, distinct_points);
+  if (!surface.complaint.empty())
+    surface.status = Status::TooFewCorrespondences;
+  return surface;
+}
+
+} // namespace bayesian_icp

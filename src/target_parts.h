@@ -1,0 +1,67 @@
+/** \file
+ * \brief Internal: what is inside a PreparedTarget.
+ */
+#pragma once
+
+#include "calibrated/surface/prepared_surface.h"
+
+#include <bayesian_icp/kd_tree.h>
+
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace bayesian_icp {
+
+/** \brief A value that is made when it is first asked for, by one thread. If making it
+ * throws, the next one that asks tries again. */
+template <typename T>
+class Lazy {
+public:
+  /** \param[in] make returns a std::unique_ptr<const T> */
+  template <typename Make>
+  const T&
+  get(const Make& make)
+  {
+    std::call_once(is_made_, [&] { value_ = make(); });
+    return *value_;
+  }
+
+private:
+  std::once_flag is_made_;
+  std::unique_ptr<const T> value_;
+};
+
+/** \brief The points of a target and what is made of them. */
+struct TargetParts {
+  explicit TargetParts(Eigen::Matrix3Xd target_points)
+  : points(std::move(target_points))
+  {}
+
+  /** \param[in] num_threads 0: as OpenMP would */
+  const PreparedSurface&
+  surface(int num_threads)
+  {
+    return surface_.get([&] {
+      return std::make_unique<const PreparedSurface>(
+          prepareSurface(points, num_threads));
+    });
+  }
+
+  /** In single precision. */
+  const KdTree&
+  tree(int num_threads)
+  {
+    return tree_.get([&] {
+      return std::make_unique<const KdTree>(points.cast<float>(), num_threads);
+    });
+  }
+
+  const Eigen::Matrix3Xd points;
+
+private:
+  Lazy<PreparedSurface> surface_;
+  Lazy<KdTree> tree_;
+};
+
+} // namespace bayesian_icp
