@@ -10,8 +10,8 @@
 //   next        another source for an object that has the target already
 //   mean        with setUseMeanAsFinalTransformation(true): the posterior without ICP
 //   pcls_tree   ICP searches in PCL's tree in place of ours
-//   gate, tukey preset exact with a gate [m], or a kernel that is flat beyond its width
-//   [m]
+//   gate        preset exact with a gate [m]
+//   tukey       preset exact with a kernel that is flat beyond its width [m]
 #include "benchmark_clouds.h"
 
 #include <pcl/registration/bayesian_icp.h>
@@ -21,7 +21,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -46,21 +45,17 @@ readInput(fs::path folder)
 {
   if (folder.filename().empty()) // a slash at the end
     folder = folder.parent_path();
-  fs::path source = folder / "source.pcd", target = folder / "target.pcd";
+  std::string source = folder / "source.pcd", target = folder / "target.pcd";
   if (!fs::exists(source)) {
-    std::vector<fs::path> scans;
-    for (const auto& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".pcd")
-        scans.push_back(entry.path());
-    std::sort(scans.begin(), scans.end());
+    const std::vector<std::string> scans = scansIn(folder);
     if (scans.size() >= 2) {
       target = scans[0];
       source = scans[1];
     }
   }
   return {folder.filename().string(),
-          readCloud(source.string()),
-          readCloud(target.string()),
+          readCloud(source),
+          readCloud(target),
           readGuess((folder / "T_init.txt").string())};
 }
 

@@ -10,9 +10,12 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
+#include <vector>
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
@@ -28,6 +31,18 @@ readCloud(const std::string& file)
     if (pcl::isFinite(point))
       finite->push_back(point);
   return finite;
+}
+
+/** Names of the .pcd files in a folder, sorted. */
+inline std::vector<std::string>
+scansIn(const std::string& folder)
+{
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".pcd")
+      files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 /** A 4 x 4 matrix in a text file; identity without a file name. */

@@ -12,15 +12,14 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace {
 
-namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
 using Point = pcl::PointXYZ;
@@ -46,16 +45,11 @@ residentMemory()
 std::vector<Cloud::Ptr>
 readScans(const std::string& folder)
 {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".pcd")
-      files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
   std::vector<Cloud::Ptr> scans;
-  for (const auto& file : files) {
-    scans.push_back(readCloud(file.string()));
+  for (const auto& file : scansIn(folder)) {
+    scans.push_back(readCloud(file));
     if (scans.back()->empty())
-      throw std::runtime_error(file.string() + " has no points, or cannot be read");
+      throw std::runtime_error(file + " has no points, or cannot be read");
   }
   if (scans.size() < 2)
     throw std::runtime_error(folder + " has fewer than two .pcd files");

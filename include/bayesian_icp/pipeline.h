@@ -45,8 +45,10 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
 
 /** \brief The same for a target given by its points, or by a PreparedTarget that is
  * kept for other sources. This is the only overload for preset `calibrated` that keeps
- * all digits of far coordinates. \param[in] source_points 3 x n, finite, source frame
- * [m] \param[in] target points in the target frame [m], and what has been made of them
+ * all digits of far coordinates.
+ *
+ * \param[in] source_points 3 x n, finite, source frame [m]
+ * \param[in] target points in the target frame [m], and what has been made of them
  * \param[in] initial_pose as above
  * \param[in] options as above; any preset
  * \param[in] progress as above

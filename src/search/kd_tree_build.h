@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace bayesian_icp {
@@ -36,6 +37,16 @@ struct Storage {
             leaf_of.size()};
   }
 };
+
+/** Of a point in NearestK or Rivals, by its key [m^2]. */
+inline float
+squaredDistanceOf(std::uint64_t key)
+{
+  const auto bits = static_cast<std::uint32_t>(key >> 32);
+  float squared_distance;
+  std::memcpy(&squared_distance, &bits, sizeof(bits));
+  return squared_distance;
+}
 
 /** Whether a search finds all points that are equal to each other, or only the one with
  * the smallest index and the fact that there are more. */

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace bayesian_icp {
@@ -33,21 +32,27 @@ constexpr float gate_margin = 1e-5f;
 constexpr int worthwhile_hits = 2, more_patience = 2, far_more_patience = 8;
 constexpr int max_patience = 1024;
 
-float
-rankOf(std::uint64_t key)
-{
-  const auto bits = static_cast<std::uint32_t>(key >> 32);
-  float rank;
-  std::memcpy(&rank, &bits, sizeof(bits));
-  return rank;
-}
-
 /** The square of a radius a little below \p reach. */
 float
 squaredRadius(float reach)
 {
   const float radius = radius_factor * std::min(reach, max_radius);
   return radius > min_radius ? radius * radius : 0.f;
+}
+
+/** A leaf of \p size columns of \p points; \p members are sorted. */
+kd_tree::Leaf
+leafOf(const Eigen::Matrix3Xf& points, const std::uint32_t* members, std::size_t size)
+{
+  kd_tree::Leaf leaf;
+  for (std::size_t i = 0; i < leaf_size; ++i) {
+    const bool is_member = i < size;
+    leaf.index[i] = is_member ? members[i] : kd_tree::no_point;
+    for (int axis = 0; axis < 3; ++axis)
+      leaf.coordinates[axis][i] =
+          is_member ? points(axis, members[i]) : std::numeric_limits<float>::infinity();
+  }
+  return leaf;
 }
 
 /** A search for rivals, with room for their keys. */
@@ -156,7 +161,7 @@ NeighborCache::enclose(const KdTree& tree,
     const auto index = static_cast<std::uint32_t>(*key);
     if (points.col(index) == points.col(members[size - 1])) // repeated
       continue;
-    squared_reach = rankOf(*key);
+    squared_reach = kd_tree::squaredDistanceOf(*key);
     if (size == 1)
       place.squared_sole_radius =
           std::min(place.squared_sole_radius, squaredRadius(std::sqrt(squared_reach)));
@@ -168,14 +173,7 @@ NeighborCache::enclose(const KdTree& tree,
 
   std::sort(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(size));
   leaves_.resize(places_.size());
-  kd_tree::Leaf& leaf = leaves_[point];
-  for (std::size_t i = 0; i < leaf_size; ++i) {
-    const bool is_member = i < size;
-    leaf.index[i] = is_member ? members[i] : kd_tree::no_point;
-    for (int axis = 0; axis < 3; ++axis)
-      leaf.coordinates[axis][i] =
-          is_member ? points(axis, members[i]) : std::numeric_limits<float>::infinity();
-  }
+  leaves_[point] = leafOf(points, members.data(), size);
 }
 
 } // namespace bayesian_icp

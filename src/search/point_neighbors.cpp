@@ -2,28 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace bayesian_icp {
 
 using Eigen::Vector3f;
 using kd_tree::leaf_size;
+using kd_tree::squaredDistanceOf;
 
 namespace {
 
 /** Above any squared distance to a neighbour; below that to a place without a point, or
  * with one so far away that a float cannot hold it. */
 constexpr float no_limit = std::numeric_limits<float>::max();
-
-float
-squaredDistanceOf(std::uint64_t key)
-{
-  const auto bits = static_cast<std::uint32_t>(key >> 32);
-  float squared_distance;
-  std::memcpy(&squared_distance, &bits, sizeof(bits));
-  return squared_distance;
-}
 
 /** Sort the \p count nearest of the keys to the front: into buckets of equal width in
  * the squared distance, over which points of a surface are spread evenly, and then

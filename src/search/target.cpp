@@ -1,5 +1,6 @@
 #include "search/target.h"
 
+#include "search/finite_columns.h"
 #include "search/squared_gate.h"
 
 #include <Eigen/Eigenvalues>
@@ -126,10 +127,7 @@ Eigen::Matrix3Xf
 patchNormals(const Eigen::Matrix3Xf& points)
 {
   Eigen::Matrix3Xf normals = Eigen::Matrix3Xf::Zero(3, points.cols());
-  std::vector<Eigen::Index> finite;
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      finite.push_back(i);
+  std::vector<Eigen::Index> finite = finiteColumns(points);
   splitIntoPatches(points, finite.begin(), finite.end(), normals);
   return normals;
 }

@@ -298,6 +298,10 @@ private:
   bool
   isTreeOfWholeTarget() const;
 
+  /** \brief This library's tree where ICP searches in it; null where it does not. */
+  std::shared_ptr<const bayesian_icp::KdTree>
+  ownTree() const;
+
   /** \brief This library's tree over the whole target. */
   std::shared_ptr<const bayesian_icp::KdTree>
   targetTree() const;

@@ -1,5 +1,6 @@
 #include "calibrated/surface/prepared_surface.h"
 
+#include "search/finite_columns.h"
 #include "summary/plain_text.h"
 
 #include <bayesian_icp/options.h>
@@ -21,17 +22,6 @@ namespace {
 /** A target that is narrower than this, in standard deviations of the noise, is a line.
  * Patches that are fitted to its noise would hold motions along it. */
 constexpr double min_width_to_noise = 3.0;
-
-std::vector<Index>
-finiteColumns(const Matrix3Xd& points)
-{
-  std::vector<Index> columns;
-  columns.reserve(static_cast<std::size_t>(points.cols()));
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      columns.push_back(i);
-  return columns;
-}
 
 /** The \p columns of different points, each the first of its kind, in their order. */
 std::vector<Index>

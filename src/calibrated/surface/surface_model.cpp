@@ -2,6 +2,7 @@
 
 #include "calibrated/surface/even_choice.h"
 #include "calibrated/surface/surface_builder.h"
+#include "search/finite_columns.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,18 +19,6 @@ namespace {
 /** Points of neighbourhoods, for each patch. */
 constexpr Index points_to_patches = 4;
 
-Matrix3Xd
-finiteColumns(const Matrix3Xd& points)
-{
-  Matrix3Xd finite(3, points.cols());
-  Index count = 0;
-  for (Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      finite.col(count++) = points.col(i);
-  finite.conservativeResize(3, count);
-  return finite;
-}
-
 } // namespace
 
 SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
@@ -38,7 +27,7 @@ SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
 : origin_(Vector3d::Zero())
 , tree_(Matrix3Xf(3, 0))
 {
-  Matrix3Xd finite = finiteColumns(target_points);
+  Matrix3Xd finite = target_points(Eigen::all, finiteColumns(target_points));
   if (finite.cols() == 0)
     return;
   origin_ = finite.rowwise().mean();

@@ -227,8 +227,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
       is_exact ? options.exact.residual.max_distance : options.paper.max_distance;
   gate = bayesian_icp_detail::smallerGate(gate, corr_dist_threshold_);
   // A tree, or a point representation, of the user's own is asked itself by `paper`.
-  const bool is_own_tree = tree_ == this->own_tree_ && this->own_tree_->seeded->get();
-  if ((is_exact || is_own_tree) && hasPlainCorrespondences() && isTreeOfWholeTarget()) {
+  if ((is_exact || ownTree()) && hasPlainCorrespondences() && isTreeOfWholeTarget()) {
     return (bayesian_icp::estimatePosterior(
         points, *targetTree(), start, options, progress_callback_));
   }
@@ -309,10 +308,17 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::isTreeOfWholeTa
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 std::shared_ptr<const bayesian_icp::KdTree>
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::ownTree() const
+{
+  return (tree_ == this->own_tree_ ? this->own_tree_->seeded->get() : nullptr);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+std::shared_ptr<const bayesian_icp::KdTree>
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::targetTree() const
 {
-  if (tree_ == this->own_tree_ && this->own_tree_->seeded->get())
-    return (this->own_tree_->seeded->get());
+  if (const auto tree = ownTree())
+    return (tree);
   return (std::make_shared<const bayesian_icp::KdTree>(
       bayesian_icp_detail::pointMatrix<float>(*target_), options_.chains.num_threads));
 }

@@ -158,12 +158,9 @@ private:
   const std::shared_ptr<const Tree>&
   builtTree() const
   {
-    if (!is_tree_built_.load(std::memory_order_acquire)) {
-      const std::lock_guard<std::mutex> lock(building_);
-      if (!tree_)
-        tree_ = std::make_shared<const Tree>(std::move(points_), num_threads);
-      is_tree_built_.store(true, std::memory_order_release);
-    }
+    buildOnce(is_tree_built_, [this] {
+      tree_ = std::make_shared<const Tree>(std::move(points_), num_threads);
+    });
     return (tree_);
   }
 
@@ -171,11 +168,12 @@ private:
   void
   buildFlann() const
   {
-    if (is_flann_built_.load(std::memory_order_acquire))
-      return;
-    const std::lock_guard<std::mutex> lock(building_);
-    if (is_flann_built_.load(std::memory_order_relaxed))
-      return;
+    buildOnce(is_flann_built_, [this] { buildFlannAnew(); });
+  }
+
+  void
+  buildFlannAnew() const
+  {
     const auto copy = pcl::make_shared<PointCloud<PointT>>();
     copy->resize(static_cast<std::size_t>(points().cols()));
     for (std::size_t i = 0; i < copy->size(); ++i)
@@ -186,7 +184,20 @@ private:
     self.Base::setInputCloud(copy);
     self.input_ = cloud;
     self.epsilon_ = epsilon;
-    is_flann_built_.store(true, std::memory_order_release);
+  }
+
+  /** Builds unless that is done; other threads that ask wait meanwhile. */
+  template <typename Build>
+  void
+  buildOnce(std::atomic<bool>& is_built, const Build& build) const
+  {
+    if (is_built.load(std::memory_order_acquire))
+      return;
+    const std::lock_guard<std::mutex> lock(building_);
+    if (is_built.load(std::memory_order_relaxed))
+      return;
+    build();
+    is_built.store(true, std::memory_order_release);
   }
 
   /** Whether our tree can answer. */
