@@ -10,6 +10,24 @@ namespace bayesian_icp::io {
 
 namespace po = boost::program_options;
 
+namespace {
+
+/** An argument as a shell takes it back. */
+std::string
+quotedForShell(const std::string& argument)
+{
+  const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                         "0123456789_@%+=:,./-";
+  if (!argument.empty() && argument.find_first_not_of(harmless) == std::string::npos)
+    return argument;
+  std::string quoted = "'";
+  for (const char character : argument)
+    quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  return quoted + '\'';
+}
+
+} // namespace
+
 po::variables_map
 splitCommandLine(int argc,
                  const char* const* argv,
@@ -120,6 +138,15 @@ takeClouds(const po::variables_map& given,
         quoted(clouds[2]));
   source_file = clouds[0];
   target_file = clouds[1];
+}
+
+std::string
+commandOf(int argc, const char* const* argv)
+{
+  std::string command;
+  for (int i = 0; i < argc; ++i)
+    command += (i > 0 ? " " : "") + quotedForShell(argv[i]);
+  return command;
 }
 
 } // namespace bayesian_icp::io

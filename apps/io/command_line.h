@@ -54,6 +54,10 @@ printHelpOrVersion(const boost::program_options::variables_map& given,
                    const std::string& version,
                    const std::function<std::string()>& helpText);
 
+/** \brief A command line as a shell takes it. */
+std::string
+commandOf(int argc, const char* const* argv);
+
 /** \brief Why a text is not a value of its option; follows the option's name. */
 struct BadValue : std::runtime_error {
   using std::runtime_error::runtime_error;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace bayesian_icp::io {
 
@@ -15,5 +16,13 @@ folderOf(const std::string& file);
  * \throws FileError if that fails */
 void
 makeFolder(const std::string& folder);
+
+/** \brief A sequence of scans: the .pcd files of a folder by name, or the files
+ * themselves.
+ * \param[in] arguments one folder, or files in their order
+ * \throws UsageError if these are fewer than two files, FileError if the folder cannot
+ *         be read or has fewer than two */
+std::vector<std::string>
+scansOf(const std::vector<std::string>& arguments);
 
 } // namespace bayesian_icp::io

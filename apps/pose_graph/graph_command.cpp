@@ -1,17 +1,15 @@
 #include "pose_graph/graph_command.h"
 
 #include "io/command_line.h"
+#include "io/folders.h"
 #include "register/settings_options.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <sstream>
-#include <system_error>
 
 namespace bayesian_icp::app {
 
 namespace po = boost::program_options;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -37,25 +35,6 @@ describeOptionsOfGraph(GraphCommand& command)
   all.add(group);
   describeSettings(Settings(), all);
   return all;
-}
-
-/** The .pcd files of a folder by name, or the files themselves. */
-std::vector<std::string>
-scansOf(const std::vector<std::string>& arguments)
-{
-  std::error_code error;
-  if (arguments.size() != 1 || !fs::is_directory(arguments[0], error))
-    return arguments;
-  std::vector<std::string> scans;
-  for (const auto& entry : fs::directory_iterator(arguments[0], error))
-    if (entry.path().extension() == ".pcd")
-      scans.push_back(entry.path().string());
-  if (error)
-    throw io::FileError(arguments[0], error.message());
-  std::sort(scans.begin(), scans.end());
-  if (scans.size() < 2)
-    throw io::FileError(arguments[0], "has fewer than two .pcd files");
-  return scans;
 }
 
 std::pair<int, int>
@@ -119,9 +98,7 @@ parseGraphCommand(int argc, const char* const* argv)
                              [&options] { return helpText(options); }))
     return std::nullopt;
   GraphRequest& request = command.request;
-  request.scans = scansOf(io::optionTexts(given, "scan"));
-  if (request.scans.size() < 2)
-    throw io::UsageError("a folder or at least two scans are needed");
+  request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);
   if (command.output_file.empty())
     throw io::UsageError("--output is needed");

@@ -26,29 +26,6 @@ checkExports(const Request& request)
         "--export without --output excludes --json and --quiet, because it prints");
 }
 
-/** An argument as a shell takes it back. */
-std::string
-quotedForShell(const std::string& argument)
-{
-  const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                         "0123456789_@%+=:,./-";
-  if (!argument.empty() && argument.find_first_not_of(harmless) == std::string::npos)
-    return argument;
-  std::string quoted = "'";
-  for (const char character : argument)
-    quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
-  return quoted + '\'';
-}
-
-std::string
-commandOf(int argc, const char* const* argv)
-{
-  std::string command;
-  for (int i = 0; i < argc; ++i)
-    command += (i > 0 ? " " : "") + quotedForShell(argv[i]);
-  return command;
-}
-
 const char* const about_exact = R"(
 Preset exact needs the truth about the sensor: --sigma, and --effective-points,
 the number of independent measurements in the source.
@@ -135,7 +112,7 @@ parseCommandLine(int argc, const char* const* argv)
                              "pcl_bayesian_icp " BAYESIAN_ICP_VERSION,
                              [&options] { return helpText(options); }))
     return std::nullopt;
-  request.command = commandOf(argc, argv);
+  request.command = io::commandOf(argc, argv);
   io::takeClouds(given, "cloud", request.source_file, request.target_file);
   refuseExportOptionsWithoutExport(given);
   io::takeOptions(given, options);

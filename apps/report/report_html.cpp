@@ -2,7 +2,6 @@
 
 #include "html/inline_svg.h"
 #include "register/report_text.h"
-#include "report/sections.h"
 #include "report/verdict.h"
 
 #include <filesystem>
@@ -57,19 +56,25 @@ titleOf(const Run& run)
 } // namespace
 
 std::string
-reportHtml(const Run& run, const std::string& command)
+sectionsHtml(const std::vector<Section>& sections)
 {
-  const std::vector<Section> sections = reportSections(run, command);
   std::vector<plot::Drawing> drawings;
   for (const Section& section : sections)
     for (const Chart& chart : section.charts)
       drawings.push_back(chart.drawing);
   const std::vector<std::string> svgs = plot::drawSvgs(drawings);
   auto next_svg = svgs.begin();
-  std::string body = verdictHtml(run);
+  std::string body;
   for (const Section& section : sections)
     body += sectionHtml(section, next_svg);
-  return html::pageHtml(titleOf(run), body);
+  return body;
+}
+
+std::string
+reportHtml(const Run& run, const std::string& command)
+{
+  return html::pageHtml(titleOf(run),
+                        verdictHtml(run) + sectionsHtml(reportSections(run, command)));
 }
 
 } // namespace bayesian_icp::app

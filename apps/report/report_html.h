@@ -4,8 +4,10 @@
 #pragma once
 
 #include "register/run.h"
+#include "report/sections.h"
 
 #include <string>
+#include <vector>
 
 namespace bayesian_icp::app {
 
@@ -16,5 +18,10 @@ namespace bayesian_icp::app {
  * \throws plot::GnuplotError if gnuplot cannot draw */
 std::string
 reportHtml(const Run& run, const std::string& command);
+
+/** \brief Parts of such a page, with their charts drawn.
+ * \throws plot::GnuplotError if gnuplot cannot draw */
+std::string
+sectionsHtml(const std::vector<Section>& sections);
 
 } // namespace bayesian_icp::app

@@ -48,6 +48,15 @@ struct BAYESIAN_ICP_EXPORT PoseMeasurement {
 BAYESIAN_ICP_EXPORT PoseMeasurement
 withoutPrior(const PoseEstimate& posterior, const Prior& prior);
 
+/** \brief A Gaussian in all conventions.
+ * \param[in] mean pose [m, rad]
+ * \param[in] covariance in \p convention; the others follow from it to first order
+ * \return status NotRun */
+BAYESIAN_ICP_EXPORT PoseEstimate
+estimateOf(const Vector6d& mean,
+           const Matrix6d& covariance,
+           CovarianceConvention convention);
+
 /** \brief The prior as a Gaussian about its mean, with status Ok. */
 BAYESIAN_ICP_EXPORT PoseEstimate
 estimateOf(const Prior& prior);

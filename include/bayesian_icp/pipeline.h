@@ -71,10 +71,14 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());
 
+/** \brief A typical coordinate of points: the median of their largest |x|, |y|, |z|
+ * [m]. \param[in] points 3 x n, finite; 0 if there are none */
+BAYESIAN_ICP_EXPORT double
+usualCoordinate(const Eigen::Matrix3Xd& points);
+
 /** \brief Check whether 32-bit coordinates were too coarse for the noise. If so, the
  * message says it, and Ok becomes Doubtful.
- * \param[in] coordinate a typical |x|, |y| or |z| of the clouds, the largest of the
- *            three axes [m]
+ * \param[in] coordinate usualCoordinate() of the clouds, the larger one [m]
  * \param[in] options of the estimate; the preset's measurement_sigma is the noise if
  *            \p summary has none
  * \param[in,out] summary of an estimate; it is unchanged if nothing was sampled */

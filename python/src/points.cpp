@@ -1,9 +1,8 @@
 #include "points.h"
 
-#include <pybind11/numpy.h>
+#include <bayesian_icp/pipeline.h>
 
-#include <algorithm>
-#include <vector>
+#include <pybind11/numpy.h>
 
 namespace py = pybind11;
 
@@ -49,19 +48,6 @@ copyOf(const py::array& array)
       {array.shape(0), py::ssize_t(3)}, points.data(), py::none());
   py::module_::import("numpy").attr("copyto")(memory, array);
   return points;
-}
-
-/** Median of the points' largest |x|, |y|, |z| [m]. */
-double
-usualCoordinate(const Eigen::Matrix3Xd& points)
-{
-  const Eigen::RowVectorXd row = points.cwiseAbs().colwise().maxCoeff();
-  std::vector<double> largest(row.data(), row.data() + row.size());
-  if (largest.empty())
-    return 0.0;
-  const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
-  std::nth_element(largest.begin(), middle, largest.end());
-  return *middle;
 }
 
 } // namespace

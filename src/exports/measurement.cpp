@@ -12,39 +12,41 @@ namespace {
 /** Of a prior that is infinitely wide [1/m^2, 1/rad^2]. */
 constexpr double least_precision = 1e-12;
 
-/** Derivative of the error about \p mean in \p convention by the left twist. */
+/** Derivative of the error about \p mean in one convention by that in another. */
 Matrix6d
-derivativeByLeftTwist(const Vector6d& mean, CovarianceConvention convention)
+derivativeBetween(const Vector6d& mean,
+                  CovarianceConvention from,
+                  CovarianceConvention to)
 {
   constexpr double step = 1e-5;
   Matrix6d derivative;
   for (int k = 0; k < 6; ++k) {
-    const Vector6d twist = step * Vector6d::Unit(k);
-    const auto errorOf = [&](const Vector6d& left) {
-      return poseError(
-          poseFromError(left, mean, CovarianceConvention::LeftSE3), mean, convention);
+    const Vector6d error = step * Vector6d::Unit(k);
+    const auto errorOf = [&](const Vector6d& given) {
+      return poseError(poseFromError(given, mean, from), mean, to);
     };
-    derivative.col(k) = (errorOf(twist) - errorOf(-twist)) / (2.0 * step);
+    derivative.col(k) = (errorOf(error) - errorOf(-error)) / (2.0 * step);
   }
   return derivative;
 }
 
-/** The estimate with covariance \p left_se3 about \p mean. */
+} // namespace
+
 PoseEstimate
-estimateOf(const Vector6d& mean, const Matrix6d& left_se3)
+estimateOf(const Vector6d& mean,
+           const Matrix6d& covariance,
+           CovarianceConvention convention)
 {
   PoseEstimate estimate;
   estimate.mean = mean;
-  for (const auto convention : covariance_conventions) {
-    const Matrix6d J = derivativeByLeftTwist(mean, convention);
-    const Matrix6d covariance = J * left_se3 * J.transpose();
-    estimate.covariances[static_cast<std::size_t>(convention)] =
-        0.5 * (covariance + covariance.transpose());
+  for (const auto other : covariance_conventions) {
+    const Matrix6d J = derivativeBetween(mean, convention, other);
+    const Matrix6d converted = J * covariance * J.transpose();
+    estimate.covariances[static_cast<std::size_t>(other)] =
+        0.5 * (converted + converted.transpose());
   }
   return estimate;
 }
-
-} // namespace
 
 PoseMeasurement
 withoutPrior(const PoseEstimate& posterior, const Prior& prior)
@@ -77,7 +79,8 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
   const Status status = measurement.estimate.status;
   measurement.estimate =
       estimateOf(poseFromError(shift, posterior.mean, CovarianceConvention::LeftSE3),
-                 directions * variances.asDiagonal() * directions.transpose());
+                 directions * variances.asDiagonal() * directions.transpose(),
+                 CovarianceConvention::LeftSE3);
   measurement.estimate.status = status;
   return measurement;
 }
@@ -88,7 +91,8 @@ estimateOf(const Prior& prior)
   const Matrix6d precision =
       twistPrior(prior, isometryOf(prior.mean()), Eigen::Vector3d::Zero()).precision +
       least_precision * Matrix6d::Identity();
-  PoseEstimate estimate = estimateOf(prior.mean(), precision.inverse());
+  PoseEstimate estimate =
+      estimateOf(prior.mean(), precision.inverse(), CovarianceConvention::LeftSE3);
   estimate.status = Status::Ok;
   return estimate;
 }

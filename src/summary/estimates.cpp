@@ -64,6 +64,17 @@ estimateOf(ChainSet chain_set)
   return result;
 }
 
+double
+usualCoordinate(const Eigen::Matrix3Xd& points)
+{
+  if (points.cols() == 0)
+    return 0.0;
+  Eigen::RowVectorXd largest = points.cwiseAbs().colwise().maxCoeff();
+  double* const middle = largest.data() + largest.size() / 2;
+  std::nth_element(largest.data(), middle, largest.data() + largest.size());
+  return *middle;
+}
+
 void
 doubtRounding(double coordinate, const Options& options, Summary& summary)
 {

@@ -3,7 +3,8 @@
 set -euo pipefail
 prefix=$1
 tools=(pcl_bayesian_icp pcl_bayesian_icp_batch pcl_bayesian_icp_evaluate
-  pcl_bayesian_icp_pose_graph pcl_bayesian_icp_simulate pcl_bayesian_icp_transform)
+  pcl_bayesian_icp_pose_graph pcl_bayesian_icp_simulate pcl_bayesian_icp_track
+  pcl_bayesian_icp_transform)
 # Built only where VTK is.
 [[ ! -e $prefix/bin/pcl_bayesian_icp_viewer ]] || tools+=(pcl_bayesian_icp_viewer)
 for tool in "${tools[@]}"; do

@@ -1,0 +1,137 @@
+/** \file
+ * \brief pcl_bayesian_icp_track: the trajectory of a sensor from its scans.
+ */
+#include "io/cloud_file.h"
+#include "io/interrupt.h"
+#include "io/line_file.h"
+#include "io/numbers.h"
+#include "io/output_folder.h"
+#include "io/program.h"
+#include "plot/gnuplot.h"
+#include "track/track_command.h"
+#include "track/track_files.h"
+#include "track/track_line.h"
+#include "track/track_report.h"
+#include "track/tracker.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+namespace bayesian_icp::app {
+namespace {
+
+/** Failures have those of io::explainFailure(). */
+enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
+
+void
+tell(const std::string& message)
+{
+  std::cerr << "pcl_bayesian_icp_track: " + message + '\n';
+}
+
+/** The steps that an interrupted track has left. */
+void
+takeLine(const std::string& file,
+         const std::string& line,
+         const TrackRequest& request,
+         Track& track)
+{
+  try {
+    track.take(readTrackLine(line, request, track.size()));
+  }
+  catch (const std::exception& error) {
+    throw io::FileError(file,
+                        "line " + io::textOf(track.size()) + " is not of this track: " +
+                            error.what() + "; take another folder, or remove the file");
+  }
+}
+
+void
+tellStep(const TrackCommand& command, const TrackStep& step)
+{
+  const bool is_good = step.kind == StepKind::Registered;
+  if (is_good && command.is_quiet)
+    return;
+  const std::string file = command.request.scans.at(std::size_t(step.scan));
+  tell(io::textOf(step.scan) + '/' + io::textOf(command.request.scans.size() - 1) +
+       ' ' + std::filesystem::path(file).filename().string() + ": " +
+       toString(step.kind) + " (" + io::fixedTextOf(step.seconds, 2) + " s)" +
+       (is_good ? "" : ", " + step.status + ": " + step.message));
+}
+
+void
+writeFiles(const TrackCommand& command, const Track& track, io::OutputFolder& folder)
+{
+  const auto write = [&folder](const std::string& name, const std::string& text) {
+    folder.add(name, [&text](std::ostream& stream) { stream << text; });
+  };
+  write("trajectory_tum.txt", tumText(track));
+  write("trajectory_covariance.txt", tumCovarianceText(track));
+  write("graph.g2o", g2oText(track));
+  if (plot::hasGnuplot())
+    write("report.html", trackReportHtml(command, track));
+  else {
+    tell("gnuplot is not installed: report.html is left out");
+    folder.leaveOut("report.html");
+  }
+  folder.commit();
+}
+
+int
+makeTrack(const TrackCommand& command)
+{
+  const TrackRequest& request = command.request;
+  if (!command.note.empty() && !command.is_quiet)
+    tell("note: " + command.note);
+  io::silencePcl();
+  io::OutputFolder folder(command.output_folder);
+  Track track(motionModelOf(request),
+              request.times,
+              request.voxel_size > 0.0 ? request.map_scans : 1);
+  const std::string edges =
+      (std::filesystem::path(command.output_folder) / "edges.jsonl").string();
+  const io::LineFile file(
+      edges, [&](const std::string& line) { takeLine(edges, line, request, track); });
+  if (track.size() > 1 && !command.is_quiet)
+    tell(io::textOf(track.size() - 1) + " of " + io::textOf(request.scans.size() - 1) +
+         " steps are in " + edges + " already");
+  io::catchInterrupt();
+  Tracker tracker(request, track);
+  while (track.size() < static_cast<int>(request.scans.size()) &&
+         !io::wasInterrupted()) {
+    const auto step =
+        tracker.registerNext([](const Progress&) { return !io::wasInterrupted(); });
+    if (!step)
+      break;
+    track.take(*step);
+    file.add(trackLine(request, track));
+    tellStep(command, *step);
+  }
+  writeFiles(command, track, folder);
+  if (io::wasInterrupted())
+    return Interrupted;
+  const bool are_all_good = std::all_of(
+      track.steps().begin(), track.steps().end(), [](const TrackStep& step) {
+        return step.kind == StepKind::Registered;
+      });
+  return are_all_good ? Good : NotAllOk;
+}
+
+int
+runTool(int argc, char** argv)
+{
+  const std::optional<TrackCommand> command = parseTrackCommand(argc, argv);
+  return command ? makeTrack(*command) : Good;
+}
+
+} // namespace
+} // namespace bayesian_icp::app
+
+int
+main(int argc, char** argv)
+{
+  using namespace bayesian_icp;
+  return io::runProgram("pcl_bayesian_icp_track",
+                        [&] { return app::runTool(argc, argv); });
+}

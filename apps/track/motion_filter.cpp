@@ -1,0 +1,127 @@
+#include "track/motion_filter.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** Where the errors of the parts are. */
+constexpr Eigen::Index target = 0, scan = 6, velocity = 12;
+
+/** How a twist (v, w) of the right changes when \p T is moved to its left:
+ * T exp(xi) = exp(Ad(T) xi) T. */
+Matrix6d
+adjointOf(const Eigen::Matrix4d& T)
+{
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  Matrix6d adjoint;
+  adjoint << R, crossMatrix(T.topRightCorner<3, 1>()) * R, Eigen::Matrix3d::Zero(), R;
+  return adjoint;
+}
+
+Matrix6d
+adjointOfInverse(const Eigen::Matrix4d& T)
+{
+  return adjointOf(T.inverse());
+}
+
+/** J with exp(xi + d) = exp(xi) exp(J d) to first order in d: the sum of
+ * (-ad(xi))^k / (k + 1)! (Barfoot 2017, eq. 7.77). */
+Matrix6d
+rightJacobian(const Vector6d& xi)
+{
+  constexpr int num_terms = 20;
+  Matrix6d minus_ad = Matrix6d::Zero();
+  minus_ad.topLeftCorner<3, 3>() = minus_ad.bottomRightCorner<3, 3>() =
+      -crossMatrix(xi.tail<3>());
+  minus_ad.topRightCorner<3, 3>() = -crossMatrix(xi.head<3>());
+  Matrix6d term = Matrix6d::Identity(), sum = term;
+  for (int k = 1; k < num_terms; ++k) {
+    term = term * minus_ad / double(k + 1);
+    sum += term;
+  }
+  return sum;
+}
+
+template <typename Matrix>
+Matrix
+symmetric(const Matrix& matrix)
+{
+  return 0.5 * (matrix + matrix.transpose());
+}
+
+} // namespace
+
+MotionFilter::MotionFilter(const MotionModel& model)
+: model_(model)
+, velocity_(model.velocity)
+{
+  covariance_.block<6, 6>(velocity, velocity) = model.velocity_covariance;
+}
+
+void
+MotionFilter::predict(double seconds)
+{
+  Vector6d noise;
+  noise << Eigen::Vector3d::Constant(model_.acceleration * seconds),
+      Eigen::Vector3d::Constant(model_.angular_acceleration * seconds);
+  covariance_.block<6, 6>(velocity, velocity).diagonal() += noise.cwiseAbs2();
+  const Vector6d motion = velocity_ * seconds;
+  const Eigen::Matrix4d step = expSE3(motion);
+  scan_in_target_ = scan_in_target_ * step;
+  State F = State::Identity();
+  F.block<6, 6>(scan, scan) = adjointOfInverse(step);
+  F.block<6, 6>(scan, velocity) = seconds * rightJacobian(motion);
+  covariance_ = symmetric(State(F * covariance_ * F.transpose()));
+}
+
+double
+MotionFilter::update(const GaussianPose& measured)
+{
+  const Vector6d innovation =
+      logSE3(scan_in_target_.inverse() * matrixOf(measured.mean));
+  const Eigen::LDLT<Matrix6d> S(covariance_.block<6, 6>(scan, scan) +
+                                measured.covariance);
+  const Eigen::Matrix<double, 18, 6> cross = covariance_.middleCols<6>(scan);
+  const Eigen::Matrix<double, 18, 6> gain = S.solve(cross.transpose()).transpose();
+  const Eigen::Matrix<double, 18, 1> correction = gain * innovation;
+  target_ = target_ * expSE3(correction.segment<6>(target));
+  scan_in_target_ = scan_in_target_ * expSE3(correction.segment<6>(scan));
+  velocity_ += correction.segment<6>(velocity);
+  // Joseph's form stays positive semi-definite.
+  State rest = State::Identity();
+  rest.middleCols<6>(scan) -= gain;
+  covariance_ = symmetric(State(rest * covariance_ * rest.transpose() +
+                                gain * measured.covariance * gain.transpose()));
+  return innovation.dot(S.solve(innovation));
+}
+
+void
+MotionFilter::makeScanTheTarget()
+{
+  State F = State::Identity();
+  F.block<6, 6>(target, target) = adjointOfInverse(scan_in_target_);
+  F.block<6, 6>(target, scan).setIdentity();
+  F.block<6, 6>(scan, scan).setZero();
+  covariance_ = symmetric(State(F * covariance_ * F.transpose()));
+  target_ = target_ * scan_in_target_;
+  scan_in_target_.setIdentity();
+}
+
+GaussianPose
+MotionFilter::poseInTarget() const
+{
+  return {poseOf(scan_in_target_), covariance_.block<6, 6>(scan, scan)};
+}
+
+GaussianPose
+MotionFilter::pose() const
+{
+  MotionFilter moved = *this;
+  moved.makeScanTheTarget();
+  return {poseOf(moved.target_), moved.covariance_.block<6, 6>(target, target)};
+}
+
+} // namespace bayesian_icp::app

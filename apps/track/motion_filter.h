@@ -1,0 +1,78 @@
+/** \file
+ * \brief A robot that moves with nearly constant velocity, seen by registrations.
+ */
+#pragma once
+
+#include <bayesian_icp/pose.h>
+
+#include <Eigen/Core>
+
+namespace bayesian_icp::app {
+
+/** \brief A pose that is known as well as its covariance says. */
+struct GaussianPose {
+  /** (x, y, z, roll, pitch, yaw) [m, rad]. */
+  Vector6d mean = Vector6d::Zero();
+  /** CovarianceConvention::RightSE3, in the frame of the scan [m, rad]. */
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/** \brief What is known about the motion before the scans are seen. */
+struct MotionModel {
+  /** Twist in the scan's frame at the first scan [m/s, rad/s], and its covariance. */
+  Vector6d velocity = Vector6d::Zero();
+  Matrix6d velocity_covariance = Matrix6d::Zero();
+  /** Standard deviations of the acceleration along and about each axis of the scan, one
+   * draw for each interval between two scans [m/s^2, rad/s^2]. */
+  double acceleration = 1.0;
+  double angular_acceleration = 1.0;
+};
+
+/** \brief An extended Kalman filter whose state is the target's pose in the frame of
+ * scan 0, the scan's pose in the target's frame, and the scan's velocity.
+ *
+ * The target is a former scan. Errors of the three parts are correlated, and the filter
+ * knows how: a motion that no registration sees is as uncertain as the velocity that
+ * was true when it was last seen. Each error is one of the right, T = T_mean exp(xi),
+ * to first order. */
+class MotionFilter {
+public:
+  /** \brief Scan 0 is the target, and the scan too. */
+  explicit MotionFilter(const MotionModel& model);
+
+  /** \brief Go on to the next scan.
+   * \param[in] seconds since the scan before, positive */
+  void
+  predict(double seconds);
+
+  /** \brief Take in what a registration says without its prior.
+   * \param[in] measured the scan in the target's frame
+   * \return normalised innovation squared: chi-square of as many degrees of freedom as
+   *         the registration sees, if the model and both covariances are right */
+  double
+  update(const GaussianPose& measured);
+
+  /** \brief From now on the scan is the target. */
+  void
+  makeScanTheTarget();
+
+  /** \brief The scan in the target's frame. */
+  GaussianPose
+  poseInTarget() const;
+
+  /** \brief The scan in the frame of scan 0. */
+  GaussianPose
+  pose() const;
+
+private:
+  using State = Eigen::Matrix<double, 18, 18>;
+
+  MotionModel model_;
+  Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();
+  Eigen::Matrix4d scan_in_target_ = Eigen::Matrix4d::Identity();
+  Vector6d velocity_;
+  /** Of the errors of target_, scan_in_target_ and velocity_. */
+  State covariance_ = State::Zero();
+};
+
+} // namespace bayesian_icp::app

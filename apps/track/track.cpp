@@ -1,0 +1,84 @@
+#include "track/track.h"
+
+#include <Eigen/LU>
+
+#include <array>
+#include <limits>
+#include <stdexcept>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+constexpr std::array<const char*, 4> step_kinds = {
+    "registered", "widened", "predicted", "split"};
+
+} // namespace
+
+const char*
+toString(StepKind kind)
+{
+  return step_kinds[static_cast<std::size_t>(kind)];
+}
+
+StepKind
+readStepKind(const std::string& name)
+{
+  for (std::size_t k = 0; k < step_kinds.size(); ++k)
+    if (name == step_kinds[k])
+      return static_cast<StepKind>(k);
+  throw std::invalid_argument(name + " is no kind of step");
+}
+
+Track::Track(const MotionModel& model, std::vector<double> times, int map_scans)
+: times_(std::move(times))
+, map_scans_(map_scans)
+, filter_(model)
+, target_scans_{{0, Eigen::Matrix4d::Identity()}}
+, poses_(1)
+{}
+
+GaussianPose
+Track::prediction() const
+{
+  MotionFilter next = filter_;
+  const auto k = poses_.size();
+  next.predict(times_.at(k) - times_.at(k - 1));
+  return next.poseInTarget();
+}
+
+void
+Track::take(const TrackStep& step)
+{
+  const auto k = poses_.size();
+  filter_.predict(times_.at(k) - times_.at(k - 1));
+  const bool is_registered =
+      step.kind == StepKind::Registered || step.kind == StepKind::Widened;
+  innovations_.push_back(is_registered ? filter_.update(step.edge)
+                                       : std::numeric_limits<double>::quiet_NaN());
+  num_failures_ = is_registered ? 0 : num_failures_ + 1;
+  if (is_registered)
+    registered_.emplace_back(step.scan, matrixOf(filter_.poseInTarget().mean));
+  steps_.push_back(step);
+  poses_.push_back(filter_.pose());
+  if (step.kind == StepKind::Split ||
+      static_cast<int>(registered_.size()) == map_scans_)
+    changeTarget(step.kind);
+}
+
+void
+Track::changeTarget(StepKind kind)
+{
+  if (kind == StepKind::Split)
+    registered_.assign(1, {size() - 1, matrixOf(filter_.poseInTarget().mean)});
+  const Eigen::Matrix4d to_new_target = registered_.back().second.inverse();
+  target_ = registered_.back().first;
+  target_scans_.clear();
+  for (const auto& [scan, T_target_scan] : registered_)
+    target_scans_.emplace_back(scan, to_new_target * T_target_scan);
+  registered_.clear();
+  num_failures_ = 0;
+  filter_.makeScanTheTarget();
+}
+
+} // namespace bayesian_icp::app

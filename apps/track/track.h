@@ -1,0 +1,150 @@
+/** \file
+ * \brief What is known of a sequence of scans after some of them have been registered.
+ */
+#pragma once
+
+#include "track/motion_filter.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+/** \brief What became of a scan. */
+enum class StepKind {
+  /** Registered; status Ok. */
+  Registered,
+  /** Registered with status Doubtful: variances are multiplied by doubt_factor. */
+  Widened,
+  /** Not registered: its pose is what the motion before makes likely. */
+  Predicted,
+  /** As Predicted; but it is the last of several, so that it becomes the target. */
+  Split
+};
+
+/** \brief Short name: "registered", "widened", "predicted", "split". */
+const char*
+toString(StepKind kind);
+
+/** \throws std::invalid_argument if \p name is none of a StepKind */
+StepKind
+readStepKind(const std::string& name);
+
+/** \brief Factor of the variances of a registration with status Doubtful: its standard
+ * deviations become three times as large. */
+constexpr double doubt_factor = 9.0;
+
+/** \brief After so many scans in a row that could not be registered, the last one is
+ * the new target. */
+constexpr int max_failures = 3;
+
+/** \brief One scan and its edge. Scans are numbered from 0. */
+struct TrackStep {
+  int scan = 0;
+  /** The scan in whose frame the edge is. */
+  int target = 0;
+  StepKind kind = StepKind::Predicted;
+  /** Short name of the registration's Status, and the status in words. */
+  std::string status;
+  std::string message;
+  /** The scan in the target's frame: what the clouds say without the prior, or the
+   * prediction. */
+  GaussianPose edge;
+  /** Directions of the edge that the clouds do not see, 0 to 6. */
+  int num_unmeasured = 6;
+  /** For reading the cloud and registering it. */
+  double seconds = 0.0;
+};
+
+/** \brief The steps so far, and what follows from them. It never reads a cloud, so that
+ * a track that was interrupted goes on from its steps. */
+class Track {
+public:
+  /** \param[in] times of all scans [s], increasing
+   * \param[in] map_scans number of scans that make a target, at least 1 */
+  Track(const MotionModel& model, std::vector<double> times, int map_scans);
+
+  /** \brief Number of scans that have a pose; scan 0 always has. */
+  int
+  size() const
+  {
+    return static_cast<int>(poses_.size());
+  }
+
+  /** \brief Where the next scan is likely to be in the target's frame. */
+  GaussianPose
+  prediction() const;
+
+  /** \brief Go on to the next scan; \p step is about it. */
+  void
+  take(const TrackStep& step);
+
+  /** \brief The scan in whose frame the target is. */
+  int
+  target() const
+  {
+    return target_;
+  }
+
+  /** \brief The scans of which the target consists, and their poses T_target_scan. */
+  const std::vector<std::pair<int, Eigen::Matrix4d>>&
+  targetScans() const
+  {
+    return target_scans_;
+  }
+
+  /** \brief Scans in a row that could not be registered. */
+  int
+  numFailures() const
+  {
+    return num_failures_;
+  }
+
+  /** \brief All steps, from that of scan 1 on. */
+  const std::vector<TrackStep>&
+  steps() const
+  {
+    return steps_;
+  }
+
+  /** \brief Normalised innovation squared of each step; NaN if it was not registered.
+   */
+  const std::vector<double>&
+  innovations() const
+  {
+    return innovations_;
+  }
+
+  /** \brief Poses in the frame of scan 0, each as it was known right after its step. */
+  const std::vector<GaussianPose>&
+  poses() const
+  {
+    return poses_;
+  }
+
+  /** \brief Times of all scans [s]. */
+  const std::vector<double>&
+  times() const
+  {
+    return times_;
+  }
+
+private:
+  void
+  changeTarget(StepKind kind);
+
+  std::vector<double> times_;
+  int map_scans_;
+  MotionFilter filter_;
+  int target_ = 0;
+  std::vector<std::pair<int, Eigen::Matrix4d>> target_scans_;
+  /** Scans that were registered to this target, and their poses in its frame. */
+  std::vector<std::pair<int, Eigen::Matrix4d>> registered_;
+  int num_failures_ = 0;
+  std::vector<TrackStep> steps_;
+  std::vector<double> innovations_;
+  std::vector<GaussianPose> poses_;
+};
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,212 @@
+#include "track/track_command.h"
+
+#include "io/command_line.h"
+#include "io/folders.h"
+#include "io/input_file.h"
+#include "register/settings_options.h"
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+namespace bayesian_icp::app {
+
+namespace po = boost::program_options;
+
+namespace {
+
+/** Latest time [s]: those of trajectories are counted in ns, and seconds in an int32.
+ */
+constexpr double time_limit = 2147483648.0;
+constexpr std::uint64_t max_size_of_times = 100'000'000;
+
+/** What decides the times, as it is given. */
+struct TimeOptions {
+  double period = 0.1;
+  std::string source;
+};
+
+po::options_description
+describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
+{
+  TrackRequest& request = command.request;
+  po::options_description group("General");
+  // clang-format off
+  group.add_options()
+    ("help,h", "Show this text.")
+    ("version", "Show the version.")
+    ("output,o", io::fileName("FOLDER", command.output_folder),
+     "Folder for the results. If it has those of the same track, interrupted, the track "
+     "goes on. (required)")
+    ("quiet", io::flag(command.is_quiet), "Print problems only.");
+  po::options_description motion("Motion");
+  motion.add_options()
+    ("period", io::number("S", times.period),
+     "Time from one scan to the next (s). (default 0.1)")
+    ("times", io::text("names|FILE", times.source),
+     "When the scans were taken (s): names, the names of their files without the "
+     "extension are numbers; or a file with one number per line.")
+    ("acceleration", io::number("A", request.acceleration),
+     "Standard deviation of the acceleration along each axis of the sensor (m/s^2). "
+     "(default 5)")
+    ("angular-acceleration", io::number("A", request.angular_acceleration),
+     "Standard deviation of the acceleration about each axis (rad/s^2). (default 5)");
+  po::options_description map("Local map");
+  map.add_options()
+    ("map", io::number("M", request.voxel_size),
+     "Register scans to a map of the last scans, with one point in each cube of this "
+     "width (m). Without it, each scan is registered to the one before it.")
+    ("map-scans", io::number("N", request.map_scans),
+     "Number of scans in a map; it is made anew after as many scans. (default 5)");
+  // clang-format on
+  po::options_description all;
+  all.add(group).add(motion).add(map);
+  describeSettings(Settings(), all);
+  return all;
+}
+
+double
+timeOf(std::string_view text, const std::string& where)
+{
+  double time = 0.0;
+  if (!io::readNumber(text, time) || !(time >= 0.0 && time < time_limit))
+    throw io::FileError(
+        where, io::quoted(text) + " is not a time: a number from 0 to below 2^31 (s)");
+  return time;
+}
+
+std::vector<double>
+readTimes(const TimeOptions& options, const std::vector<std::string>& scans)
+{
+  std::vector<double> times;
+  if (options.source == "names")
+    for (const std::string& scan : scans)
+      times.push_back(timeOf(std::filesystem::path(scan).stem().string(), scan));
+  else if (!options.source.empty())
+    for (const auto word : io::words(io::readText(options.source, max_size_of_times)))
+      times.push_back(timeOf(word, options.source));
+  else
+    for (std::size_t k = 0; k < scans.size(); ++k)
+      times.push_back(static_cast<double>(k) * options.period);
+  const std::string where = options.source.empty()      ? "--period"
+                            : options.source == "names" ? "--times names"
+                                                        : options.source;
+  if (times.size() != scans.size())
+    throw io::FileError(where,
+                        "has " + io::textOf(times.size()) + " times for " +
+                            io::textOf(scans.size()) + " scans");
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (!(times[k] > times[k - 1]))
+      throw io::FileError(where,
+                          "the time of scan " + io::textOf(k) + ", " +
+                              io::textOf(times[k]) + " s, is not after that of scan " +
+                              io::textOf(k - 1));
+  return times;
+}
+
+void
+requirePositive(double value, const std::string& option)
+{
+  if (!(value > 0.0) || !std::isfinite(value))
+    throw io::UsageError("--" + option + " is " + io::textOf(value) +
+                         ", but must be positive");
+}
+
+void
+check(const po::variables_map& given, const TrackCommand& command)
+{
+  const TrackRequest& request = command.request;
+  if (command.output_folder.empty())
+    throw io::UsageError("--output is needed");
+  requirePositive(request.acceleration, "acceleration");
+  requirePositive(request.angular_acceleration, "angular-acceleration");
+  if (given.count("map") > 0)
+    requirePositive(request.voxel_size, "map");
+  else if (given.count("map-scans") > 0)
+    throw io::UsageError("--map-scans needs --map");
+  if (request.map_scans < 1)
+    throw io::UsageError("--map-scans is " + io::textOf(request.map_scans) +
+                         ", but must be at least 1");
+  const PriorOptions& prior = request.settings.options.prior;
+  if (!prior.variance.allFinite())
+    throw io::UsageError("--prior-variance must be finite: it is how well the first "
+                         "motion is known");
+  if (prior.frame == PriorFrame::SourceCentroid)
+    throw io::UsageError("--prior-frame source-centroid: the motion of a track is that "
+                         "of the sensor, whose frame is the origin");
+  if (request.settings.is_normalized || request.settings.are_lengths_scaled)
+    throw io::UsageError("a track is in metres: its clouds cannot be normalized");
+}
+
+std::string
+helpText(const po::options_description& options)
+{
+  std::ostringstream help;
+  help << R"(Usage: pcl_bayesian_icp_track FOLDER -o FOLDER [options]
+       pcl_bayesian_icp_track SCAN SCAN ... -o FOLDER [options]
+
+Registers each scan to the one before it, or to a local map (--map), and writes
+the trajectory of the sensor with its covariance. The scans of a folder are its
+.pcd files, sorted by name; their points are in the frame of the sensor, in m.
+
+The prior of each registration is what the motion before makes likely: constant
+velocity, as uncertain as the registrations before and --acceleration say.
+--guess and --prior-variance describe the first motion, from scan 0 to scan 1.
+
+A scan that is registered with status doubtful gets three times its standard
+deviations ("widened"). A scan that cannot be registered, or only in another
+basin, gets the predicted pose ("predicted"), and the next one is registered to
+the same target; after three of them in a row the last one becomes the target
+("split"). Directions that the clouds do not see are left to the prediction.
+
+FOLDER gets
+  edges.jsonl                one line per scan: its edge without the prior, its
+                             status, and its pose
+  trajectory_tum.txt         time, position (m) and quaternion of each scan in
+                             the frame of scan 0
+  trajectory_covariance.txt  the 6x6 covariances, in ROS's convention (m, rad)
+  graph.g2o                  the edges without the prior, as a pose graph
+  report.html                the trajectory in pictures (needs gnuplot)
+
+For more, see docs/track.md.
+)" << options
+       << R"(
+Exit codes:
+  0    all scans are registered, with status ok
+  1    some are not; all files have been written
+  2    wrong usage
+  3    a file cannot be used or written
+  130  interrupted (Ctrl-C or SIGTERM); the files have all scans until then, and
+       the same command goes on
+
+Example:
+  pcl_bayesian_icp_track scans -o track --period 0.1 --guess 0.5,0,0,0,0,0
+)";
+  return help.str();
+}
+
+} // namespace
+
+std::optional<TrackCommand>
+parseTrackCommand(int argc, const char* const* argv)
+{
+  TrackCommand command;
+  TimeOptions times;
+  const po::options_description options = describeOptionsOfTrack(command, times);
+  const po::variables_map given = io::splitCommandLine(argc, argv, options, "scan");
+  if (io::printHelpOrVersion(given,
+                             "pcl_bayesian_icp_track " BAYESIAN_ICP_VERSION,
+                             [&options] { return helpText(options); }))
+    return std::nullopt;
+  TrackRequest& request = command.request;
+  request.scans = io::scansOf(io::optionTexts(given, "scan"));
+  io::takeOptions(given, options);
+  requirePositive(times.period, "period");
+  request.settings = settingsFrom(given, Settings(), command.note);
+  check(given, command);
+  request.times = readTimes(times, request.scans);
+  command.command = io::commandOf(argc, argv);
+  return command;
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,65 @@
+#include "track/track_files.h"
+
+#include <bayesian_icp/exports.h>
+#include <bayesian_icp/measurement.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+PoseEstimate
+estimateOf(const GaussianPose& pose)
+{
+  PoseEstimate estimate = bayesian_icp::estimateOf(
+      pose.mean, pose.covariance, CovarianceConvention::RightSE3);
+  estimate.status = Status::Ok;
+  return estimate;
+}
+
+template <typename LineOf>
+std::string
+linesOf(const Track& track, const LineOf& lineOf)
+{
+  std::string text;
+  for (std::size_t k = 0; k < track.poses().size(); ++k) {
+    ExportOptions options;
+    options.timestamp_ns = std::llround(track.times()[k] * 1e9);
+    text += lineOf(estimateOf(track.poses()[k]), options);
+  }
+  return text;
+}
+
+} // namespace
+
+std::string
+tumText(const Track& track)
+{
+  return linesOf(track, tumLine);
+}
+
+std::string
+tumCovarianceText(const Track& track)
+{
+  return linesOf(track, tumCovarianceLine);
+}
+
+std::string
+g2oText(const Track& track)
+{
+  std::string text;
+  for (std::size_t k = 0; k < track.poses().size(); ++k)
+    text += g2oVertex(matrixOf(track.poses()[k].mean), static_cast<int>(k));
+  text += "FIX 0\n";
+  for (const TrackStep& step : track.steps()) {
+    ExportOptions options;
+    options.target_vertex = step.target;
+    options.source_vertex = step.scan;
+    text += g2oEdge(estimateOf(step.edge), options);
+  }
+  return text;
+}
+
+} // namespace bayesian_icp::app

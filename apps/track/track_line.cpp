@@ -1,0 +1,106 @@
+#include "track/track_line.h"
+
+#include "io/coordinates.h"
+#include "io/text_hash.h"
+#include "register/json_values.h"
+#include "register/posterior_json.h"
+#include "register/settings_json.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+ordered_json
+poseJson(const GaussianPose& pose)
+{
+  return {
+      {"mean", meanJson(pose.mean)},
+      {"covariance", covarianceJson(CovarianceConvention::RightSE3, pose.covariance)}};
+}
+
+GaussianPose
+readPose(const json& value)
+{
+  GaussianPose pose;
+  for (std::size_t k = 0; k < 6; ++k)
+    pose.mean[static_cast<Eigen::Index>(k)] =
+        value.at("mean").at(coordinateKey(k)).get<double>();
+  const json& matrix = value.at("covariance").at("matrix");
+  for (Eigen::Index row = 0; row < 6; ++row)
+    for (Eigen::Index column = 0; column < 6; ++column)
+      pose.covariance(row, column) =
+          matrix.at(std::size_t(row)).at(std::size_t(column)).get<double>();
+  return pose;
+}
+
+} // namespace
+
+std::string
+settingsIdOf(const TrackRequest& request)
+{
+  const ordered_json all = {jsonOf(request.settings),
+                            request.acceleration,
+                            request.angular_acceleration,
+                            request.voxel_size,
+                            request.map_scans,
+                            request.scans.front(),
+                            request.times.front(),
+                            BAYESIAN_ICP_VERSION};
+  return io::textOfHash(
+      io::hashOf(all.dump(-1, ' ', false, ordered_json::error_handler_t::replace)));
+}
+
+std::string
+trackLine(const TrackRequest& request, const Track& track)
+{
+  const TrackStep& step = track.steps().back();
+  const auto k = static_cast<std::size_t>(step.scan);
+  std::string message = step.message;
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  const ordered_json line = {{"scan", step.scan},
+                             {"file", request.scans.at(k)},
+                             {"time_s", request.times.at(k)},
+                             {"target", step.target},
+                             {"kind", toString(step.kind)},
+                             {"status", step.status},
+                             {"message", message},
+                             {"edge", poseJson(step.edge)},
+                             {"num_unmeasured", step.num_unmeasured},
+                             {"innovation", jsonOf(track.innovations().back())},
+                             {"pose_in_scan_0", poseJson(track.poses().back())},
+                             {"seconds", step.seconds},
+                             {"settings_id", settingsIdOf(request)}};
+  // Names of files need not be UTF-8.
+  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+TrackStep
+readTrackLine(const std::string& line, const TrackRequest& request, int scan)
+{
+  const auto json = nlohmann::json::parse(line);
+  const auto k = static_cast<std::size_t>(scan);
+  if (json.at("settings_id") != settingsIdOf(request))
+    throw std::runtime_error("it was made with other settings or another version");
+  if (json.at("scan") != scan)
+    throw std::runtime_error("it is not about scan " + std::to_string(scan));
+  if (k >= request.scans.size() || json.at("time_s") != request.times[k])
+    throw std::runtime_error("its scan is none of these, or has another time");
+  TrackStep step;
+  step.scan = scan;
+  step.target = json.at("target");
+  step.kind = readStepKind(json.at("kind"));
+  step.status = json.at("status");
+  step.message = json.at("message");
+  step.edge = readPose(json.at("edge"));
+  step.num_unmeasured = json.at("num_unmeasured");
+  step.seconds = json.at("seconds");
+  return step;
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,193 @@
+"""pcl_bayesian_icp_track: a camera that moves about a table."""
+
+import os
+import unittest
+
+import cloud_files
+from cli_tool import strict_json
+from trajectories import (
+    CHI2_HIGH,
+    TrajectoryTest,
+    call,
+    composed,
+    g2o_error,
+    inverse,
+    inverted,
+    quadratic,
+    read_graph,
+)
+
+TRACK = os.environ["PCL_BAYESIAN_ICP_TRACK"]
+EYES = ["0,-1.2,0.7", "0.05,-1.19,0.71", "0.1,-1.18,0.71", "0.15,-1.16,0.7", "0.2,-1.14,0.7"]
+NAMES = {
+    "edges.jsonl",
+    "graph.g2o",
+    "report.html",
+    "trajectory_covariance.txt",
+    "trajectory_tum.txt",
+}
+
+
+class TrackTest(TrajectoryTest):
+    program = "pcl_bayesian_icp_track"
+
+    def setUp(self):
+        super().setUp()
+        self.track = self.folder / "track"
+
+    def run_track(self, *words):
+        return call(TRACK, *words, "-o", self.track)
+
+    def lines(self):
+        return [strict_json(line) for line in (self.track / "edges.jsonl").read_text().splitlines()]
+
+    def rows(self, name):
+        return [
+            list(map(float, line.split())) for line in (self.track / name).read_text().splitlines()
+        ]
+
+
+class TrackOfSimulatedScans(TrackTest):
+    def check_truth(self, from_world):
+        truth = [composed(from_world[0], inverted(pose)) for pose in from_world]
+        vertices, edges = read_graph(self.track / "graph.g2o")
+        self.assertEqual(sorted(vertices), [0, 1, 2, 3, 4])
+        for (i, j), (pose, information) in edges.items():
+            true = composed(from_world[i], inverted(from_world[j]))
+            self.assertLess(quadratic(g2o_error(pose, true), information), CHI2_HIGH[6], (i, j))
+        for k, line in enumerate(self.lines(), 1):
+            self.assertEqual(line["scan"], k)
+            # Rotations of right_se3 are whole angles, those of g2o half ones.
+            scale = [1.0, 1.0, 1.0, 0.5, 0.5, 0.5]
+            matrix = line["pose_in_scan_0"]["covariance"]["matrix"]
+            half = [[scale[i] * matrix[i][j] * scale[j] for j in range(6)] for i in range(6)]
+            error = g2o_error(vertices[k], truth[k])
+            self.assertLess(quadratic(error, inverse(half)), CHI2_HIGH[6], k)
+            self.assertLess(max(map(abs, error)), 0.01)
+        return vertices
+
+    def test_scan_to_scan(self):
+        scans, from_world = self.trajectory(EYES)
+        result = self.run_track(scans, "--period", 0.2)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertEqual({path.name for path in self.track.iterdir()}, NAMES)
+        vertices = self.check_truth(from_world)
+        self.assertEqual([line["target"] for line in self.lines()], [0, 1, 2, 3])
+        rows = self.rows("trajectory_tum.txt")
+        self.assertEqual([row[0] for row in rows], [0.0, 0.2, 0.4, 0.6, 0.8])
+        for k, row in enumerate(rows):
+            error = g2o_error(vertices[k], (row[1:4], tuple(row[4:8])))
+            self.assertLess(max(map(abs, error)), 1e-12)
+        covariances = self.rows("trajectory_covariance.txt")
+        self.assertEqual({len(row) for row in covariances}, {37})
+        traces = [sum(row[1 + 7 * i] for i in range(3)) for row in covariances]
+        self.assertEqual(traces, sorted(traces))
+        self.assertEqual(traces[0], 0.0)
+        report = (self.track / "report.html").read_text()
+        self.assertIn("Where was the sensor?", report)
+        self.assertTrue(report.endswith("</html>\n"))
+
+    def test_map(self):
+        scans, from_world = self.trajectory(EYES)
+        result = self.run_track(scans, "--map", 0.005, "--map-scans", 2)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.check_truth(from_world)
+        self.assertEqual([line["target"] for line in self.lines()], [0, 0, 2, 2])
+
+    def test_goes_on(self):
+        scans, _ = self.trajectory(EYES)
+        self.assertIn(self.run_track(scans).returncode, (0, 1))
+        expected = {path.name: path.read_text() for path in self.track.iterdir()}
+        lines = expected["edges.jsonl"].splitlines(keepends=True)
+        # Killed while it wrote the third line.
+        (self.track / "edges.jsonl").write_text("".join(lines[:2]) + lines[2][:100])
+        result = self.run_track(scans)
+        self.assertIn("2 of 4 steps are in", result.stderr)
+        for name, text in expected.items():
+            if name == "edges.jsonl":
+                for old, new in zip(lines, self.lines()):
+                    old = strict_json(old)
+                    self.assertEqual(old.pop("seconds") > 0, new.pop("seconds") > 0)
+                    self.assertEqual(old, new)
+            else:
+                self.assertEqual((self.track / name).read_text(), text, name)
+        result = self.run_track(scans, "--acceleration", 1)
+        self.assert_refused(3, result, "edges.jsonl", "other settings")
+
+
+class TrackWithBadScans(TrackTest):
+    def test_are_predicted_and_said(self):
+        scans, from_world = self.trajectory(EYES)
+        far = [(x + 50, y, z) for x, y, z in cloud_files.box_surface(seed=3)]
+        (scans / "scan_2.pcd").write_bytes(cloud_files.pcd_bytes(far))
+        (scans / "scan_3.pcd").write_text("no cloud")
+        result = self.run_track(scans, "--quiet")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stderr, r"2/4 scan_2.pcd: predicted .*, [a-z_]+: .*")
+        self.assertRegex(result.stderr, r"3/4 scan_3.pcd: predicted .*, error: .*scan_3.pcd: ")
+        kinds = [line["kind"] for line in self.lines()]
+        self.assertEqual(kinds[1:3], ["predicted", "predicted"])
+        self.assertIn(kinds[3], ("registered", "widened"))
+        self.assertEqual([line["target"] for line in self.lines()], [0, 1, 1, 1])
+        vertices, edges = read_graph(self.track / "graph.g2o")
+        self.assertEqual(sorted(edges), [(0, 1), (1, 2), (1, 3), (1, 4)])
+        true = composed(from_world[0], inverted(from_world[4]))
+        self.assertLess(max(map(abs, g2o_error(vertices[4], true))), 0.01)
+        self.assertIn("scan_3.pcd", (self.track / "report.html").read_text())
+
+    def test_split(self):
+        scans, _ = self.trajectory(EYES)
+        far = [(x + 50, y, z) for x, y, z in cloud_files.box_surface(seed=3)]
+        for k in (1, 2, 3):
+            (scans / f"scan_{k}.pcd").write_bytes(cloud_files.pcd_bytes(far))
+        self.assertEqual(self.run_track(scans).returncode, 1)
+        kinds = [line["kind"] for line in self.lines()]
+        self.assertEqual(kinds[:3], ["predicted", "predicted", "split"])
+        self.assertEqual([line["target"] for line in self.lines()], [0, 0, 0, 3])
+
+    def test_first_scan(self):
+        source, target = self.small_pair()
+        gone = self.folder / "gone.pcd"
+        self.assert_refused(3, self.run_track(gone, source, target), "gone.pcd", "no such file")
+
+
+class TrackUsage(TrackTest):
+    def test_times_from_names(self):
+        source, target = self.small_pair()
+        first = target.rename(self.folder / "17.25.pcd")
+        second = source.rename(self.folder / "17.5.pcd")
+        result = self.run_track(first, second, "--times", "names")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertEqual([row[0] for row in self.rows("trajectory_tum.txt")], [17.25, 17.5])
+        times = self.file("times.txt", "3\n4.5\n")
+        self.track = self.folder / "another"
+        self.assertIn(self.run_track(first, second, "--times", times).returncode, (0, 1))
+        self.assertEqual([row[0] for row in self.rows("trajectory_tum.txt")], [3.0, 4.5])
+
+    def test_refused(self):
+        source, target = self.small_pair()
+        two = [target, source]
+        (self.folder / "empty").mkdir()
+        for code, words, part in (
+            (2, [target], "at least two scans"),
+            (2, [*two, "--acceleration", 0], "--acceleration is 0"),
+            (2, [*two, "--period", "-1"], "--period is -1"),
+            (2, [*two, "--map", 0], "--map is 0"),
+            (2, [*two, "--map-scans", 3], "--map-scans needs --map"),
+            (2, [*two, "--map", 0.1, "--map-scans", 0], "--map-scans is 0"),
+            (2, [*two, "--prior-variance", "inf"], "must be finite"),
+            (2, [*two, "--prior-frame", "source-centroid"], "--prior-frame"),
+            (2, [*two, "--sigma", "1"], "--sigma"),
+            (3, [*two, "--times", "names"], "'target' is not a time"),
+            (3, [*two, "--times", self.file("short.txt", "1\n")], "has 1 times for 2 scans"),
+            (3, [*two, "--times", self.file("back.txt", "2 1")], "is not after"),
+            (3, [self.folder / "empty"], "fewer than two"),
+        ):
+            with self.subTest(words=words):
+                self.assert_refused(code, self.run_track(*words), part)
+        self.assert_refused(2, call(TRACK, *two), "--output")
+        self.assert_refused(3, call(TRACK, *two, "-o", "/proc/none/t"), "/proc/none")
+
+
+if __name__ == "__main__":
+    unittest.main()

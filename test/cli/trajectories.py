@@ -1,0 +1,118 @@
+"""Poses of a camera that moves about a table, and the graphs that are made of its scans."""
+
+import json
+import math
+import os
+import subprocess
+
+from cli_tool import ToolTest
+from robot_formats import conjugate, multiplied, read_g2o_edge, turned
+
+SIMULATE = os.environ["PCL_BAYESIAN_ICP_SIMULATE"]
+
+# 99.9 % and 0.1 % quantiles of chi-square, by degrees of freedom (R 4.2, qchisq).
+CHI2_HIGH = {6: 22.458, 18: 42.312}
+CHI2_LOW = {18: 4.905}
+IDENTITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+def call(program, *arguments):
+    command = [program, *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+
+
+# A pose is (position, quaternion x y z w).
+
+
+def composed(a, b):
+    position = [x + y for x, y in zip(a[0], turned(a[1], b[0]))]
+    return position, multiplied(a[1], b[1])
+
+
+def inverted(a):
+    back = conjugate(a[1])
+    return [-x for x in turned(back, a[0])], back
+
+
+def chained(poses):
+    result = IDENTITY
+    for pose in poses:
+        result = composed(result, pose)
+    return result
+
+
+def g2o_error(measured, true):
+    position, q = composed(inverted(measured), true)
+    sign = math.copysign(1.0, q[3])
+    return [*position, *(sign * c for c in q[:3])]
+
+
+def small_pose(error):
+    vector = error[3:]
+    return error[:3], (*vector, math.sqrt(1.0 - sum(c * c for c in vector)))
+
+
+def pose_of_matrix(m):
+    w = math.sqrt(1 + m[0][0] + m[1][1] + m[2][2]) / 2
+    q = [(m[2][1] - m[1][2]), (m[0][2] - m[2][0]), (m[1][0] - m[0][1])]
+    return [m[k][3] for k in range(3)], (*(c / (4 * w) for c in q), w)
+
+
+def solved(matrix, columns):
+    """X with matrix X = columns, by Gauss-Jordan with pivots."""
+    size = len(matrix)
+    rows = [[*matrix[i], *columns[i]] for i in range(size)]
+    for k in range(size):
+        pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        rows[k] = [x / rows[k][k] for x in rows[k]]
+        for i in range(size):
+            if i != k:
+                rows[i] = [x - rows[i][k] * y for x, y in zip(rows[i], rows[k])]
+    return [row[size:] for row in rows]
+
+
+def inverse(matrix):
+    return solved(matrix, [[float(i == k) for k in range(6)] for i in range(6)])
+
+
+def quadratic(error, matrix):
+    return sum(error[i] * matrix[i][k] * error[k] for i in range(6) for k in range(6))
+
+
+def read_graph(path):
+    """({id: pose}, {(i, j): (pose, information)})."""
+    vertices, edges = {}, {}
+    for line in path.read_text().splitlines():
+        words = line.split()
+        if words[0] == "VERTEX_SE3:QUAT":
+            numbers = list(map(float, words[2:]))
+            assert len(numbers) == 7
+            vertices[int(words[1])] = (numbers[:3], tuple(numbers[3:]))
+        elif words[0] == "EDGE_SE3:QUAT":
+            i, j, position, quaternion, information = read_g2o_edge(line)
+            edges[i, j] = ((position, tuple(quaternion)), information)
+        else:
+            assert words == ["FIX", "0"], line
+    return vertices, edges
+
+
+class TrajectoryTest(ToolTest):
+    """Scans whose poses are known."""
+
+    def trajectory(self, eyes):
+        """Scans of the table from a moving camera; (folder, maps from the world)."""
+        scans = self.folder / "scans"
+        scans.mkdir()
+        from_world = []
+        for k, eye in enumerate(eyes):
+            output = self.folder / f"view{k}"
+            view = ["--source-eye", eye, "--source-look-at", "0,0,0", "--seed", k + 1]
+            view += ["--frame", "sensor", "--offset", "0,0,0,0,0,0"]
+            size = ["--width", 160, "--height", 120]
+            result = call(SIMULATE, "--scene", "table", *view, *size, "-o", output)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            (output / "source.pcd").rename(scans / f"scan_{k}.pcd")
+            scene = json.loads((output / "scene.json").read_text())
+            from_world.append(pose_of_matrix(scene["T_source_world"]))
+        return scans, from_world

@@ -1,0 +1,144 @@
+// The filter of a track against many tracks whose truth is drawn from its model.
+#include "support/test_support.h"
+#include "track/motion_filter.h"
+
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <cmath>
+
+using namespace bayesian_icp;
+using app::GaussianPose;
+using app::MotionFilter;
+using app::MotionModel;
+
+namespace {
+
+constexpr int num_runs = 2000, num_steps = 12;
+constexpr double seconds = 0.1;
+
+/** Small enough for the first order, and different in all directions. */
+MotionModel
+model()
+{
+  MotionModel model;
+  model.velocity << 5.0, 0.5, -0.2, 0.1, -0.2, 0.8;
+  Vector6d sd;
+  sd << 0.3, 0.1, 0.1, 0.02, 0.02, 0.05;
+  model.velocity_covariance = sd.cwiseAbs2().asDiagonal();
+  model.acceleration = 0.5;
+  model.angular_acceleration = 0.1;
+  return model;
+}
+
+/** Correlated, of about 5 mm and 1 mrad; the motion along the sensor's x axis is not
+ * seen. */
+Matrix6d
+registrationCovariance()
+{
+  Matrix6d root = Matrix6d::Identity();
+  root.diagonal() << 0.004, 0.006, 0.005, 0.001, 0.0015, 0.001;
+  root(1, 5) = 0.003;
+  root(2, 4) = -0.002;
+  Matrix6d covariance = root * root.transpose();
+  covariance(0, 0) = 100.0;
+  return covariance;
+}
+
+Vector6d
+drawnFrom(const Matrix6d& covariance, Random& random)
+{
+  return covariance.llt().matrixL() * random.normal6();
+}
+
+double
+squaredError(const GaussianPose& estimate, const Eigen::Matrix4d& truth)
+{
+  const Vector6d error = logSE3(matrixOf(estimate.mean).inverse() * truth);
+  return error.dot(estimate.covariance.ldlt().solve(error));
+}
+
+/** What a run comes to. */
+struct RunOfTrack {
+  double squared_error = 0.0; // of the last pose
+  double innovation = 0.0;    // sum over the updates
+  int num_updates = 0;
+};
+
+/** Truth from the model, registrations from their covariance: to the scan before, or to
+ * every third; scans 4, 5 and 11 cannot be registered. */
+RunOfTrack
+runOf(std::uint64_t seed, int scans_on_target)
+{
+  Random random(seed, 0);
+  const MotionModel given = model();
+  const Matrix6d covariance = registrationCovariance();
+  MotionFilter filter(given);
+  Vector6d velocity = given.velocity + drawnFrom(given.velocity_covariance, random);
+  Eigen::Matrix4d truth = Eigen::Matrix4d::Identity(), target = truth;
+  RunOfTrack run;
+  int num_on_target = 0;
+  for (int scan = 1; scan <= num_steps; ++scan) {
+    Vector6d acceleration = random.normal6();
+    acceleration.head<3>() *= given.acceleration;
+    acceleration.tail<3>() *= given.angular_acceleration;
+    velocity += seconds * acceleration;
+    truth = truth * expSE3(seconds * velocity);
+    filter.predict(seconds);
+    if (scan == 4 || scan == 5 || scan == 11)
+      continue;
+    // Along x the registration says what the prediction says, as withoutPrior() does.
+    const Eigen::Matrix4d in_target = target.inverse() * truth;
+    Vector6d error = drawnFrom(covariance, random);
+    error[0] = logSE3(in_target.inverse() * matrixOf(filter.poseInTarget().mean))[0];
+    run.innovation += filter.update({poseOf(in_target * expSE3(error)), covariance});
+    ++run.num_updates;
+    if (++num_on_target == scans_on_target) {
+      filter.makeScanTheTarget();
+      target = truth;
+      num_on_target = 0;
+    }
+  }
+  run.squared_error = squaredError(filter.pose(), truth);
+  return run;
+}
+
+class MotionFilterOnTracks : public ::testing::TestWithParam<int> {};
+
+} // namespace
+
+TEST_P(MotionFilterOnTracks, KnowsHowFarItIsOff)
+{
+  double squared_error = 0.0, innovation = 0.0;
+  int num_updates = 0;
+  for (int k = 0; k < num_runs; ++k) {
+    const RunOfTrack run = runOf(static_cast<std::uint64_t>(k + 1), GetParam());
+    squared_error += run.squared_error / num_runs;
+    innovation += run.innovation;
+    num_updates += run.num_updates;
+  }
+  // Means of chi-square with 6 degrees of freedom, and with the 5 that are seen.
+  EXPECT_NEAR(squared_error, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
+  EXPECT_NEAR(innovation / num_updates, 5.0, 4.0 * std::sqrt(10.0 / num_updates));
+}
+
+INSTANTIATE_TEST_SUITE_P(ScansOnATarget, MotionFilterOnTracks, ::testing::Values(1, 3));
+
+TEST(MotionFilter, GivesBackTheRegistrationWhereNothingElseIsKnown)
+{
+  MotionModel wide = model();
+  wide.velocity_covariance = 1e8 * Matrix6d::Identity();
+  MotionFilter filter(wide);
+  filter.predict(seconds);
+  Matrix6d covariance = registrationCovariance();
+  covariance(0, 0) = 1e-4;
+  Vector6d motion;
+  motion << 0.4, -0.1, 0.2, 0.02, 0.05, -0.1;
+  filter.update({motion, covariance});
+  EXPECT_LT((filter.pose().mean - motion).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_LT((filter.pose().covariance - covariance).cwiseAbs().maxCoeff(), 1e-8);
+}

@@ -1,0 +1,157 @@
+// What a track does with good and bad steps, and its lines and files.
+#include "track/track.h"
+#include "track/track_files.h"
+#include "track/track_line.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+using namespace bayesian_icp;
+using app::StepKind;
+using app::Track;
+using app::TrackRequest;
+using app::TrackStep;
+
+namespace {
+
+TrackRequest
+requestOf(int num_scans)
+{
+  TrackRequest request;
+  for (int k = 0; k < num_scans; ++k) {
+    request.scans.push_back("scan_" + std::to_string(k) + ".pcd");
+    request.times.push_back(0.1 * k);
+  }
+  return request;
+}
+
+app::MotionModel
+model()
+{
+  app::MotionModel model;
+  model.velocity_covariance = 10.0 * Matrix6d::Identity();
+  return model;
+}
+
+/** The next step: 0.1 m ahead of the scan before, turned a little, to 1 mm and 1 mrad.
+ */
+TrackStep
+nextStep(const Track& track, StepKind kind)
+{
+  TrackStep step;
+  step.scan = track.size();
+  step.target = track.target();
+  step.kind = kind;
+  step.status = "ok";
+  step.message = "a \"message\"";
+  step.edge = track.prediction();
+  if (kind == StepKind::Registered || kind == StepKind::Widened) {
+    const double ahead = step.scan - step.target;
+    step.edge.mean << 0.1 * ahead, 0.0, 0.01, 0.0, 0.001, 0.002 * ahead;
+    step.edge.covariance = 1e-6 * Matrix6d::Identity();
+    step.num_unmeasured = 0;
+  }
+  return step;
+}
+
+void
+take(const std::vector<StepKind>& kinds, Track& track)
+{
+  for (const StepKind kind : kinds)
+    track.take(nextStep(track, kind));
+}
+
+constexpr auto registered = StepKind::Registered;
+constexpr auto predicted = StepKind::Predicted;
+
+} // namespace
+
+TEST(Track, RegistersEachScanToTheOneBefore)
+{
+  Track track(model(), requestOf(4).times, 1);
+  EXPECT_EQ(track.target(), 0);
+  take({registered, StepKind::Widened, registered}, track);
+  EXPECT_EQ(track.target(), 3);
+  ASSERT_EQ(track.targetScans().size(), 1u);
+  EXPECT_EQ(track.targetScans()[0].first, 3);
+  EXPECT_NEAR(track.poses()[3].mean[0], 0.3, 0.01);
+}
+
+TEST(Track, KeepsTheTargetWhereAScanCannotBeRegistered)
+{
+  Track track(model(), requestOf(5).times, 1);
+  take({registered, predicted, predicted}, track);
+  EXPECT_EQ(track.target(), 1);
+  EXPECT_EQ(track.numFailures(), 2);
+  const double sd = std::sqrt(track.poses()[3].covariance(0, 0));
+  take({registered}, track);
+  EXPECT_EQ(track.target(), 4);
+  EXPECT_EQ(track.numFailures(), 0);
+  EXPECT_GT(sd, 10.0 * std::sqrt(track.poses()[4].covariance(0, 0)));
+}
+
+TEST(Track, BeginsAnewWithTheScanOfASplit)
+{
+  Track track(model(), requestOf(5).times, 1);
+  take({registered, predicted, predicted, StepKind::Split}, track);
+  EXPECT_EQ(track.target(), 4);
+  EXPECT_EQ(track.numFailures(), 0);
+  EXPECT_TRUE(track.targetScans()[0].second.isIdentity(1e-12));
+}
+
+TEST(Track, MakesAMapOfTheLastScans)
+{
+  Track track(model(), requestOf(9).times, 3);
+  take({registered, registered}, track);
+  EXPECT_EQ(track.target(), 0);
+  take({registered}, track);
+  EXPECT_EQ(track.target(), 3);
+  ASSERT_EQ(track.targetScans().size(), 3u);
+  for (int k = 0; k < 3; ++k) {
+    const auto& [scan, T_target_scan] = track.targetScans()[std::size_t(k)];
+    EXPECT_EQ(scan, k + 1);
+    EXPECT_NEAR(T_target_scan(0, 3), 0.1 * (scan - 3), 0.01);
+  }
+}
+
+TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
+{
+  const TrackRequest request = requestOf(8);
+  Track track(model(), request.times, 2), again(model(), request.times, 2);
+  for (const StepKind kind : {registered,
+                              StepKind::Widened,
+                              predicted,
+                              predicted,
+                              StepKind::Split,
+                              registered,
+                              registered}) {
+    track.take(nextStep(track, kind));
+    again.take(readTrackLine(trackLine(request, track), request, again.size()));
+  }
+  EXPECT_EQ(track.target(), again.target());
+  for (int k = 0; k < track.size(); ++k) {
+    EXPECT_EQ(track.poses()[std::size_t(k)].mean, again.poses()[std::size_t(k)].mean);
+    EXPECT_EQ(track.poses()[std::size_t(k)].covariance,
+              again.poses()[std::size_t(k)].covariance);
+  }
+  EXPECT_EQ(app::g2oText(track), app::g2oText(again));
+  EXPECT_EQ(app::tumCovarianceText(track), app::tumCovarianceText(again));
+}
+
+TEST(Track, RefusesLinesOfAnotherOne)
+{
+  const TrackRequest request = requestOf(3);
+  Track track(model(), request.times, 1);
+  take({registered}, track);
+  const std::string line = trackLine(request, track);
+  EXPECT_NO_THROW(readTrackLine(line, request, 1));
+  EXPECT_THROW(readTrackLine(line, request, 2), std::runtime_error);
+  TrackRequest other = request;
+  other.acceleration = 1.0;
+  EXPECT_THROW(readTrackLine(line, other, 1), std::runtime_error);
+  other = request;
+  other.times[1] = 0.15;
+  EXPECT_THROW(readTrackLine(line, other, 1), std::runtime_error);
+  EXPECT_THROW(readTrackLine("{}", request, 1), std::exception);
+}
