@@ -62,6 +62,12 @@ MotionFilter::MotionFilter(const MotionModel& model)
 }
 
 void
+MotionFilter::doubtVelocity()
+{
+  covariance_.block<6, 6>(velocity, velocity) += model_.velocity_covariance;
+}
+
+void
 MotionFilter::predict(double seconds)
 {
   Vector6d noise;

@@ -40,6 +40,11 @@ public:
   /** \brief Scan 0 is the target, and the scan too. */
   explicit MotionFilter(const MotionModel& model);
 
+  /** \brief Forget the velocity: it is as uncertain as before the first scan, in
+   * addition to what it is. */
+  void
+  doubtVelocity();
+
   /** \brief Go on to the next scan.
    * \param[in] seconds since the scan before, positive */
   void

@@ -38,20 +38,27 @@ Track::Track(const MotionModel& model, std::vector<double> times, int map_scans)
 , poses_(1)
 {}
 
+void
+Track::predict(bool is_velocity_doubted, MotionFilter& filter) const
+{
+  if (is_velocity_doubted)
+    filter.doubtVelocity();
+  const auto k = poses_.size();
+  filter.predict(times_.at(k) - times_.at(k - 1));
+}
+
 GaussianPose
-Track::prediction() const
+Track::prediction(bool is_velocity_doubted) const
 {
   MotionFilter next = filter_;
-  const auto k = poses_.size();
-  next.predict(times_.at(k) - times_.at(k - 1));
+  predict(is_velocity_doubted, next);
   return next.poseInTarget();
 }
 
 void
 Track::take(const TrackStep& step)
 {
-  const auto k = poses_.size();
-  filter_.predict(times_.at(k) - times_.at(k - 1));
+  predict(step.is_velocity_doubted, filter_);
   const bool is_registered =
       step.kind == StepKind::Registered || step.kind == StepKind::Widened;
   innovations_.push_back(is_registered ? filter_.update(step.edge)

@@ -45,6 +45,9 @@ struct TrackStep {
   /** The scan in whose frame the edge is. */
   int target = 0;
   StepKind kind = StepKind::Predicted;
+  /** Whether the motion contradicts the scans before, so that the velocity is taken to
+   * be as unknown as at first. */
+  bool is_velocity_doubted = false;
   /** Short name of the registration's Status, and the status in words. */
   std::string status;
   std::string message;
@@ -72,9 +75,10 @@ public:
     return static_cast<int>(poses_.size());
   }
 
-  /** \brief Where the next scan is likely to be in the target's frame. */
+  /** \brief Where the next scan is likely to be in the target's frame.
+   * \param[in] is_velocity_doubted as in TrackStep */
   GaussianPose
-  prediction() const;
+  prediction(bool is_velocity_doubted) const;
 
   /** \brief Go on to the next scan; \p step is about it. */
   void
@@ -131,6 +135,9 @@ public:
   }
 
 private:
+  void
+  predict(bool is_velocity_doubted, MotionFilter& filter) const;
+
   void
   changeTarget(StepKind kind);
 

@@ -153,6 +153,9 @@ The prior of each registration is what the motion before makes likely: constant
 velocity, as uncertain as the registrations before and --acceleration say.
 --guess and --prior-variance describe the first motion, from scan 0 to scan 1.
 
+Where the status is not ok, it is tried again as if the velocity were as unknown
+as at first, and the better result is taken.
+
 A scan that is registered with status doubtful gets three times its standard
 deviations ("widened"). A scan that cannot be registered, or only in another
 basin, gets the predicted pose ("predicted"), and the next one is registered to

@@ -72,6 +72,7 @@ trackLine(const TrackRequest& request, const Track& track)
                              {"message", message},
                              {"edge", poseJson(step.edge)},
                              {"num_unmeasured", step.num_unmeasured},
+                             {"is_velocity_doubted", step.is_velocity_doubted},
                              {"innovation", jsonOf(track.innovations().back())},
                              {"pose_in_scan_0", poseJson(track.poses().back())},
                              {"seconds", step.seconds},
@@ -99,6 +100,7 @@ readTrackLine(const std::string& line, const TrackRequest& request, int scan)
   step.message = json.at("message");
   step.edge = readPose(json.at("edge"));
   step.num_unmeasured = json.at("num_unmeasured");
+  step.is_velocity_doubted = json.at("is_velocity_doubted");
   step.seconds = json.at("seconds");
   return step;
 }

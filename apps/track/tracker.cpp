@@ -106,15 +106,18 @@ Tracker::prepareTarget()
   prepared_target_ = track_.target();
 }
 
-bool
-Tracker::registerTo(const GaussianPose& prediction,
-                    const Eigen::Matrix3Xd& points,
-                    const ProgressCallback& progress,
-                    TrackStep& step) const
+Tracker::Attempt
+Tracker::registerTo(const Eigen::Matrix3Xd& points,
+                    bool is_velocity_doubted,
+                    const ProgressCallback& progress) const
 {
+  Attempt attempt;
+  TrackStep& step = attempt.step;
+  step.is_velocity_doubted = is_velocity_doubted;
   Options options = request_.settings.options;
   double widening = 1.0;
-  options.prior = priorFrom(statedPoseOf(prediction), PriorFloor(), widening);
+  options.prior = priorFrom(
+      statedPoseOf(track_.prediction(is_velocity_doubted)), PriorFloor(), widening);
   PosteriorEstimate estimate =
       estimatePosterior(points, *target_points_, options.prior.mean, options, progress);
   Summary& summary = estimate.summary;
@@ -124,9 +127,10 @@ Tracker::registerTo(const GaussianPose& prediction,
       summary);
   step.status = toString(summary.status);
   step.message = summary.message;
+  const DataFlags& flags = summary.data.flags;
   const PoseEstimate posterior(summary);
   std::string complaint = complaintAboutExport(posterior, true);
-  if (complaint.empty() && summary.data.is_available && summary.data.flags.wrong_basin)
+  if (complaint.empty() && flags.wrong_basin)
     complaint = "the pose may be in another basin";
   if (complaint.empty()) {
     const PoseMeasurement measurement =
@@ -138,51 +142,70 @@ Tracker::registerTo(const GaussianPose& prediction,
   }
   if (!complaint.empty()) {
     step.message += "; not used: " + complaint;
-    return false;
+    return attempt;
   }
+  attempt.quality = Attempt::Good;
   step.kind = StepKind::Registered;
   if (summary.status == Status::Doubtful) {
+    attempt.quality = flags.prior_conflict ? Attempt::Contradiction : Attempt::Doubtful;
     step.kind = StepKind::Widened;
     step.edge.covariance *= doubt_factor;
   }
-  return true;
+  return attempt;
+}
+
+Tracker::Attempt
+Tracker::registerTo(const Eigen::Matrix3Xd& points,
+                    const ProgressCallback& progress) const
+{
+  const Attempt usual = registerTo(points, false, progress);
+  const std::string cancelled = toString(Status::Cancelled);
+  if (usual.quality == Attempt::Good || usual.step.status == cancelled)
+    return usual;
+  const Attempt open = registerTo(points, true, progress);
+  if (open.step.status == cancelled)
+    return open;
+  // Of two that are as good, the one that trusts the motion before less.
+  return open.quality != Attempt::Useless && open.quality >= usual.quality ? open
+                                                                           : usual;
 }
 
 std::optional<TrackStep>
 Tracker::registerNext(const ProgressCallback& progress)
 {
   const auto start = std::chrono::steady_clock::now();
-  const GaussianPose prediction = track_.prediction();
-  TrackStep step;
-  step.scan = track_.size();
-  step.target = track_.target();
-  step.status = "error";
-  bool is_registered = false;
+  Attempt attempt;
+  attempt.step.status = "error";
+  const int scan = track_.size();
   prepareTarget();
   try {
     const Eigen::Matrix3Xd points =
-        io::readFinitePoints(request_.scans.at(static_cast<std::size_t>(step.scan)))
+        io::readFinitePoints(request_.scans.at(static_cast<std::size_t>(scan)))
             .cast<double>();
-    is_registered = registerTo(prediction, points, progress, step);
-    points_[step.scan] = points;
+    attempt = registerTo(points, progress);
+    points_[scan] = points;
   }
   catch (const io::FileError& error) {
-    step.message = error.what();
+    attempt.step.message = error.what();
   }
   catch (const Refusal& refusal) {
-    step.message = refusal.what();
+    attempt.step.message = refusal.what();
   }
+  TrackStep& step = attempt.step;
   if (step.status == toString(Status::Cancelled))
     return std::nullopt;
-  if (!is_registered) {
+  step.scan = scan;
+  step.target = track_.target();
+  if (attempt.quality == Attempt::Useless) {
     const bool is_last = track_.numFailures() + 1 >= max_failures;
     step.kind =
-        is_last && points_.count(step.scan) > 0 ? StepKind::Split : StepKind::Predicted;
-    step.edge = prediction;
+        is_last && points_.count(scan) > 0 ? StepKind::Split : StepKind::Predicted;
+    step.is_velocity_doubted = false;
+    step.edge = track_.prediction(false);
     step.num_unmeasured = 6;
   }
   if (step.kind == StepKind::Predicted)
-    points_.erase(step.scan);
+    points_.erase(scan);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   step.seconds = time.count();
   return step;

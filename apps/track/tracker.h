@@ -40,13 +40,21 @@ private:
   void
   prepareTarget();
 
-  /** Fill the step's kind and edge from a registration. \return whether it is of use;
-   * if not, the step's message says why */
-  bool
-  registerTo(const GaussianPose& prediction,
-             const Eigen::Matrix3Xd& points,
-             const ProgressCallback& progress,
-             TrackStep& step) const;
+  /** What came of a registration. */
+  struct Attempt {
+    TrackStep step;
+    /** The more the better; Useless: the step has no edge, and its message says why. */
+    enum Quality { Useless, Contradiction, Doubtful, Good } quality = Useless;
+  };
+
+  Attempt
+  registerTo(const Eigen::Matrix3Xd& points,
+             bool is_velocity_doubted,
+             const ProgressCallback& progress) const;
+
+  /** With the prediction; if that is not good, as if the velocity were unknown. */
+  Attempt
+  registerTo(const Eigen::Matrix3Xd& points, const ProgressCallback& progress) const;
 
   const TrackRequest& request_;
   const Track& track_;

@@ -45,7 +45,8 @@ nextStep(const Track& track, StepKind kind)
   step.kind = kind;
   step.status = "ok";
   step.message = "a \"message\"";
-  step.edge = track.prediction();
+  step.is_velocity_doubted = kind == StepKind::Widened;
+  step.edge = track.prediction(false);
   if (kind == StepKind::Registered || kind == StepKind::Widened) {
     const double ahead = step.scan - step.target;
     step.edge.mean << 0.1 * ahead, 0.0, 0.01, 0.0, 0.001, 0.002 * ahead;
