@@ -50,7 +50,8 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior);
 
 /** \brief A Gaussian in all conventions.
  * \param[in] mean pose [m, rad]
- * \param[in] covariance in \p convention; the others follow from it to first order
+ * \param[in] covariance about \p mean [m, rad]
+ * \param[in] convention of \p covariance; the others follow from it to first order
  * \return status NotRun */
 BAYESIAN_ICP_EXPORT PoseEstimate
 estimateOf(const Vector6d& mean,
