@@ -3,6 +3,7 @@
  * sub-command each.
  */
 #include "coverage/coverage_command.h"
+#include "cycles/cycles_command.h"
 #include "io/program.h"
 #include "paper/paper_command.h"
 #include "samplers/samplers_command.h"
@@ -43,6 +44,9 @@ subCommands()
       {"sbc",
        "simulation-based calibration: ranks of true poses among draws of the samplers",
        evaluate::runSbcCommand},
+      {"cycles",
+       "closures of the cycles of a pose graph against its covariances",
+       evaluate::runCyclesCommand},
       {"paper",
        "the paper's whole evaluation: all experiments below, and a report",
        evaluate::runPaperCommand},

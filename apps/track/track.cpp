@@ -61,7 +61,7 @@ Track::take(const TrackStep& step)
   predict(step.is_velocity_doubted, filter_);
   const bool is_registered =
       step.kind == StepKind::Registered || step.kind == StepKind::Widened;
-  innovations_.push_back(is_registered ? filter_.update(step.edge)
+  innovations_.push_back(is_registered ? filter_.update(step.edge.pose)
                                        : std::numeric_limits<double>::quiet_NaN());
   num_failures_ = is_registered ? 0 : num_failures_ + 1;
   if (is_registered)

@@ -39,11 +39,19 @@ constexpr double doubt_factor = 9.0;
  * the new target. */
 constexpr int max_failures = 3;
 
-/** \brief One scan and its edge. Scans are numbered from 0. */
-struct TrackStep {
-  int scan = 0;
+/** \brief What the clouds say about two scans, without any prior. */
+struct TrackEdge {
   /** The scan in whose frame the edge is. */
   int target = 0;
+  /** The scan in the target's frame. */
+  GaussianPose pose;
+  /** Directions that the clouds do not see, 0 to 6. */
+  int num_unmeasured = 6;
+};
+
+/** \brief One scan and its edges. Scans are numbered from 0. */
+struct TrackStep {
+  int scan = 0;
   StepKind kind = StepKind::Predicted;
   /** Whether the motion contradicts the scans before, so that the velocity is taken to
    * be as unknown as at first. */
@@ -51,11 +59,10 @@ struct TrackStep {
   /** Short name of the registration's Status, and the status in words. */
   std::string status;
   std::string message;
-  /** The scan in the target's frame: what the clouds say without the prior, or the
-   * prediction. */
-  GaussianPose edge;
-  /** Directions of the edge that the clouds do not see, 0 to 6. */
-  int num_unmeasured = 6;
+  /** To the track's target; the prediction if the scan was not registered. */
+  TrackEdge edge;
+  /** To other scans before it, which the filter does not take. */
+  std::vector<TrackEdge> more_edges;
   /** For reading the cloud and registering it. */
   double seconds = 0.0;
 };

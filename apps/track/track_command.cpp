@@ -38,6 +38,9 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
     ("output,o", io::fileName("FOLDER", command.output_folder),
      "Folder for the results. If it has those of the same track, interrupted, the track "
      "goes on. (required)")
+    ("span", io::number("N", request.span),
+     "Also register each scan to those up to N before it. These edges go to edges.jsonl "
+     "and graph.g2o only. (default 1)")
     ("quiet", io::flag(command.is_quiet), "Print problems only.");
   po::options_description motion("Motion");
   motion.add_options()
@@ -124,6 +127,11 @@ check(const po::variables_map& given, const TrackCommand& command)
     requirePositive(request.voxel_size, "map");
   else if (given.count("map-scans") > 0)
     throw io::UsageError("--map-scans needs --map");
+  if (request.span < 1)
+    throw io::UsageError("--span is " + io::textOf(request.span) +
+                         ", but must be at least 1");
+  if (request.span > 1 && request.voxel_size > 0.0)
+    throw io::UsageError("--span excludes --map");
   if (request.map_scans < 1)
     throw io::UsageError("--map-scans is " + io::textOf(request.map_scans) +
                          ", but must be at least 1");

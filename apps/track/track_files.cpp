@@ -54,10 +54,14 @@ g2oText(const Track& track)
     text += g2oVertex(matrixOf(track.poses()[k].mean), static_cast<int>(k));
   text += "FIX 0\n";
   for (const TrackStep& step : track.steps()) {
-    ExportOptions options;
-    options.target_vertex = step.target;
-    options.source_vertex = step.scan;
-    text += g2oEdge(estimateOf(step.edge), options);
+    std::vector<TrackEdge> edges = step.more_edges;
+    edges.insert(edges.begin(), step.edge);
+    for (const TrackEdge& edge : edges) {
+      ExportOptions options;
+      options.target_vertex = edge.target;
+      options.source_vertex = step.scan;
+      text += g2oEdge(estimateOf(edge.pose), options);
+    }
   }
   return text;
 }

@@ -39,6 +39,21 @@ readPose(const json& value)
   return pose;
 }
 
+ordered_json
+edgeJson(const TrackEdge& edge)
+{
+  ordered_json value = {{"target", edge.target},
+                        {"num_unmeasured", edge.num_unmeasured}};
+  value.update(poseJson(edge.pose));
+  return value;
+}
+
+TrackEdge
+readEdge(const json& value)
+{
+  return {value.at("target"), readPose(value), value.at("num_unmeasured")};
+}
+
 } // namespace
 
 std::string
@@ -47,6 +62,7 @@ settingsIdOf(const TrackRequest& request)
   const ordered_json all = {jsonOf(request.settings),
                             request.acceleration,
                             request.angular_acceleration,
+                            request.span,
                             request.voxel_size,
                             request.map_scans,
                             request.scans.front(),
@@ -63,15 +79,17 @@ trackLine(const TrackRequest& request, const Track& track)
   const auto k = static_cast<std::size_t>(step.scan);
   std::string message = step.message;
   std::replace(message.begin(), message.end(), '\n', ' ');
+  auto more_edges = ordered_json::array();
+  for (const TrackEdge& edge : step.more_edges)
+    more_edges.push_back(edgeJson(edge));
   const ordered_json line = {{"scan", step.scan},
                              {"file", request.scans.at(k)},
                              {"time_s", request.times.at(k)},
-                             {"target", step.target},
                              {"kind", toString(step.kind)},
                              {"status", step.status},
                              {"message", message},
-                             {"edge", poseJson(step.edge)},
-                             {"num_unmeasured", step.num_unmeasured},
+                             {"edge", edgeJson(step.edge)},
+                             {"more_edges", more_edges},
                              {"is_velocity_doubted", step.is_velocity_doubted},
                              {"innovation", jsonOf(track.innovations().back())},
                              {"pose_in_scan_0", poseJson(track.poses().back())},
@@ -94,12 +112,12 @@ readTrackLine(const std::string& line, const TrackRequest& request, int scan)
     throw std::runtime_error("its scan is none of these, or has another time");
   TrackStep step;
   step.scan = scan;
-  step.target = json.at("target");
   step.kind = readStepKind(json.at("kind"));
   step.status = json.at("status");
   step.message = json.at("message");
-  step.edge = readPose(json.at("edge"));
-  step.num_unmeasured = json.at("num_unmeasured");
+  step.edge = readEdge(json.at("edge"));
+  for (const nlohmann::json& edge : json.at("more_edges"))
+    step.more_edges.push_back(readEdge(edge));
   step.is_velocity_doubted = json.at("is_velocity_doubted");
   step.seconds = json.at("seconds");
   return step;

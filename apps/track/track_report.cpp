@@ -166,7 +166,7 @@ uncertaintyCharts(const Track& track)
         '\n';
     if (k == 0)
       continue;
-    const int num_measured = 6 - track.steps()[k - 1].num_unmeasured;
+    const int num_measured = 6 - track.steps()[k - 1].edge.num_unmeasured;
     if (num_measured > 0)
       innovations +=
           time + plotNumber(track.innovations()[k - 1] / num_measured) + '\n';
@@ -236,7 +236,7 @@ tableOfProblems(const TrackCommand& command, const Track& track)
         command.request.scans.at(static_cast<std::size_t>(step.scan));
     table.rows.push_back({io::textOf(step.scan),
                           file.filename().string(),
-                          io::textOf(step.target),
+                          io::textOf(step.edge.target),
                           toString(step.kind),
                           step.status,
                           step.message});

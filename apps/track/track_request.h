@@ -21,6 +21,9 @@ struct TrackRequest {
   /** Standard deviations of the motion model [m/s^2, rad/s^2]. */
   double acceleration = 5.0;
   double angular_acceleration = 5.0;
+  /** Each scan is registered to so many scans before it; the filter takes the edge to
+   * its target only. */
+  int span = 1;
   /** Width of the voxels that keep one point of a map [m]; 0: the target is one scan.
    */
   double voxel_size = 0.0;

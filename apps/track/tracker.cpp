@@ -54,6 +54,64 @@ statedPoseOf(const GaussianPose& pose)
   return stated;
 }
 
+/** What came of a registration; the better, the later. */
+enum class Quality { Cancelled, Useless, Contradiction, Doubtful, Good };
+
+struct Registration {
+  Quality quality = Quality::Useless;
+  std::string status;
+  /** Also why it is useless. */
+  std::string message;
+  /** Of the clouds alone, widened if that is doubtful. */
+  TrackEdge edge;
+};
+
+/** \param[in] options with a prior about the sensor */
+Registration
+registered(const Eigen::Matrix3Xd& points,
+           const PreparedTarget& target,
+           const Options& options,
+           const ProgressCallback& progress)
+{
+  PosteriorEstimate estimate =
+      estimatePosterior(points, target, options.prior.mean, options, progress);
+  Summary& summary = estimate.summary;
+  doubtRounding(std::max(usualCoordinate(points), usualCoordinate(target.points())),
+                options,
+                summary);
+  Registration result;
+  result.status = toString(summary.status);
+  result.message = summary.message;
+  if (summary.status == Status::Cancelled) {
+    result.quality = Quality::Cancelled;
+    return result;
+  }
+  const PoseEstimate posterior(summary);
+  std::string complaint = complaintAboutExport(posterior, true);
+  if (complaint.empty() && summary.data.flags.wrong_basin)
+    complaint = "the pose may be in another basin";
+  if (complaint.empty()) {
+    const PoseMeasurement measurement =
+        withoutPrior(posterior, Prior(options.prior.mean, options.prior.variance));
+    complaint = complaintAboutExport(measurement.estimate, true);
+    result.edge.num_unmeasured = measurement.num_unmeasured;
+    result.edge.pose = {
+        measurement.estimate.mean,
+        measurement.estimate.covariance(CovarianceConvention::RightSE3)};
+  }
+  if (!complaint.empty()) {
+    result.message += "; not used: " + complaint;
+    return result;
+  }
+  result.quality = Quality::Good;
+  if (summary.status == Status::Doubtful) {
+    result.quality =
+        summary.data.flags.prior_conflict ? Quality::Contradiction : Quality::Doubtful;
+    result.edge.pose.covariance *= doubt_factor;
+  }
+  return result;
+}
+
 } // namespace
 
 MotionModel
@@ -76,139 +134,158 @@ Tracker::Tracker(const TrackRequest& request, const Track& track)
 , track_(track)
 {}
 
-Tracker::~Tracker() = default;
-
-void
-Tracker::prepareTarget()
+PreparedTarget
+Tracker::preparedScan(int scan)
 {
-  if (prepared_target_ == track_.target())
-    return;
+  const auto found = prepared_.find(scan);
+  if (found != prepared_.end())
+    return found->second;
+  return prepared_.emplace(scan, PreparedTarget(pointsOf(scan))).first->second;
+}
+
+PreparedTarget
+Tracker::mapOfTarget()
+{
   std::vector<Eigen::Matrix3Xd> parts;
   Eigen::Index size = 0;
   for (const auto& [scan, T_target_scan] : track_.targetScans()) {
-    if (points_.count(scan) == 0) // of a track that was interrupted
-      points_[scan] =
-          io::readFinitePoints(request_.scans.at(static_cast<std::size_t>(scan)))
-              .cast<double>();
     parts.emplace_back();
-    movePoints(poseOf(T_target_scan), points_[scan], parts.back());
+    movePoints(poseOf(T_target_scan), pointsOf(scan), parts.back());
     size += parts.back().cols();
   }
-  points_.clear();
   Eigen::Matrix3Xd all(3, size);
   size = 0;
   for (const auto& part : parts) {
     all.middleCols(size, part.cols()) = part;
     size += part.cols();
   }
-  target_points_ = std::make_unique<PreparedTarget>(
-      request_.voxel_size > 0.0 ? thinned(all, request_.voxel_size) : all);
-  prepared_target_ = track_.target();
+  return thinned(all, request_.voxel_size);
 }
 
-Tracker::Attempt
-Tracker::registerTo(const Eigen::Matrix3Xd& points,
-                    bool is_velocity_doubted,
-                    const ProgressCallback& progress) const
+void
+Tracker::prepareTarget()
 {
-  Attempt attempt;
-  TrackStep& step = attempt.step;
-  step.is_velocity_doubted = is_velocity_doubted;
-  Options options = request_.settings.options;
-  double widening = 1.0;
-  options.prior = priorFrom(
-      statedPoseOf(track_.prediction(is_velocity_doubted)), PriorFloor(), widening);
-  PosteriorEstimate estimate =
-      estimatePosterior(points, *target_points_, options.prior.mean, options, progress);
-  Summary& summary = estimate.summary;
-  doubtRounding(
-      std::max(usualCoordinate(points), usualCoordinate(target_points_->points())),
-      options,
-      summary);
-  step.status = toString(summary.status);
-  step.message = summary.message;
-  const DataFlags& flags = summary.data.flags;
-  const PoseEstimate posterior(summary);
-  std::string complaint = complaintAboutExport(posterior, true);
-  if (complaint.empty() && flags.wrong_basin)
-    complaint = "the pose may be in another basin";
-  if (complaint.empty()) {
-    const PoseMeasurement measurement =
-        withoutPrior(posterior, Prior(options.prior.mean, options.prior.variance));
-    complaint = complaintAboutExport(measurement.estimate, true);
-    step.num_unmeasured = measurement.num_unmeasured;
-    step.edge = {measurement.estimate.mean,
-                 measurement.estimate.covariance(CovarianceConvention::RightSE3)};
-  }
-  if (!complaint.empty()) {
-    step.message += "; not used: " + complaint;
-    return attempt;
-  }
-  attempt.quality = Attempt::Good;
-  step.kind = StepKind::Registered;
-  if (summary.status == Status::Doubtful) {
-    attempt.quality = flags.prior_conflict ? Attempt::Contradiction : Attempt::Doubtful;
-    step.kind = StepKind::Widened;
-    step.edge.covariance *= doubt_factor;
-  }
-  return attempt;
+  if (target_scan_ == track_.target())
+    return;
+  target_scan_ = track_.target();
+  target_ = request_.voxel_size > 0.0 ? mapOfTarget() : preparedScan(target_scan_);
+  points_.clear();
+  prepared_.erase(prepared_.begin(),
+                  prepared_.lower_bound(track_.size() - request_.span));
 }
 
-Tracker::Attempt
-Tracker::registerTo(const Eigen::Matrix3Xd& points,
-                    const ProgressCallback& progress) const
+std::optional<TrackStep>
+Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
+                          const ProgressCallback& progress,
+                          bool& is_of_use) const
 {
-  const Attempt usual = registerTo(points, false, progress);
-  const std::string cancelled = toString(Status::Cancelled);
-  if (usual.quality == Attempt::Good || usual.step.status == cancelled)
-    return usual;
-  const Attempt open = registerTo(points, true, progress);
-  if (open.step.status == cancelled)
-    return open;
-  // Of two that are as good, the one that trusts the motion before less.
-  return open.quality != Attempt::Useless && open.quality >= usual.quality ? open
-                                                                           : usual;
+  const auto attempt = [&](bool is_velocity_doubted) {
+    Options options = request_.settings.options;
+    double widening = 1.0;
+    options.prior = priorFrom(
+        statedPoseOf(track_.prediction(is_velocity_doubted)), PriorFloor(), widening);
+    return registered(points, *target_, options, progress);
+  };
+  TrackStep step;
+  Registration result = attempt(false);
+  if (result.quality != Quality::Cancelled && result.quality != Quality::Good) {
+    const Registration open = attempt(true);
+    // Of two that are as good, the one that trusts the motion before less.
+    step.is_velocity_doubted =
+        open.quality != Quality::Useless && open.quality >= result.quality;
+    if (step.is_velocity_doubted || open.quality == Quality::Cancelled)
+      result = open;
+  }
+  if (result.quality == Quality::Cancelled)
+    return std::nullopt;
+  is_of_use = result.quality != Quality::Useless;
+  step.kind =
+      result.quality == Quality::Good ? StepKind::Registered : StepKind::Widened;
+  step.status = result.status;
+  step.message = result.message;
+  step.edge = result.edge;
+  return step;
+}
+
+bool
+Tracker::registerToMore(const Eigen::Matrix3Xd& points,
+                        const ProgressCallback& progress,
+                        TrackStep& step)
+{
+  const auto poseIn0 = [this](int scan) {
+    return matrixOf(track_.poses().at(static_cast<std::size_t>(scan)).mean);
+  };
+  const Eigen::Matrix4d pose = poseIn0(track_.target()) * matrixOf(step.edge.pose.mean);
+  for (int other = track_.target() - 1; other >= std::max(0, step.scan - request_.span);
+       --other) {
+    const bool has_pose =
+        other == 0 || track_.steps().at(static_cast<std::size_t>(other - 1)).kind !=
+                          StepKind::Predicted;
+    if (!has_pose)
+      continue;
+    Options options = request_.settings.options;
+    options.prior.mean = poseOf(poseIn0(other).inverse() * pose);
+    options.prior.frame = PriorFrame::Origin;
+    Registration result = registered(points, preparedScan(other), options, progress);
+    if (result.quality == Quality::Cancelled)
+      return false;
+    result.edge.target = other;
+    if (result.quality != Quality::Useless)
+      step.more_edges.push_back(result.edge);
+  }
+  return true;
 }
 
 std::optional<TrackStep>
 Tracker::registerNext(const ProgressCallback& progress)
 {
   const auto start = std::chrono::steady_clock::now();
-  Attempt attempt;
-  attempt.step.status = "error";
-  const int scan = track_.size();
   prepareTarget();
+  const int scan = track_.size();
+  std::optional<TrackStep> step = TrackStep();
+  step->status = "error";
+  bool is_of_use = false;
   try {
-    const Eigen::Matrix3Xd points =
-        io::readFinitePoints(request_.scans.at(static_cast<std::size_t>(scan)))
-            .cast<double>();
-    attempt = registerTo(points, progress);
-    points_[scan] = points;
+    const Eigen::Matrix3Xd& points = pointsOf(scan);
+    step = registerToTarget(points, progress, is_of_use);
+    if (!step)
+      return std::nullopt;
+    step->scan = scan;
+    if (is_of_use && !registerToMore(points, progress, *step))
+      return std::nullopt;
   }
   catch (const io::FileError& error) {
-    attempt.step.message = error.what();
+    step->message = error.what();
   }
   catch (const Refusal& refusal) {
-    attempt.step.message = refusal.what();
+    step->message = refusal.what();
   }
-  TrackStep& step = attempt.step;
-  if (step.status == toString(Status::Cancelled))
-    return std::nullopt;
-  step.scan = scan;
-  step.target = track_.target();
-  if (attempt.quality == Attempt::Useless) {
+  step->scan = scan;
+  if (!is_of_use) {
     const bool is_last = track_.numFailures() + 1 >= max_failures;
-    step.kind =
+    step->kind =
         is_last && points_.count(scan) > 0 ? StepKind::Split : StepKind::Predicted;
-    step.is_velocity_doubted = false;
-    step.edge = track_.prediction(false);
-    step.num_unmeasured = 6;
+    step->is_velocity_doubted = false;
+    step->edge.pose = track_.prediction(false);
+    step->edge.num_unmeasured = 6;
   }
-  if (step.kind == StepKind::Predicted)
+  step->edge.target = track_.target();
+  if (step->kind == StepKind::Predicted)
     points_.erase(scan);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  step.seconds = time.count();
+  step->seconds = time.count();
   return step;
+}
+
+const Eigen::Matrix3Xd&
+Tracker::pointsOf(int scan)
+{
+  const auto found = points_.find(scan);
+  if (found != points_.end())
+    return found->second;
+  return points_[scan] =
+             io::readFinitePoints(request_.scans.at(static_cast<std::size_t>(scan)))
+                 .cast<double>();
 }
 
 } // namespace bayesian_icp::app

@@ -10,7 +10,6 @@
 #include <bayesian_icp/prepared_target.h>
 
 #include <map>
-#include <memory>
 #include <optional>
 
 namespace bayesian_icp::app {
@@ -26,7 +25,6 @@ class Tracker {
 public:
   /** \param[in] request,track must outlive this object */
   Tracker(const TrackRequest& request, const Track& track);
-  ~Tracker();
 
   /** \brief Register the next scan of the track, which has to take the step then. A
    * scan that cannot be read is one that cannot be registered.
@@ -37,32 +35,42 @@ public:
   registerNext(const ProgressCallback& progress);
 
 private:
+  /** The scan's finite points, read if they are not at hand. */
+  const Eigen::Matrix3Xd&
+  pointsOf(int scan);
+
+  PreparedTarget
+  preparedScan(int scan);
+
+  PreparedTarget
+  mapOfTarget();
+
   void
   prepareTarget();
 
-  /** What came of a registration. */
-  struct Attempt {
-    TrackStep step;
-    /** The more the better; Useless: the step has no edge, and its message says why. */
-    enum Quality { Useless, Contradiction, Doubtful, Good } quality = Useless;
-  };
+  /** The prior is the prediction; if that is not good, it is tried again as if the
+   * velocity were unknown. */
+  std::optional<TrackStep>
+  registerToTarget(const Eigen::Matrix3Xd& points,
+                   const ProgressCallback& progress,
+                   bool& is_of_use) const;
 
-  Attempt
-  registerTo(const Eigen::Matrix3Xd& points,
-             bool is_velocity_doubted,
-             const ProgressCallback& progress) const;
-
-  /** With the prediction; if that is not good, as if the velocity were unknown. */
-  Attempt
-  registerTo(const Eigen::Matrix3Xd& points, const ProgressCallback& progress) const;
+  /** To scans before the target, from where \p step puts the scan. Those that cannot be
+   * registered are left out. \return false if it was cancelled */
+  bool
+  registerToMore(const Eigen::Matrix3Xd& points,
+                 const ProgressCallback& progress,
+                 TrackStep& step);
 
   const TrackRequest& request_;
   const Track& track_;
-  /** Of scans that the target consists of now or next [m], by their numbers. */
+  /** Of scans that the next target will have [m], by their numbers. */
   std::map<int, Eigen::Matrix3Xd> points_;
-  /** The scan in whose frame target_points_ are; -1 before the first one. */
-  int prepared_target_ = -1;
-  std::unique_ptr<PreparedTarget> target_points_;
+  /** The last scans as targets, each from when it is first needed. */
+  std::map<int, PreparedTarget> prepared_;
+  /** The scan in whose frame target_ is; -1 before the first one. */
+  int target_scan_ = -1;
+  std::optional<PreparedTarget> target_;
 };
 
 } // namespace bayesian_icp::app

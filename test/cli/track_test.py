@@ -18,6 +18,7 @@ from trajectories import (
 )
 
 TRACK = os.environ["PCL_BAYESIAN_ICP_TRACK"]
+EVALUATE = os.environ["PCL_BAYESIAN_ICP_EVALUATE"]
 EYES = ["0,-1.2,0.7", "0.05,-1.19,0.71", "0.1,-1.18,0.71", "0.15,-1.16,0.7", "0.2,-1.14,0.7"]
 NAMES = {
     "edges.jsonl",
@@ -72,7 +73,7 @@ class TrackOfSimulatedScans(TrackTest):
         self.assertIn(result.returncode, (0, 1), result.stderr)
         self.assertEqual({path.name for path in self.track.iterdir()}, NAMES)
         vertices = self.check_truth(from_world)
-        self.assertEqual([line["target"] for line in self.lines()], [0, 1, 2, 3])
+        self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 1, 2, 3])
         rows = self.rows("trajectory_tum.txt")
         self.assertEqual([row[0] for row in rows], [0.0, 0.2, 0.4, 0.6, 0.8])
         for k, row in enumerate(rows):
@@ -92,7 +93,34 @@ class TrackOfSimulatedScans(TrackTest):
         result = self.run_track(scans, "--map", 0.005, "--map-scans", 2)
         self.assertIn(result.returncode, (0, 1), result.stderr)
         self.check_truth(from_world)
-        self.assertEqual([line["target"] for line in self.lines()], [0, 0, 2, 2])
+        self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 0, 2, 2])
+
+    def test_span_and_its_cycles(self):
+        scans, from_world = self.trajectory(EYES)
+        result = self.run_track(scans, "--span", 3)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.check_truth(from_world)
+        _, edges = read_graph(self.track / "graph.g2o")
+        expected = [(i, k) for k in range(1, 5) for i in range(max(0, k - 3), k)]
+        self.assertEqual(sorted(edges), sorted(expected))
+        csv = self.folder / "cycles.csv"
+        result = call(EVALUATE, "cycles", self.track / "graph.g2o", "--output", csv)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        header, *rows = csv.read_text().splitlines()
+        self.assertEqual(header.split(",")[:2], ["vertices", "length"])
+        # A cycle for each edge that the chain of scans does not need.
+        self.assertEqual(len(rows), len(expected) - 4)
+        self.assertRegex(result.stdout, r"(?m)^all +5 +6\.00 ")
+        # An edge that is 3 cm off.
+        lines = (self.track / "graph.g2o").read_text().splitlines()
+        (place,) = [k for k, line in enumerate(lines) if line.startswith("EDGE_SE3:QUAT 1 2 ")]
+        words = lines[place].split()
+        words[3] = repr(float(words[3]) + 0.03)
+        lines[place] = " ".join(words)
+        graph = self.file("wrong.g2o", "\n".join(lines))
+        result = call(EVALUATE, "cycles", graph, "--output", csv)
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertRegex(result.stdout, r"Edges none of whose cycles closes:\n  1-2: all \d cycles\n$")
 
     def test_goes_on(self):
         scans, _ = self.trajectory(EYES)
@@ -128,7 +156,7 @@ class TrackWithBadScans(TrackTest):
         kinds = [line["kind"] for line in self.lines()]
         self.assertEqual(kinds[1:3], ["predicted", "predicted"])
         self.assertIn(kinds[3], ("registered", "widened"))
-        self.assertEqual([line["target"] for line in self.lines()], [0, 1, 1, 1])
+        self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 1, 1, 1])
         vertices, edges = read_graph(self.track / "graph.g2o")
         self.assertEqual(sorted(edges), [(0, 1), (1, 2), (1, 3), (1, 4)])
         true = composed(from_world[0], inverted(from_world[4]))
@@ -143,7 +171,7 @@ class TrackWithBadScans(TrackTest):
         self.assertEqual(self.run_track(scans).returncode, 1)
         kinds = [line["kind"] for line in self.lines()]
         self.assertEqual(kinds[:3], ["predicted", "predicted", "split"])
-        self.assertEqual([line["target"] for line in self.lines()], [0, 0, 0, 3])
+        self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 0, 0, 3])
 
     def test_first_scan(self):
         source, target = self.small_pair()
@@ -173,6 +201,8 @@ class TrackUsage(TrackTest):
             (2, [*two, "--acceleration", 0], "--acceleration is 0"),
             (2, [*two, "--period", "-1"], "--period is -1"),
             (2, [*two, "--map", 0], "--map is 0"),
+            (2, [*two, "--span", 0], "--span is 0"),
+            (2, [*two, "--span", 2, "--map", 1], "--span excludes --map"),
             (2, [*two, "--map-scans", 3], "--map-scans needs --map"),
             (2, [*two, "--map", 0.1, "--map-scans", 0], "--map-scans is 0"),
             (2, [*two, "--prior-variance", "inf"], "must be finite"),

@@ -41,17 +41,18 @@ nextStep(const Track& track, StepKind kind)
 {
   TrackStep step;
   step.scan = track.size();
-  step.target = track.target();
   step.kind = kind;
   step.status = "ok";
   step.message = "a \"message\"";
   step.is_velocity_doubted = kind == StepKind::Widened;
-  step.edge = track.prediction(false);
+  step.edge.target = track.target();
+  step.edge.pose = track.prediction(false);
   if (kind == StepKind::Registered || kind == StepKind::Widened) {
-    const double ahead = step.scan - step.target;
-    step.edge.mean << 0.1 * ahead, 0.0, 0.01, 0.0, 0.001, 0.002 * ahead;
-    step.edge.covariance = 1e-6 * Matrix6d::Identity();
-    step.num_unmeasured = 0;
+    const double ahead = step.scan - step.edge.target;
+    step.edge.pose.mean << 0.1 * ahead, 0.0, 0.01, 0.0, 0.001, 0.002 * ahead;
+    step.edge.pose.covariance = 1e-6 * Matrix6d::Identity();
+    step.edge.num_unmeasured = 0;
+    step.more_edges.assign(step.scan % 2, step.edge);
   }
   return step;
 }

@@ -1,0 +1,132 @@
+#include "cycles/cycle_closure.h"
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <deque>
+#include <map>
+#include <set>
+
+namespace bayesian_icp::evaluate {
+
+namespace {
+
+/** Edges at each vertex, by their positions. */
+using Neighbourhood = std::map<int, std::vector<std::size_t>>;
+
+Neighbourhood
+neighbourhoodOf(const std::vector<GraphEdge>& edges)
+{
+  Neighbourhood at;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    at[edges[k].target].push_back(k);
+    at[edges[k].source].push_back(k);
+  }
+  return at;
+}
+
+int
+otherEnd(const GraphEdge& edge, int vertex)
+{
+  return vertex == edge.target ? edge.source : edge.target;
+}
+
+/** The shortest way from the target of edge \p direct to its source without that edge;
+ * empty if there is none of at most \p max_edges. */
+std::vector<std::size_t>
+shortestPath(const std::vector<GraphEdge>& edges,
+             const Neighbourhood& at,
+             std::size_t direct,
+             std::size_t max_edges)
+{
+  const int begin = edges[direct].target, end = edges[direct].source;
+  std::map<int, std::vector<std::size_t>> ways{{begin, {}}};
+  std::deque<int> next{begin};
+  while (!next.empty() && ways.count(end) == 0) {
+    const int vertex = next.front();
+    next.pop_front();
+    const std::vector<std::size_t> way = ways[vertex];
+    if (way.size() == max_edges)
+      continue;
+    for (const std::size_t k : at.at(vertex)) {
+      const int other = otherEnd(edges[k], vertex);
+      if (k == direct || !ways.emplace(other, way).second)
+        continue;
+      ways[other].push_back(k);
+      next.push_back(other);
+    }
+  }
+  const auto found = ways.find(end);
+  return found == ways.end() ? std::vector<std::size_t>() : found->second;
+}
+
+/** Ad(T^-1): carries a twist of the right from before \p T to behind it. */
+Matrix6d
+carryBehind(const Eigen::Matrix4d& T)
+{
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>().transpose();
+  Matrix6d carry;
+  carry << R, -R * crossMatrix(T.topRightCorner<3, 1>()), Eigen::Matrix3d::Zero(), R;
+  return carry;
+}
+
+/** The edge as seen from its source. */
+GraphEdge
+inverted(const GraphEdge& edge)
+{
+  // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi)
+  const Eigen::Matrix4d back = edge.T_target_source.inverse();
+  const Matrix6d carry = carryBehind(back);
+  return {edge.source, edge.target, back, carry * edge.covariance * carry.transpose()};
+}
+
+} // namespace
+
+std::vector<Cycle>
+cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length)
+{
+  const Neighbourhood at = neighbourhoodOf(edges);
+  std::set<std::set<std::size_t>> known;
+  std::vector<Cycle> cycles;
+  for (std::size_t direct = edges.size(); direct-- > 0;) {
+    const std::vector<std::size_t> path =
+        shortestPath(edges, at, direct, max_length - 1);
+    std::set<std::size_t> members(path.begin(), path.end());
+    members.insert(direct);
+    if (!path.empty() && known.insert(members).second)
+      cycles.push_back({direct, path});
+  }
+  return {cycles.rbegin(), cycles.rend()};
+}
+
+Closure
+closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
+{
+  const GraphEdge& direct = edges[cycle.direct];
+  Eigen::Matrix4d way = Eigen::Matrix4d::Identity();
+  Matrix6d S = Matrix6d::Zero();
+  int vertex = direct.target;
+  for (const std::size_t k : cycle.path) {
+    const GraphEdge edge = edges[k].target == vertex ? edges[k] : inverted(edges[k]);
+    const Matrix6d carry = carryBehind(edge.T_target_source);
+    S = carry * S * carry.transpose() + edge.covariance;
+    way = way * edge.T_target_source;
+    vertex = edge.source;
+  }
+  S += direct.covariance;
+  Closure closure;
+  closure.error = logSE3(direct.T_target_source.inverse() * way);
+  closure.squared_error = closure.error.dot(S.ldlt().solve(closure.error));
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
+  closure.num_degrees = static_cast<int>(
+      (solver.eigenvalues().array() < max_deviation * max_deviation).count());
+  if (closure.num_degrees > 0)
+    closure.probability = boost::math::cdf(boost::math::complement(
+        boost::math::chi_squared(closure.num_degrees), closure.squared_error));
+  return closure;
+}
+
+} // namespace bayesian_icp::evaluate

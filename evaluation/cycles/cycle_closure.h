@@ -1,0 +1,49 @@
+/** \file
+ * \brief Does a way around through a pose graph end where it began?
+ */
+#pragma once
+
+#include "cycles/graph_file.h"
+
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief An edge, and another way between its vertices. */
+struct Cycle {
+  /** Positions in the graph's edges. */
+  std::size_t direct = 0;
+  /** From the direct edge's target to its source; an edge may be taken backwards. */
+  std::vector<std::size_t> path;
+};
+
+/** \brief For each edge but those that the paths need, the shortest way around: fewest
+ * edges, each at most \p max_length - 1 of them; of several the one of the first edges
+ * in the file.
+ * \param[in] max_length of a cycle, the direct edge included; at least 3 */
+std::vector<Cycle>
+cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length);
+
+/** \brief How well a cycle closes. */
+struct Closure {
+  /** Twist from the direct edge to the path, in the frame of its source [m, rad]. */
+  Vector6d error = Vector6d::Zero();
+  /** error^T S^-1 error, S the sum of the edges' covariances, carried to that frame. */
+  double squared_error = 0.0;
+  /** Directions in which S is below max_deviation^2. */
+  int num_degrees = 6;
+  /** That a larger squared_error would come of chance: chi-square with num_degrees; 1
+   * without degrees. */
+  double probability = 1.0;
+};
+
+/** \brief Standard deviation of a closure from which on a direction says nothing [m,
+ * rad]: there an edge has no information of the clouds. */
+constexpr double max_deviation = 3.0;
+
+/** \brief Close a cycle, to first order, as if the errors of its edges were
+ * independent. */
+Closure
+closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle);
+
+} // namespace bayesian_icp::evaluate

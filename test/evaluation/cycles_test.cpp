@@ -1,0 +1,204 @@
+// Closures of cycles of a graph whose errors are drawn from its covariances.
+#include "cycles/cycle_closure.h"
+#include "io/errors.h"
+#include "support/test_support.h"
+
+#include <bayesian_icp/exports.h>
+#include <bayesian_icp/measurement.h>
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <tuple>
+
+using namespace bayesian_icp;
+using evaluate::Closure;
+using evaluate::Cycle;
+using evaluate::GraphEdge;
+
+namespace {
+
+/** Correlated, of about 1 cm and 2 mrad. */
+Matrix6d
+someCovariance(Random& random)
+{
+  Matrix6d root = Matrix6d::Zero();
+  for (int k = 0; k < 12; ++k) {
+    Vector6d direction = random.normal6();
+    direction.head<3>() *= 0.003;
+    direction.tail<3>() *= 0.0006;
+    root += direction * direction.transpose();
+  }
+  return root;
+}
+
+/** Between two vertices whose poses are known. */
+GraphEdge
+drawnEdge(const std::vector<Eigen::Matrix4d>& poses,
+          int target,
+          int source,
+          Random& random)
+{
+  GraphEdge edge;
+  edge.target = target;
+  edge.source = source;
+  edge.covariance = someCovariance(random);
+  const Vector6d error = edge.covariance.llt().matrixL() * random.normal6();
+  edge.T_target_source = poses[std::size_t(target)].inverse() *
+                         poses[std::size_t(source)] * expSE3(-error);
+  return edge;
+}
+
+std::vector<Eigen::Matrix4d>
+somePoses(std::size_t count, Random& random)
+{
+  std::vector<Eigen::Matrix4d> poses;
+  while (poses.size() < count)
+    poses.push_back(matrixOf(test::randomPose(random, 0.9)));
+  return poses;
+}
+
+} // namespace
+
+TEST(Cycles, CloseWithinTheSumOfTheCovariances)
+{
+  constexpr int num_runs = 500;
+  Random random(1, 0);
+  double squared_error = 0.0;
+  int num_in_half = 0;
+  for (int run = 0; run < num_runs; ++run) {
+    const auto poses = somePoses(4, random);
+    // One edge of the path is backwards.
+    const std::vector<GraphEdge> edges = {drawnEdge(poses, 0, 1, random),
+                                          drawnEdge(poses, 2, 1, random),
+                                          drawnEdge(poses, 2, 3, random),
+                                          drawnEdge(poses, 0, 3, random)};
+    const std::vector<Cycle> cycles = evaluate::cyclesOf(edges, 4);
+    ASSERT_EQ(cycles.size(), 1u);
+    EXPECT_TRUE(evaluate::cyclesOf(edges, 3).empty());
+    const Closure closure = evaluate::closureOf(edges, cycles[0]);
+    EXPECT_EQ(closure.num_degrees, 6);
+    squared_error += closure.squared_error / num_runs;
+    num_in_half += closure.probability > 0.5 ? 1 : 0;
+  }
+  EXPECT_NEAR(squared_error, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
+  EXPECT_NEAR(num_in_half, num_runs / 2, 4.0 * std::sqrt(num_runs / 4.0));
+}
+
+TEST(Cycles, AreTheShortestAndEachIsThereOnce)
+{
+  Random random(2, 0);
+  const auto poses = somePoses(5, random);
+  std::vector<GraphEdge> edges;
+  for (int k = 0; k < 4; ++k)
+    edges.push_back(drawnEdge(poses, k, k + 1, random));
+  for (int k = 0; k < 3; ++k)
+    edges.push_back(drawnEdge(poses, k, k + 2, random));
+  const std::vector<Cycle> cycles = evaluate::cyclesOf(edges, 4);
+  ASSERT_EQ(cycles.size(), 3u);
+  for (const Cycle& cycle : cycles)
+    EXPECT_EQ(cycle.path.size(), 2u);
+}
+
+TEST(Cycles, DoNotSeeWhatDrawsAllEdgesAlike)
+{
+  Random random(3, 0);
+  std::vector<GraphEdge> edges;
+  for (const auto& [target, source, way] :
+       {std::tuple(0, 1, 1.0), std::tuple(1, 2, 2.0), std::tuple(0, 2, 3.0)}) {
+    GraphEdge edge;
+    edge.target = target;
+    edge.source = source;
+    edge.covariance = 1e-6 * Matrix6d::Identity();
+    edge.T_target_source(0, 3) = 0.9 * way; // 0.1 to 0.3 m, 100 deviations and more
+    edges.push_back(edge);
+  }
+  const Closure closure =
+      evaluate::closureOf(edges, evaluate::cyclesOf(edges, 3).at(0));
+  EXPECT_LT(closure.squared_error, 1e-9);
+}
+
+TEST(Cycles, DoNotCountWhatNoCloudHasSeen)
+{
+  Random random(4, 0);
+  const auto poses = somePoses(3, random);
+  std::vector<GraphEdge> edges = {drawnEdge(poses, 0, 1, random),
+                                  drawnEdge(poses, 1, 2, random),
+                                  drawnEdge(poses, 0, 2, random)};
+  edges[1].covariance(2, 2) += 30.0 * 30.0;
+  const Closure closure =
+      evaluate::closureOf(edges, evaluate::cyclesOf(edges, 3).at(0));
+  EXPECT_EQ(closure.num_degrees, 5);
+}
+
+class GraphFile : public ::testing::Test {
+protected:
+  void
+  write(const std::string& text) const
+  {
+    std::ofstream(file_) << text;
+  }
+
+  void
+  TearDown() override
+  {
+    std::filesystem::remove(file_);
+  }
+
+  std::string file_ = (std::filesystem::temp_directory_path() /
+                       ("graph_file_test_" + std::to_string(::getpid()) + ".g2o"))
+                          .string();
+};
+
+TEST_F(GraphFile, GivesBackWhatWasExported)
+{
+  Random random(5, 0);
+  const Vector6d mean = test::randomPose(random, 0.5);
+  const Matrix6d covariance = someCovariance(random);
+  PoseEstimate estimate = estimateOf(mean, covariance, CovarianceConvention::RightSE3);
+  estimate.status = Status::Ok;
+  ExportOptions options;
+  options.target_vertex = 3;
+  options.source_vertex = 7;
+  write("VERTEX_SE3:QUAT 3 0 0 0 0 0 0 1\nFIX 3\n\n" + g2oEdge(estimate, options));
+  const std::vector<GraphEdge> edges = evaluate::readGraph(file_);
+  ASSERT_EQ(edges.size(), 1u);
+  EXPECT_EQ(edges[0].target, 3);
+  EXPECT_EQ(edges[0].source, 7);
+  EXPECT_TRUE(edges[0].T_target_source.isApprox(matrixOf(mean), 1e-12));
+  EXPECT_TRUE(edges[0].covariance.isApprox(covariance, 1e-6));
+}
+
+TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
+{
+  const std::string pose = "EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 1 ";
+  const std::string good = "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1";
+  write(pose + good + '\n');
+  EXPECT_NO_THROW(evaluate::readGraph(file_));
+  for (const std::string& bad : {pose + "1 2 3",
+                                 pose + good + " 1",
+                                 pose + "-" + good,
+                                 pose + "nan" + good.substr(1),
+                                 "EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 2 " + good,
+                                 "EDGE_SE3:QUAT 1 1 0 0 0 0 0 0 1 " + good}) {
+    write("FIX 0\n" + bad + '\n');
+    try {
+      evaluate::readGraph(file_);
+      ADD_FAILURE() << bad;
+    }
+    catch (const io::FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("line 2 "), std::string::npos)
+          << error.what();
+    }
+  }
+  write("FIX 0\n");
+  EXPECT_THROW(evaluate::readGraph(file_), io::FileError);
+}
