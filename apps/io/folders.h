@@ -21,7 +21,7 @@ makeFolder(const std::string& folder);
  * themselves.
  * \param[in] arguments one folder, or files in their order
  * \throws UsageError if these are fewer than two files, FileError if the folder cannot
- *         be read or has fewer than two */
+ *         be read, has fewer than two, or has numbered ones that names do not sort */
 std::vector<std::string>
 scansOf(const std::vector<std::string>& arguments);
 

@@ -32,13 +32,13 @@ adjointOfInverse(const Eigen::Matrix4d& T)
 Matrix6d
 rightJacobian(const Vector6d& xi)
 {
-  constexpr int num_terms = 20;
+  constexpr int max_terms = 100;
   Matrix6d minus_ad = Matrix6d::Zero();
   minus_ad.topLeftCorner<3, 3>() = minus_ad.bottomRightCorner<3, 3>() =
       -crossMatrix(xi.tail<3>());
   minus_ad.topRightCorner<3, 3>() = -crossMatrix(xi.head<3>());
   Matrix6d term = Matrix6d::Identity(), sum = term;
-  for (int k = 1; k < num_terms; ++k) {
+  for (int k = 1; k < max_terms && term.norm() > 1e-17 * sum.norm(); ++k) {
     term = term * minus_ad / double(k + 1);
     sum += term;
   }
@@ -70,9 +70,11 @@ MotionFilter::doubtVelocity()
 void
 MotionFilter::predict(double seconds)
 {
-  Vector6d noise;
-  noise << Eigen::Vector3d::Constant(model_.acceleration * seconds),
-      Eigen::Vector3d::Constant(model_.angular_acceleration * seconds);
+  Vector6d noise = Vector6d::Zero();
+  if (has_moved_)
+    noise << Eigen::Vector3d::Constant(model_.acceleration * seconds),
+        Eigen::Vector3d::Constant(model_.angular_acceleration * seconds);
+  has_moved_ = true;
   covariance_.block<6, 6>(velocity, velocity).diagonal() += noise.cwiseAbs2();
   const Vector6d motion = velocity_ * seconds;
   const Eigen::Matrix4d step = expSE3(motion);

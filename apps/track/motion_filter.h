@@ -23,7 +23,7 @@ struct MotionModel {
   Vector6d velocity = Vector6d::Zero();
   Matrix6d velocity_covariance = Matrix6d::Zero();
   /** Standard deviations of the acceleration along and about each axis of the scan, one
-   * draw for each interval between two scans [m/s^2, rad/s^2]. */
+   * draw for each interval between two scans but the first [m/s^2, rad/s^2]. */
   double acceleration = 1.0;
   double angular_acceleration = 1.0;
 };
@@ -73,6 +73,7 @@ private:
   using State = Eigen::Matrix<double, 18, 18>;
 
   MotionModel model_;
+  bool has_moved_ = false;
   Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();
   Eigen::Matrix4d scan_in_target_ = Eigen::Matrix4d::Identity();
   Vector6d velocity_;

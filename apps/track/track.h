@@ -19,7 +19,8 @@ enum class StepKind {
   Widened,
   /** Not registered: its pose is what the motion before makes likely. */
   Predicted,
-  /** As Predicted; but it is the last of several, so that it becomes the target. */
+  /** As Predicted; but max_failures or more have failed in a row, and this scan can be
+   * read, so that it becomes the target. */
   Split
 };
 
@@ -35,8 +36,8 @@ readStepKind(const std::string& name);
  * deviations become three times as large. */
 constexpr double doubt_factor = 9.0;
 
-/** \brief After so many scans in a row that could not be registered, the last one is
- * the new target. */
+/** \brief If so many scans in a row could not be registered, the last one that can be
+ * read is the new target. */
 constexpr int max_failures = 3;
 
 /** \brief What the clouds say about two scans, without any prior. */
@@ -53,8 +54,8 @@ struct TrackEdge {
 struct TrackStep {
   int scan = 0;
   StepKind kind = StepKind::Predicted;
-  /** Whether the motion contradicts the scans before, so that the velocity is taken to
-   * be as unknown as at first. */
+  /** Whether the registration was not ok with the prediction as prior, so that the
+   * velocity is taken to be as unknown as at first. */
   bool is_velocity_doubted = false;
   /** Short name of the registration's Status, and the status in words. */
   std::string status;

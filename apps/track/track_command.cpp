@@ -5,8 +5,9 @@
 #include "io/input_file.h"
 #include "register/settings_options.h"
 
-#include <cmath>
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 namespace bayesian_icp::app {
@@ -17,7 +18,12 @@ namespace {
 
 /** Latest time [s]: those of trajectories are counted in ns, and seconds in an int32.
  */
-constexpr double time_limit = 2147483648.0;
+constexpr double time_limit = 2147483648.0, shortest_interval = 1e-9;
+/** Larger ones are a mistake, and overflow in time. */
+constexpr double max_acceleration = 1e6;
+/** [m] */
+constexpr double min_voxel_size = 1e-6;
+constexpr int max_map_scans = 1000;
 constexpr std::uint64_t max_size_of_times = 100'000'000;
 
 /** What decides the times, as it is given. */
@@ -72,47 +78,75 @@ double
 timeOf(std::string_view text, const std::string& where)
 {
   double time = 0.0;
-  if (!io::readNumber(text, time) || !(time >= 0.0 && time < time_limit))
-    throw io::FileError(
-        where, io::quoted(text) + " is not a time: a number from 0 to below 2^31 (s)");
+  if (!io::readNumber(text, time))
+    throw io::FileError(where, io::quoted(text) + " is not a number (s)");
   return time;
+}
+
+/** All are at least 0 and below the limit, and increase by a nanosecond or more. */
+void
+checkTimes(const std::vector<double>& times, const std::string& where)
+{
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const std::string what =
+        "the time of scan " + io::textOf(k) + ", " + io::textOf(times[k]) + " s, is ";
+    if (!(times[k] >= 0.0 && times[k] < time_limit))
+      throw io::FileError(where, what + "not from 0 to below 2^31 s");
+    if (k > 0 && !(times[k] - times[k - 1] >= shortest_interval))
+      throw io::FileError(
+          where, what + "not after that of scan " + io::textOf(k - 1) + " by 1 ns");
+  }
 }
 
 std::vector<double>
 readTimes(const TimeOptions& options, const std::vector<std::string>& scans)
 {
   std::vector<double> times;
-  if (options.source == "names")
+  std::string where = "--period";
+  if (options.source == "names") {
+    where = "--times names";
     for (const std::string& scan : scans)
       times.push_back(timeOf(std::filesystem::path(scan).stem().string(), scan));
-  else if (!options.source.empty())
-    for (const auto word : io::words(io::readText(options.source, max_size_of_times)))
-      times.push_back(timeOf(word, options.source));
+  }
+  else if (!options.source.empty()) {
+    where = options.source;
+    const std::string text = io::readText(where, max_size_of_times);
+    for (const std::string_view word : io::words(text))
+      times.push_back(timeOf(word, where));
+  }
   else
     for (std::size_t k = 0; k < scans.size(); ++k)
       times.push_back(static_cast<double>(k) * options.period);
-  const std::string where = options.source.empty()      ? "--period"
-                            : options.source == "names" ? "--times names"
-                                                        : options.source;
   if (times.size() != scans.size())
     throw io::FileError(where,
                         "has " + io::textOf(times.size()) + " times for " +
                             io::textOf(scans.size()) + " scans");
-  for (std::size_t k = 1; k < times.size(); ++k)
-    if (!(times[k] > times[k - 1]))
-      throw io::FileError(where,
-                          "the time of scan " + io::textOf(k) + ", " +
-                              io::textOf(times[k]) + " s, is not after that of scan " +
-                              io::textOf(k - 1));
+  checkTimes(times, where);
   return times;
 }
 
 void
-requirePositive(double value, const std::string& option)
+requireWithin(double value, double least, double most, const std::string& option)
 {
-  if (!(value > 0.0) || !std::isfinite(value))
+  if (!(value >= least && value <= most))
     throw io::UsageError("--" + option + " is " + io::textOf(value) +
-                         ", but must be positive");
+                         ", but must be from " + io::textOf(least) + " to " +
+                         io::textOf(most));
+}
+
+/** What a registration with ICP has, and a track has not. */
+void
+refuseIcp(const Settings& settings)
+{
+  const Settings standard;
+  if (settings.icp_iterations != standard.icp_iterations || settings.is_reciprocal ||
+      settings.is_one_to_one || settings.use_mean)
+    throw io::UsageError("a track runs no ICP: --iterations, --reciprocal, "
+                         "--one-to-one and --mean have no meaning");
+  if (settings.is_normalized || settings.are_lengths_scaled ||
+      settings.is_step_size_times_points || settings.is_effective_points_source_size)
+    throw io::UsageError("settings of a track must not be in units of a cloud's size "
+                         "or number of points");
 }
 
 void
@@ -121,20 +155,19 @@ check(const po::variables_map& given, const TrackCommand& command)
   const TrackRequest& request = command.request;
   if (command.output_folder.empty())
     throw io::UsageError("--output is needed");
-  requirePositive(request.acceleration, "acceleration");
-  requirePositive(request.angular_acceleration, "angular-acceleration");
+  const double tiny = std::numeric_limits<double>::min();
+  requireWithin(request.acceleration, tiny, max_acceleration, "acceleration");
+  requireWithin(
+      request.angular_acceleration, tiny, max_acceleration, "angular-acceleration");
   if (given.count("map") > 0)
-    requirePositive(request.voxel_size, "map");
+    requireWithin(request.voxel_size, min_voxel_size, 1e6, "map");
   else if (given.count("map-scans") > 0)
     throw io::UsageError("--map-scans needs --map");
-  if (request.span < 1)
-    throw io::UsageError("--span is " + io::textOf(request.span) +
-                         ", but must be at least 1");
+  requireWithin(request.map_scans, 1, max_map_scans, "map-scans");
+  requireWithin(request.span, 1, max_map_scans, "span");
   if (request.span > 1 && request.voxel_size > 0.0)
     throw io::UsageError("--span excludes --map");
-  if (request.map_scans < 1)
-    throw io::UsageError("--map-scans is " + io::textOf(request.map_scans) +
-                         ", but must be at least 1");
+  refuseIcp(request.settings);
   const PriorOptions& prior = request.settings.options.prior;
   if (!prior.variance.allFinite())
     throw io::UsageError("--prior-variance must be finite: it is how well the first "
@@ -142,8 +175,6 @@ check(const po::variables_map& given, const TrackCommand& command)
   if (prior.frame == PriorFrame::SourceCentroid)
     throw io::UsageError("--prior-frame source-centroid: the motion of a track is that "
                          "of the sensor, whose frame is the origin");
-  if (request.settings.is_normalized || request.settings.are_lengths_scaled)
-    throw io::UsageError("a track is in metres: its clouds cannot be normalized");
 }
 
 std::string
@@ -167,8 +198,8 @@ as at first, and the better result is taken.
 A scan that is registered with status doubtful gets three times its standard
 deviations ("widened"). A scan that cannot be registered, or only in another
 basin, gets the predicted pose ("predicted"), and the next one is registered to
-the same target; after three of them in a row the last one becomes the target
-("split"). Directions that the clouds do not see are left to the prediction.
+the same target; from the third of them in a row on, one that can be read
+becomes the target ("split"). Directions that the clouds do not see are left to the prediction.
 
 FOLDER gets
   edges.jsonl                one line per scan: its edge without the prior, its
@@ -176,7 +207,8 @@ FOLDER gets
   trajectory_tum.txt         time, position (m) and quaternion of each scan in
                              the frame of scan 0
   trajectory_covariance.txt  the 6x6 covariances, in ROS's convention (m, rad)
-  graph.g2o                  the edges without the prior, as a pose graph
+  graph.g2o                  the edges without the prior, as a pose graph; those of
+                             predicted and split scans are the prediction
   report.html                the trajectory in pictures (needs gnuplot)
 
 For more, see docs/track.md.
@@ -184,7 +216,7 @@ For more, see docs/track.md.
        << R"(
 Exit codes:
   0    all scans are registered, with status ok
-  1    some are not; all files have been written
+  1    some are not, and all files have been written; or another failure
   2    wrong usage
   3    a file cannot be used or written
   130  interrupted (Ctrl-C or SIGTERM); the files have all scans until then, and
@@ -212,8 +244,12 @@ parseTrackCommand(int argc, const char* const* argv)
   TrackRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);
-  requirePositive(times.period, "period");
+  requireWithin(times.period, shortest_interval, time_limit, "period");
   request.settings = settingsFrom(given, Settings(), command.note);
+  Options& options_of_presets = request.settings.options;
+  for (double* const gate : {&options_of_presets.exact.residual.max_distance,
+                             &options_of_presets.paper.max_distance})
+    *gate = std::min(*gate, request.settings.max_distance);
   check(given, command);
   request.times = readTimes(times, request.scans);
   command.command = io::commandOf(argc, argv);

@@ -19,6 +19,20 @@ estimateOf(const GaussianPose& pose)
   return estimate;
 }
 
+/** With a covariance that can be inverted. Where a motion oblique to the axes is not
+ * seen, and others are seen well, it is made wider: all variances by a little. */
+PoseEstimate
+invertibleEstimateOf(GaussianPose pose)
+{
+  constexpr double widening = 1e-10; // least eigenvalue of correlations
+  PoseEstimate estimate = estimateOf(pose);
+  if (!complaintAboutExport(estimate, true).empty()) {
+    pose.covariance.diagonal() *= 1.0 + 2.0 * widening;
+    estimate = estimateOf(pose);
+  }
+  return estimate;
+}
+
 template <typename LineOf>
 std::string
 linesOf(const Track& track, const LineOf& lineOf)
@@ -60,7 +74,7 @@ g2oText(const Track& track)
       ExportOptions options;
       options.target_vertex = edge.target;
       options.source_vertex = step.scan;
-      text += g2oEdge(estimateOf(edge.pose), options);
+      text += g2oEdge(invertibleEstimateOf(edge.pose), options);
     }
   }
   return text;

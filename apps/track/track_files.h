@@ -17,7 +17,8 @@ tumText(const Track& track);
 std::string
 tumCovarianceText(const Track& track);
 
-/** \brief Vertices, FIX 0, and an edge of each step, without the prior. */
+/** \brief Vertices, FIX 0, and the edges of each step, without the prior; those of
+ * predicted and split steps are the prediction. */
 std::string
 g2oText(const Track& track);
 

@@ -54,6 +54,13 @@ readEdge(const json& value)
   return {value.at("target"), readPose(value), value.at("num_unmeasured")};
 }
 
+/** Names of files need not be UTF-8. */
+std::string
+textOf(const ordered_json& value)
+{
+  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
 } // namespace
 
 std::string
@@ -68,8 +75,7 @@ settingsIdOf(const TrackRequest& request)
                             request.scans.front(),
                             request.times.front(),
                             BAYESIAN_ICP_VERSION};
-  return io::textOfHash(
-      io::hashOf(all.dump(-1, ' ', false, ordered_json::error_handler_t::replace)));
+  return io::textOfHash(io::hashOf(textOf(all)));
 }
 
 std::string
@@ -95,31 +101,32 @@ trackLine(const TrackRequest& request, const Track& track)
                              {"pose_in_scan_0", poseJson(track.poses().back())},
                              {"seconds", step.seconds},
                              {"settings_id", settingsIdOf(request)}};
-  // Names of files need not be UTF-8.
-  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return textOf(line);
 }
 
 TrackStep
 readTrackLine(const std::string& line, const TrackRequest& request, int scan)
 {
-  const auto json = nlohmann::json::parse(line);
+  const json document = json::parse(line);
   const auto k = static_cast<std::size_t>(scan);
-  if (json.at("settings_id") != settingsIdOf(request))
+  if (document.at("settings_id") != settingsIdOf(request))
     throw std::runtime_error("it was made with other settings or another version");
-  if (json.at("scan") != scan)
+  if (document.at("scan") != scan)
     throw std::runtime_error("it is not about scan " + std::to_string(scan));
-  if (k >= request.scans.size() || json.at("time_s") != request.times[k])
-    throw std::runtime_error("its scan is none of these, or has another time");
+  if (k >= request.scans.size() || document.at("time_s") != request.times[k] ||
+      document.at("file") != json::parse(textOf(request.scans[k])))
+    throw std::runtime_error("scan " + std::to_string(scan) +
+                             " is another file here, or has another time");
   TrackStep step;
   step.scan = scan;
-  step.kind = readStepKind(json.at("kind"));
-  step.status = json.at("status");
-  step.message = json.at("message");
-  step.edge = readEdge(json.at("edge"));
-  for (const nlohmann::json& edge : json.at("more_edges"))
+  step.kind = readStepKind(document.at("kind"));
+  step.status = document.at("status");
+  step.message = document.at("message");
+  step.edge = readEdge(document.at("edge"));
+  for (const json& edge : document.at("more_edges"))
     step.more_edges.push_back(readEdge(edge));
-  step.is_velocity_doubted = json.at("is_velocity_doubted");
-  step.seconds = json.at("seconds");
+  step.is_velocity_doubted = document.at("is_velocity_doubted");
+  step.seconds = document.at("seconds");
   return step;
 }
 

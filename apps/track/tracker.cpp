@@ -11,7 +11,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 
 namespace bayesian_icp::app {
 
@@ -21,14 +20,13 @@ namespace {
 Eigen::Matrix3Xd
 thinned(const Eigen::Matrix3Xd& points, double voxel_size)
 {
-  using Voxel = std::array<std::int64_t, 3>;
+  using Voxel = std::array<double, 3>;
   std::vector<std::pair<Voxel, Eigen::Index>> voxels;
   voxels.reserve(static_cast<std::size_t>(points.cols()));
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     Voxel voxel;
     for (int axis = 0; axis < 3; ++axis)
-      voxel[static_cast<std::size_t>(axis)] =
-          static_cast<std::int64_t>(std::floor(points(axis, i) / voxel_size));
+      voxel[static_cast<std::size_t>(axis)] = std::floor(points(axis, i) / voxel_size);
     voxels.emplace_back(voxel, i);
   }
   std::sort(voxels.begin(), voxels.end());
@@ -73,8 +71,13 @@ registered(const Eigen::Matrix3Xd& points,
            const Options& options,
            const ProgressCallback& progress)
 {
+  bool is_cancelled = false;
+  const auto watch = [&](const Progress& done) {
+    is_cancelled = is_cancelled || !progress(done);
+    return !is_cancelled;
+  };
   PosteriorEstimate estimate =
-      estimatePosterior(points, target, options.prior.mean, options, progress);
+      estimatePosterior(points, target, options.prior.mean, options, watch);
   Summary& summary = estimate.summary;
   doubtRounding(std::max(usualCoordinate(points), usualCoordinate(target.points())),
                 options,
@@ -82,18 +85,18 @@ registered(const Eigen::Matrix3Xd& points,
   Registration result;
   result.status = toString(summary.status);
   result.message = summary.message;
-  if (summary.status == Status::Cancelled) {
+  if (is_cancelled) {
     result.quality = Quality::Cancelled;
     return result;
   }
   const PoseEstimate posterior(summary);
-  std::string complaint = complaintAboutExport(posterior, true);
+  std::string complaint = complaintAboutExport(posterior, false);
   if (complaint.empty() && summary.data.flags.wrong_basin)
     complaint = "the pose may be in another basin";
   if (complaint.empty()) {
     const PoseMeasurement measurement =
         withoutPrior(posterior, Prior(options.prior.mean, options.prior.variance));
-    complaint = complaintAboutExport(measurement.estimate, true);
+    complaint = complaintAboutExport(measurement.estimate, false);
     result.edge.num_unmeasured = measurement.num_unmeasured;
     result.edge.pose = {
         measurement.estimate.mean,
@@ -150,7 +153,10 @@ Tracker::mapOfTarget()
   Eigen::Index size = 0;
   for (const auto& [scan, T_target_scan] : track_.targetScans()) {
     parts.emplace_back();
-    movePoints(poseOf(T_target_scan), pointsOf(scan), parts.back());
+    movePoints(poseOf(T_target_scan),
+               thinned(pointsOf(scan), request_.voxel_size),
+               parts.back());
+    points_.erase(scan);
     size += parts.back().cols();
   }
   Eigen::Matrix3Xd all(3, size);
@@ -272,6 +278,8 @@ Tracker::registerNext(const ProgressCallback& progress)
   step->edge.target = track_.target();
   if (step->kind == StepKind::Predicted)
     points_.erase(scan);
+  else if (request_.voxel_size > 0.0) // as the map will have it
+    points_[scan] = thinned(pointsOf(scan), request_.voxel_size);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   step->seconds = time.count();
   return step;

@@ -1,6 +1,7 @@
 """pcl_bayesian_icp_track: a camera that moves about a table."""
 
 import os
+import random
 import unittest
 
 import cloud_files
@@ -141,6 +142,37 @@ class TrackOfSimulatedScans(TrackTest):
                 self.assertEqual((self.track / name).read_text(), text, name)
         result = self.run_track(scans, "--acceleration", 1)
         self.assert_refused(3, result, "edges.jsonl", "other settings")
+        (scans / "scan_2.pcd").rename(scans / "scan_5.pcd")
+        result = self.run_track(scans)
+        self.assert_refused(3, result, "edges.jsonl", "scan 2 is another file here")
+        (scans / "scan_3.pcd").rename(scans / "scan_10.pcd")
+        self.assert_refused(3, self.run_track(scans), "scan_4.pcd", "by number")
+
+
+class TrackWithUnseenMotions(TrackTest):
+    def test_along_a_wall_that_is_oblique_to_the_axes(self):
+        random_numbers = random.Random(1)
+        scans = []
+        for k in range(4):
+            points = []
+            for _ in range(3000):
+                u, v = (random_numbers.uniform(-2, 2) for _ in range(2))
+                w = 3 + random_numbers.gauss(0, 0.002)
+                # Orthonormal: along the wall (1, -1, 0), (1, 1, -2); across (1, 1, 1).
+                a, b, c = u / 2**0.5, v / 6**0.5, w / 3**0.5
+                points.append((a + b + c, b - a + c, c - 2 * b))
+            scans.append(self.file(f"wall_{k}.pcd", cloud_files.pcd_bytes(points)))
+        result = self.run_track(*scans, "--acceleration", 1, "--angular-acceleration", 1)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for k, line in enumerate(self.lines(), 1):
+            self.assertEqual((line["kind"], line["edge"]["num_unmeasured"]), ("registered", 3))
+            matrix = line["pose_in_scan_0"]["covariance"]["matrix"]
+            across = sum(matrix[i][j] for i in range(3) for j in range(3)) / 3
+            along = (matrix[0][0] + matrix[1][1] - 2 * matrix[0][1]) / 2
+            self.assertLess(across, 0.002**2)
+            # The first motion is not seen, and the velocity does not change much.
+            self.assertAlmostEqual(along**0.5, k * 0.125**0.5, delta=0.1 * k)
+        self.assertEqual(len(read_graph(self.track / "graph.g2o")[1]), 3)
 
 
 class TrackWithBadScans(TrackTest):
@@ -187,7 +219,7 @@ class TrackUsage(TrackTest):
         result = self.run_track(first, second, "--times", "names")
         self.assertIn(result.returncode, (0, 1), result.stderr)
         self.assertEqual([row[0] for row in self.rows("trajectory_tum.txt")], [17.25, 17.5])
-        times = self.file("times.txt", "3\n4.5\n")
+        times = self.file("times.txt", "3.00000000000\n4.50000000000\n")
         self.track = self.folder / "another"
         self.assertIn(self.run_track(first, second, "--times", times).returncode, (0, 1))
         self.assertEqual([row[0] for row in self.rows("trajectory_tum.txt")], [3.0, 4.5])
@@ -198,7 +230,7 @@ class TrackUsage(TrackTest):
         (self.folder / "empty").mkdir()
         for code, words, part in (
             (2, [target], "at least two scans"),
-            (2, [*two, "--acceleration", 0], "--acceleration is 0"),
+            (2, [*two, "--acceleration", 0], "--acceleration is 0, but must be from"),
             (2, [*two, "--period", "-1"], "--period is -1"),
             (2, [*two, "--map", 0], "--map is 0"),
             (2, [*two, "--span", 0], "--span is 0"),
@@ -208,7 +240,10 @@ class TrackUsage(TrackTest):
             (2, [*two, "--prior-variance", "inf"], "must be finite"),
             (2, [*two, "--prior-frame", "source-centroid"], "--prior-frame"),
             (2, [*two, "--sigma", "1"], "--sigma"),
-            (3, [*two, "--times", "names"], "'target' is not a time"),
+            (2, [*two, "--iterations", 3], "a track runs no ICP"),
+            (2, [*two, "--map", 1e-9], "--map is 1e-09"),
+            (3, [*two, "--period", 2147483648], "not from 0 to below 2^31 s"),
+            (3, [*two, "--times", "names"], "'target' is not a number"),
             (3, [*two, "--times", self.file("short.txt", "1\n")], "has 1 times for 2 scans"),
             (3, [*two, "--times", self.file("back.txt", "2 1")], "is not after"),
             (3, [self.folder / "empty"], "fewer than two"),

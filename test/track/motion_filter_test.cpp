@@ -83,7 +83,7 @@ runOf(std::uint64_t seed, int scans_on_target)
   RunOfTrack run;
   int num_on_target = 0;
   for (int scan = 1; scan <= num_steps; ++scan) {
-    Vector6d acceleration = random.normal6();
+    Vector6d acceleration = scan > 1 ? random.normal6() : Vector6d(Vector6d::Zero());
     acceleration.head<3>() *= given.acceleration;
     acceleration.tail<3>() *= given.angular_acceleration;
     velocity += seconds * acceleration;
@@ -127,6 +127,31 @@ TEST_P(MotionFilterOnTracks, KnowsHowFarItIsOff)
 }
 
 INSTANTIATE_TEST_SUITE_P(ScansOnATarget, MotionFilterOnTracks, ::testing::Values(1, 3));
+
+TEST(MotionFilter, CarriesTheVelocitysErrorAsTheMotionDoes)
+{
+  constexpr double step = 1e-6;
+  MotionModel turning = model();
+  turning.velocity << 3.0, -2.0, 1.0, 4.0, -6.0, 7.0; // 1 rad in 0.1 s
+  turning.velocity_covariance = registrationCovariance();
+  const auto motion = [&](const Vector6d& velocity) {
+    return expSE3(seconds * velocity);
+  };
+  Matrix6d J;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d h = step * Vector6d::Unit(k);
+    J.col(k) =
+        logSE3(motion(turning.velocity - h).inverse() * motion(turning.velocity + h)) /
+        (2.0 * step);
+  }
+  const Matrix6d expected = J * turning.velocity_covariance * J.transpose();
+  MotionFilter filter(turning), doubtful(turning);
+  filter.predict(seconds);
+  EXPECT_TRUE(filter.pose().covariance.isApprox(expected, 1e-6));
+  doubtful.doubtVelocity();
+  doubtful.predict(seconds);
+  EXPECT_TRUE(doubtful.pose().covariance.isApprox(2.0 * expected, 1e-6));
+}
 
 TEST(MotionFilter, GivesBackTheRegistrationWhereNothingElseIsKnown)
 {
