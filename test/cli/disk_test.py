@@ -16,6 +16,7 @@ from faults import (
     GROWING,
     POSE_GRAPH,
     SIMULATE,
+    TRACK,
     TRANSFORM,
     TWO_RUNS,
     VIEWER,
@@ -28,7 +29,8 @@ from faults import (
     waits_for_a_lock,
 )
 
-PROGRAMS = [TOOL, BATCH, EVALUATE, POSE_GRAPH, SIMULATE, TRANSFORM] + ([VIEWER] if VIEWER else [])
+PROGRAMS = [TOOL, BATCH, EVALUATE, POSE_GRAPH, SIMULATE, TRACK, TRANSFORM]
+PROGRAMS += [VIEWER] if VIEWER else []
 
 
 def name_of(program):

@@ -20,18 +20,26 @@ BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
 EVALUATE = os.environ["PCL_BAYESIAN_ICP_EVALUATE"]
 POSE_GRAPH = os.environ["PCL_BAYESIAN_ICP_POSE_GRAPH"]
 SIMULATE = os.environ["PCL_BAYESIAN_ICP_SIMULATE"]
+TRACK = os.environ["PCL_BAYESIAN_ICP_TRACK"]
 TRANSFORM = os.environ["PCL_BAYESIAN_ICP_TRANSFORM"]
 VIEWER = os.environ["PCL_BAYESIAN_ICP_VIEWER"]  # empty where it is not built
 
 MOTION = "0.1,-0.2,0.3,0.02,-0.01,0.5"
 REGISTERED = {"aligned.pcd", "posterior.json", "report.html", "samples.csv"}
+TRACKED = {
+    "edges.jsonl",
+    "graph.g2o",
+    "report.html",
+    "trajectory_covariance.txt",
+    "trajectory_tum.txt",
+}
 SIMULATED = {"T_target_source.txt", "scene.json", "source.pcd", "target.pcd"}
 ONE_CASE = ["--methods", "calibrated", "--scenes", "can", "--conditions", "same", "--seeds", "1"]
 TWO_RUNS = ["--sampler", "exact-langevin", "--runs", "2"]
 # A temporary file of an output on its way.
 TEMPORARY = re.compile(r"\.[A-Za-z0-9]{6}$")
 # What a tool has finished stays in these, whatever becomes of the rest.
-GROWING = {"coverage.csv", "results.jsonl", "sbc.csv"}
+GROWING = {"coverage.csv", "edges.jsonl", "results.jsonl", "sbc.csv"}
 # Minutes of work, of which each chain keeps a draw about every 50 ms.
 ENDLESS = ["--preset", "paper", "--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
 
@@ -141,6 +149,7 @@ class FaultTest(ToolTest):
                 [POSE_GRAPH, source, target, *FAST, "--weak-edges", "--quiet", "-o", output / "g.g2o"],
                 {"g.g2o"},
             ),
+            "track": ([TRACK, target, source, *FAST, "--quiet", "-o", output], TRACKED),
             "coverage": (
                 [EVALUATE, "coverage", *ONE_CASE, *study, output / "coverage.csv"],
                 {"coverage.csv"},

@@ -20,6 +20,8 @@ from faults import (
     POSE_GRAPH,
     SIMULATE,
     SIMULATED,
+    TRACK,
+    TRACKED,
     TRANSFORM,
     MOTION,
     REGISTERED,
@@ -202,6 +204,26 @@ class EndedBySignal(FaultTest):
                 self.end(process, number, seconds=0.0)
                 self.assertEqual(process.returncode, 130)
                 self.assertEqual(self.names_in(output), set())
+
+    def test_track_goes_on_where_it_was_ended(self):
+        scans = [*self.small_pair()] * 10
+        alone = self.new_folder()
+        self.assertIn(call(TRACK, *scans, "-o", alone).returncode, (0, 1))
+        for number in SIGNALS:
+            with self.subTest(signal=number.name):
+                output = self.new_folder()
+                edges = output / "edges.jsonl"
+                process = start(TRACK, *scans, "-o", output)
+                wait_for(lambda: self.num_lines(edges) > 1, process)
+                self.end(process, number, seconds=0.0)
+                self.assertEqual(process.returncode, 130)
+                self.assertEqual(self.names_in(output), TRACKED)
+                num_poses = self.num_lines(output / "trajectory_tum.txt")
+                self.assertEqual(num_poses, self.num_lines(edges) + 1)
+                self.assertLess(num_poses, len(scans))
+                self.assertIn(call(TRACK, *scans, "-o", output).returncode, (0, 1))
+                for name in TRACKED - {"edges.jsonl", "report.html"}:
+                    self.assertEqual((output / name).read_text(), (alone / name).read_text())
 
     def test_study_goes_on_where_it_was_ended(self):
         """Its signal ends it at once; rows that there are stay, and are not made again."""

@@ -1,11 +1,11 @@
 """pcl_bayesian_icp_track: a camera that moves about a table."""
 
-import os
 import random
 import unittest
 
 import cloud_files
 from cli_tool import strict_json
+from faults import EVALUATE, TRACK, TRACKED
 from trajectories import (
     CHI2_HIGH,
     TrajectoryTest,
@@ -18,16 +18,7 @@ from trajectories import (
     read_graph,
 )
 
-TRACK = os.environ["PCL_BAYESIAN_ICP_TRACK"]
-EVALUATE = os.environ["PCL_BAYESIAN_ICP_EVALUATE"]
 EYES = ["0,-1.2,0.7", "0.05,-1.19,0.71", "0.1,-1.18,0.71", "0.15,-1.16,0.7", "0.2,-1.14,0.7"]
-NAMES = {
-    "edges.jsonl",
-    "graph.g2o",
-    "report.html",
-    "trajectory_covariance.txt",
-    "trajectory_tum.txt",
-}
 
 
 class TrackTest(TrajectoryTest):
@@ -72,7 +63,7 @@ class TrackOfSimulatedScans(TrackTest):
         scans, from_world = self.trajectory(EYES)
         result = self.run_track(scans, "--period", 0.2)
         self.assertIn(result.returncode, (0, 1), result.stderr)
-        self.assertEqual({path.name for path in self.track.iterdir()}, NAMES)
+        self.assertEqual({path.name for path in self.track.iterdir()}, TRACKED)
         vertices = self.check_truth(from_world)
         self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 1, 2, 3])
         rows = self.rows("trajectory_tum.txt")
