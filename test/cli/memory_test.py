@@ -13,8 +13,8 @@ from cli_tool import SANITIZER
 from faults import GROWING, TOOL, TRANSFORM, MOTION, FaultTest, call, limited
 
 MEBIBYTE = 1 << 20
-# From what the libraries alone need to more than enough.
-LIMITS = [size * MEBIBYTE for size in (66, 72, 80, 90, 100, 110, 120, 140, 300)]
+# Above what the libraries alone need, to more than enough.
+EXTRA = [size * MEBIBYTE for size in (0, 4, 8, 14, 22, 32, 45, 65, 230)]
 # Measured, and a third more: of each point of both clouds, and of one cloud.
 MOST_BYTES_A_POINT = {"register": 250, "transform": 160}
 # The loader's, for a program whose libraries do not fit.
@@ -23,6 +23,15 @@ NOT_LOADED = 127
 
 @unittest.skipIf(SANITIZER, "a sanitizer needs more address space than is left")
 class OutOfMemory(FaultTest):
+    def least_limit(self, program):
+        """Address space with which the program begins to run [bytes]."""
+        limit = 40 * MEBIBYTE
+        while True:
+            if call(program, "--help", preexec_fn=limited(resource.RLIMIT_AS, limit)).returncode == 0:
+                return limit
+            self.assertLess(limit, 1000 * MEBIBYTE)
+            limit += 4 * MEBIBYTE
+
     def ran_out(self, tool, pair, limit):
         """Whether a tool that has so much address space [bytes] said that it is too little."""
         output = self.new_folder()
@@ -54,7 +63,8 @@ class OutOfMemory(FaultTest):
         for tool in tools:
             its_pair = bigger if tool.startswith("transform") else pair
             with self.subTest(tool=tool):
-                ran_out = [self.ran_out(tool, its_pair, limit) for limit in LIMITS]
+                least = self.least_limit(self.invocations(self.folder, its_pair)[tool][0][0])
+                ran_out = [self.ran_out(tool, its_pair, least + extra) for extra in EXTRA]
                 self.assertIn(True, ran_out)
                 self.assertFalse(ran_out[-1])
 
