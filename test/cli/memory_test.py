@@ -24,13 +24,17 @@ NOT_LOADED = 127
 @unittest.skipIf(SANITIZER, "a sanitizer needs more address space than is left")
 class OutOfMemory(FaultTest):
     def least_limit(self, program):
-        """Address space with which the program begins to run [bytes]."""
-        limit = 40 * MEBIBYTE
-        while True:
-            if call(program, "--help", preexec_fn=limited(resource.RLIMIT_AS, limit)).returncode == 0:
-                return limit
-            self.assertLess(limit, 1000 * MEBIBYTE)
-            limit += 4 * MEBIBYTE
+        """Address space with which the program begins to run, to a mebibyte [bytes]."""
+        too_little, enough = 0, 1024 * MEBIBYTE
+        while enough - too_little > MEBIBYTE:
+            limit = (too_little + enough) // 2
+            runs = call(program, "--help", preexec_fn=limited(resource.RLIMIT_AS, limit))
+            if runs.returncode == 0:
+                enough = limit
+            else:
+                too_little = limit
+        self.assertLess(enough, 1024 * MEBIBYTE)
+        return enough
 
     def ran_out(self, tool, pair, limit):
         """Whether a tool that has so much address space [bytes] said that it is too little."""
