@@ -10,17 +10,6 @@ namespace {
 /** Where the errors of the parts are. */
 constexpr Eigen::Index target = 0, scan = 6, velocity = 12;
 
-/** How a twist (v, w) of the right changes when \p T is moved to its left:
- * T exp(xi) = exp(Ad(T) xi) T. */
-Matrix6d
-adjointOf(const Eigen::Matrix4d& T)
-{
-  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  Matrix6d adjoint;
-  adjoint << R, crossMatrix(T.topRightCorner<3, 1>()) * R, Eigen::Matrix3d::Zero(), R;
-  return adjoint;
-}
-
 Matrix6d
 adjointOfInverse(const Eigen::Matrix4d& T)
 {
@@ -53,6 +42,15 @@ symmetric(const Matrix& matrix)
 }
 
 } // namespace
+
+Matrix6d
+adjointOf(const Eigen::Matrix4d& T)
+{
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  Matrix6d adjoint;
+  adjoint << R, crossMatrix(T.topRightCorner<3, 1>()) * R, Eigen::Matrix3d::Zero(), R;
+  return adjoint;
+}
 
 MotionFilter::MotionFilter(const MotionModel& model)
 : model_(model)

@@ -65,7 +65,7 @@ Track::take(const TrackStep& step)
                                        : std::numeric_limits<double>::quiet_NaN());
   num_failures_ = is_registered ? 0 : num_failures_ + 1;
   if (is_registered)
-    registered_.emplace_back(step.scan, matrixOf(filter_.poseInTarget().mean));
+    registered_.emplace_back(step.scan, filter_.poseInTarget());
   steps_.push_back(step);
   poses_.push_back(filter_.pose());
   if (step.kind == StepKind::Split ||
@@ -73,16 +73,34 @@ Track::take(const TrackStep& step)
     changeTarget(step.kind);
 }
 
+Matrix6d
+Track::targetCovariance(const Eigen::Matrix4d& T_target_scan) const
+{
+  const Matrix6d carry = adjointOf(T_target_scan.inverse());
+  return carry * target_covariance_ * carry.transpose();
+}
+
 void
 Track::changeTarget(StepKind kind)
 {
   if (kind == StepKind::Split)
-    registered_.assign(1, {size() - 1, matrixOf(filter_.poseInTarget().mean)});
-  const Eigen::Matrix4d to_new_target = registered_.back().second.inverse();
-  target_ = registered_.back().first;
+    registered_.assign(1, {size() - 1, filter_.poseInTarget()});
+  const auto [target, of_target] = registered_.back();
+  const Eigen::Matrix4d to_new_target = matrixOf(of_target.mean).inverse();
+  target_ = target;
   target_scans_.clear();
-  for (const auto& [scan, T_target_scan] : registered_)
-    target_scans_.emplace_back(scan, to_new_target * T_target_scan);
+  target_covariance_.setZero();
+  for (const auto& [scan, pose] : registered_) {
+    const Eigen::Matrix4d T_target_scan = to_new_target * matrixOf(pose.mean);
+    target_scans_.emplace_back(scan, T_target_scan);
+    if (scan == target)
+      continue;
+    // (T exp(a))^-1 S exp(b) = exp(-a) T^-1 S exp(b), and b is carried to the left.
+    const Matrix6d carry = adjointOf(T_target_scan);
+    target_covariance_ +=
+        of_target.covariance + carry * pose.covariance * carry.transpose();
+  }
+  target_covariance_ /= static_cast<double>(registered_.size());
   registered_.clear();
   num_failures_ = 0;
   filter_.makeScanTheTarget();

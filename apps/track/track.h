@@ -106,6 +106,13 @@ public:
     return target_scans_;
   }
 
+  /** \brief How much scans of the target are out of place, on average, as a covariance
+   * of poses T_target_scan: an edge to the target is at least as uncertain. 0 for one
+   * scan. The errors of its scans are taken as independent.
+   * \param[in] T_target_scan of the edge; the covariance is in its scan's frame */
+  Matrix6d
+  targetCovariance(const Eigen::Matrix4d& T_target_scan) const;
+
   /** \brief Scans in a row that could not be registered. */
   int
   numFailures() const
@@ -154,8 +161,10 @@ private:
   MotionFilter filter_;
   int target_ = 0;
   std::vector<std::pair<int, Eigen::Matrix4d>> target_scans_;
+  /** Of twists on the left of T_target_scan. */
+  Matrix6d target_covariance_ = Matrix6d::Zero();
   /** Scans that were registered to this target, and their poses in its frame. */
-  std::vector<std::pair<int, Eigen::Matrix4d>> registered_;
+  std::vector<std::pair<int, GaussianPose>> registered_;
   int num_failures_ = 0;
   std::vector<TrackStep> steps_;
   std::vector<double> innovations_;

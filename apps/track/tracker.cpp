@@ -186,11 +186,15 @@ Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
                           bool& is_of_use) const
 {
   const auto attempt = [&](bool is_velocity_doubted) {
+    GaussianPose prediction = track_.prediction(is_velocity_doubted);
+    prediction.covariance += track_.targetCovariance(matrixOf(prediction.mean));
     Options options = request_.settings.options;
     double widening = 1.0;
-    options.prior = priorFrom(
-        statedPoseOf(track_.prediction(is_velocity_doubted)), PriorFloor(), widening);
-    return registered(points, *target_, options, progress);
+    options.prior = priorFrom(statedPoseOf(prediction), PriorFloor(), widening);
+    Registration result = registered(points, *target_, options, progress);
+    result.edge.pose.covariance +=
+        track_.targetCovariance(matrixOf(result.edge.pose.mean));
+    return result;
   };
   TrackStep step;
   Registration result = attempt(false);

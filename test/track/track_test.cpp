@@ -77,6 +77,7 @@ TEST(Track, RegistersEachScanToTheOneBefore)
   EXPECT_EQ(track.target(), 3);
   ASSERT_EQ(track.targetScans().size(), 1u);
   EXPECT_EQ(track.targetScans()[0].first, 3);
+  EXPECT_TRUE(track.targetCovariance(Eigen::Matrix4d::Identity()).isZero());
   EXPECT_NEAR(track.poses()[3].mean[0], 0.3, 0.01);
 }
 
@@ -115,6 +116,11 @@ TEST(Track, MakesAMapOfTheLastScans)
     EXPECT_EQ(scan, k + 1);
     EXPECT_NEAR(T_target_scan(0, 3), 0.1 * (scan - 3), 0.01);
   }
+  // Two of the three scans are out of place by their own errors and the target's: twice
+  // 1 mm^2 along x, and more across, where rotations of the scan ahead count.
+  const Matrix6d covariance = track.targetCovariance(Eigen::Matrix4d::Identity());
+  EXPECT_NEAR(covariance(0, 0), 2.0 / 3.0 * 2e-6, 1e-8);
+  EXPECT_GT(covariance(1, 1), covariance(0, 0));
 }
 
 TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
