@@ -1,5 +1,7 @@
 #include "track/motion_filter.h"
 
+#include "track/adjoint.h"
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -9,12 +11,6 @@ namespace {
 
 /** Where the errors of the parts are. */
 constexpr Eigen::Index target = 0, scan = 6, velocity = 12;
-
-Matrix6d
-adjointOfInverse(const Eigen::Matrix4d& T)
-{
-  return adjointOf(T.inverse());
-}
 
 /** J with exp(xi + d) = exp(xi) exp(J d) to first order in d: the sum of
  * (-ad(xi))^k / (k + 1)! (Barfoot 2017, eq. 7.77). */
@@ -43,15 +39,6 @@ symmetric(const Matrix& matrix)
 
 } // namespace
 
-Matrix6d
-adjointOf(const Eigen::Matrix4d& T)
-{
-  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  Matrix6d adjoint;
-  adjoint << R, crossMatrix(T.topRightCorner<3, 1>()) * R, Eigen::Matrix3d::Zero(), R;
-  return adjoint;
-}
-
 MotionFilter::MotionFilter(const MotionModel& model)
 : model_(model)
 , velocity_(model.velocity)
@@ -78,7 +65,7 @@ MotionFilter::predict(double seconds)
   const Eigen::Matrix4d step = expSE3(motion);
   scan_in_target_ = scan_in_target_ * step;
   State F = State::Identity();
-  F.block<6, 6>(scan, scan) = adjointOfInverse(step);
+  F.block<6, 6>(scan, scan) = adjointOf(step.inverse());
   F.block<6, 6>(scan, velocity) = seconds * rightJacobian(motion);
   covariance_ = symmetric(State(F * covariance_ * F.transpose()));
 }
@@ -108,7 +95,7 @@ void
 MotionFilter::makeScanTheTarget()
 {
   State F = State::Identity();
-  F.block<6, 6>(target, target) = adjointOfInverse(scan_in_target_);
+  F.block<6, 6>(target, target) = adjointOf(scan_in_target_.inverse());
   F.block<6, 6>(target, scan).setIdentity();
   F.block<6, 6>(scan, scan).setZero();
   covariance_ = symmetric(State(F * covariance_ * F.transpose()));

@@ -17,11 +17,6 @@ struct GaussianPose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
-/** \brief How a twist (v, w) on the right of a pose changes when \p T is moved to its
- * left: T exp(xi) = exp(Ad(T) xi) T. */
-Matrix6d
-adjointOf(const Eigen::Matrix4d& T);
-
 /** \brief What is known about the motion before the scans are seen. */
 struct MotionModel {
   /** Twist in the scan's frame at the first scan [m/s, rad/s], and its covariance. */

@@ -1,5 +1,7 @@
 #include "track/track.h"
 
+#include "track/adjoint.h"
+
 #include <Eigen/LU>
 
 #include <array>

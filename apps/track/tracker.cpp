@@ -226,7 +226,8 @@ Tracker::registerToMore(const Eigen::Matrix3Xd& points,
     return matrixOf(track_.poses().at(static_cast<std::size_t>(scan)).mean);
   };
   const Eigen::Matrix4d pose = poseIn0(track_.target()) * matrixOf(step.edge.pose.mean);
-  for (int other = track_.target() - 1; other >= std::max(0, step.scan - request_.span);
+  for (int other = track_.target() - 1;
+       other >= std::max(0, track_.size() - request_.span);
        --other) {
     const bool has_pose =
         other == 0 || track_.steps().at(static_cast<std::size_t>(other - 1)).kind !=
@@ -260,7 +261,6 @@ Tracker::registerNext(const ProgressCallback& progress)
     step = registerToTarget(points, progress, is_of_use);
     if (!step)
       return std::nullopt;
-    step->scan = scan;
     if (is_of_use && !registerToMore(points, progress, *step))
       return std::nullopt;
   }

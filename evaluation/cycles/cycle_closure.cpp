@@ -1,5 +1,7 @@
 #include "cycles/cycle_closure.h"
 
+#include "track/adjoint.h"
+
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include <Eigen/Cholesky>
@@ -63,23 +65,13 @@ shortestPath(const std::vector<GraphEdge>& edges,
   return found == ways.end() ? std::vector<std::size_t>() : found->second;
 }
 
-/** Ad(T^-1): carries a twist of the right from before \p T to behind it. */
-Matrix6d
-carryBehind(const Eigen::Matrix4d& T)
-{
-  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>().transpose();
-  Matrix6d carry;
-  carry << R, -R * crossMatrix(T.topRightCorner<3, 1>()), Eigen::Matrix3d::Zero(), R;
-  return carry;
-}
-
 /** The edge as seen from its source. */
 GraphEdge
 inverted(const GraphEdge& edge)
 {
   // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi)
   const Eigen::Matrix4d back = edge.T_target_source.inverse();
-  const Matrix6d carry = carryBehind(back);
+  const Matrix6d carry = app::adjointOf(edge.T_target_source);
   return {edge.source, edge.target, back, carry * edge.covariance * carry.transpose()};
 }
 
@@ -111,7 +103,7 @@ closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
   int vertex = direct.target;
   for (const std::size_t k : cycle.path) {
     const GraphEdge edge = edges[k].target == vertex ? edges[k] : inverted(edges[k]);
-    const Matrix6d carry = carryBehind(edge.T_target_source);
+    const Matrix6d carry = app::adjointOf(edge.T_target_source.inverse());
     S = carry * S * carry.transpose() + edge.covariance;
     way = way * edge.T_target_source;
     vertex = edge.source;
