@@ -1,6 +1,6 @@
 #include "track/motion_filter.h"
 
-#include "track/adjoint.h"
+#include "graph/adjoint.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -3,19 +3,11 @@
  */
 #pragma once
 
-#include <bayesian_icp/pose.h>
+#include "graph/pose_graph.h"
 
 #include <Eigen/Core>
 
 namespace bayesian_icp::app {
-
-/** \brief A pose that is known as well as its covariance says. */
-struct GaussianPose {
-  /** (x, y, z, roll, pitch, yaw) [m, rad]. */
-  Vector6d mean = Vector6d::Zero();
-  /** CovarianceConvention::RightSE3, in the frame of the scan [m, rad]. */
-  Matrix6d covariance = Matrix6d::Zero();
-};
 
 /** \brief What is known about the motion before the scans are seen. */
 struct MotionModel {

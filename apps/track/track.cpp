@@ -1,6 +1,6 @@
 #include "track/track.h"
 
-#include "track/adjoint.h"
+#include "graph/adjoint.h"
 
 #include <Eigen/LU>
 

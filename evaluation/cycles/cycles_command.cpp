@@ -1,6 +1,6 @@
 #include "cycles/cycles_command.h"
 
-#include "cycles/cycle_closure.h"
+#include "graph/cycle_closure.h"
 #include "io/coordinates.h"
 #include "io/folders.h"
 #include "io/output_folder.h"
@@ -20,6 +20,10 @@
 namespace bayesian_icp::evaluate {
 
 namespace po = boost::program_options;
+
+using app::Closure;
+using app::Cycle;
+using app::GraphEdge;
 
 namespace {
 

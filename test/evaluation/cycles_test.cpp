@@ -1,5 +1,5 @@
 // Closures of cycles of a graph whose errors are drawn from its covariances.
-#include "cycles/cycle_closure.h"
+#include "graph/cycle_closure.h"
 #include "io/errors.h"
 #include "support/test_support.h"
 
@@ -20,9 +20,9 @@
 #include <tuple>
 
 using namespace bayesian_icp;
-using evaluate::Closure;
-using evaluate::Cycle;
-using evaluate::GraphEdge;
+using app::Closure;
+using app::Cycle;
+using app::GraphEdge;
 
 namespace {
 
@@ -81,10 +81,10 @@ TEST(Cycles, CloseWithinTheSumOfTheCovariances)
                                           drawnEdge(poses, 2, 1, random),
                                           drawnEdge(poses, 2, 3, random),
                                           drawnEdge(poses, 0, 3, random)};
-    const std::vector<Cycle> cycles = evaluate::cyclesOf(edges, 4);
+    const std::vector<Cycle> cycles = app::cyclesOf(edges, 4);
     ASSERT_EQ(cycles.size(), 1u);
-    EXPECT_TRUE(evaluate::cyclesOf(edges, 3).empty());
-    const Closure closure = evaluate::closureOf(edges, cycles[0]);
+    EXPECT_TRUE(app::cyclesOf(edges, 3).empty());
+    const Closure closure = app::closureOf(edges, cycles[0]);
     EXPECT_EQ(closure.num_degrees, 6);
     squared_error += closure.squared_error / num_runs;
     num_in_half += closure.probability > 0.5 ? 1 : 0;
@@ -102,7 +102,7 @@ TEST(Cycles, AreTheShortestAndEachIsThereOnce)
     edges.push_back(drawnEdge(poses, k, k + 1, random));
   for (int k = 0; k < 3; ++k)
     edges.push_back(drawnEdge(poses, k, k + 2, random));
-  const std::vector<Cycle> cycles = evaluate::cyclesOf(edges, 4);
+  const std::vector<Cycle> cycles = app::cyclesOf(edges, 4);
   ASSERT_EQ(cycles.size(), 3u);
   for (const Cycle& cycle : cycles)
     EXPECT_EQ(cycle.path.size(), 2u);
@@ -122,7 +122,7 @@ TEST(Cycles, DoNotSeeWhatDrawsAllEdgesAlike)
     edges.push_back(edge);
   }
   const Closure closure =
-      evaluate::closureOf(edges, evaluate::cyclesOf(edges, 3).at(0));
+      app::closureOf(edges, app::cyclesOf(edges, 3).at(0));
   EXPECT_LT(closure.squared_error, 1e-9);
 }
 
@@ -135,7 +135,7 @@ TEST(Cycles, DoNotCountWhatNoCloudHasSeen)
                                   drawnEdge(poses, 0, 2, random)};
   edges[1].covariance(2, 2) += 30.0 * 30.0;
   const Closure closure =
-      evaluate::closureOf(edges, evaluate::cyclesOf(edges, 3).at(0));
+      app::closureOf(edges, app::cyclesOf(edges, 3).at(0));
   EXPECT_EQ(closure.num_degrees, 5);
 }
 
@@ -169,7 +169,7 @@ TEST_F(GraphFile, GivesBackWhatWasExported)
   options.target_vertex = 3;
   options.source_vertex = 7;
   write("VERTEX_SE3:QUAT 3 0 0 0 0 0 0 1\nFIX 3\n\n" + g2oEdge(estimate, options));
-  const std::vector<GraphEdge> edges = evaluate::readGraph(file_);
+  const std::vector<GraphEdge> edges = app::readGraph(file_);
   ASSERT_EQ(edges.size(), 1u);
   EXPECT_EQ(edges[0].target, 3);
   EXPECT_EQ(edges[0].source, 7);
@@ -182,7 +182,7 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
   const std::string pose = "EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 1 ";
   const std::string good = "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1";
   write(pose + good + '\n');
-  EXPECT_NO_THROW(evaluate::readGraph(file_));
+  EXPECT_NO_THROW(app::readGraph(file_));
   for (const std::string& bad : {pose + "1 2 3",
                                  pose + good + " 1",
                                  pose + "-" + good,
@@ -191,7 +191,7 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
                                  "EDGE_SE3:QUAT 1 1 0 0 0 0 0 0 1 " + good}) {
     write("FIX 0\n" + bad + '\n');
     try {
-      evaluate::readGraph(file_);
+      app::readGraph(file_);
       ADD_FAILURE() << bad;
     }
     catch (const io::FileError& error) {
@@ -200,5 +200,5 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
     }
   }
   write("FIX 0\n");
-  EXPECT_THROW(evaluate::readGraph(file_), io::FileError);
+  EXPECT_THROW(app::readGraph(file_), io::FileError);
 }

@@ -1,4 +1,4 @@
-#include "cycles/graph_file.h"
+#include "graph/graph_file.h"
 
 #include "io/errors.h"
 #include "io/input_file.h"
@@ -9,7 +9,7 @@
 
 #include <stdexcept>
 
-namespace bayesian_icp::evaluate {
+namespace bayesian_icp::app {
 
 namespace {
 
@@ -114,4 +114,4 @@ readGraph(const std::string& file)
   return edges;
 }
 
-} // namespace bayesian_icp::evaluate
+} // namespace bayesian_icp::app

@@ -3,11 +3,11 @@
  */
 #pragma once
 
-#include "cycles/graph_file.h"
+#include "graph/graph_file.h"
 
 #include <vector>
 
-namespace bayesian_icp::evaluate {
+namespace bayesian_icp::app {
 
 /** \brief An edge, and another way between its vertices. */
 struct Cycle {
@@ -46,4 +46,4 @@ constexpr double max_deviation = 3.0;
 Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle);
 
-} // namespace bayesian_icp::evaluate
+} // namespace bayesian_icp::app

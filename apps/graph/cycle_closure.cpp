@@ -1,6 +1,6 @@
-#include "cycles/cycle_closure.h"
+#include "graph/cycle_closure.h"
 
-#include "track/adjoint.h"
+#include "graph/adjoint.h"
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -12,7 +12,7 @@
 #include <map>
 #include <set>
 
-namespace bayesian_icp::evaluate {
+namespace bayesian_icp::app {
 
 namespace {
 
@@ -71,7 +71,7 @@ inverted(const GraphEdge& edge)
 {
   // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi)
   const Eigen::Matrix4d back = edge.T_target_source.inverse();
-  const Matrix6d carry = app::adjointOf(edge.T_target_source);
+  const Matrix6d carry = adjointOf(edge.T_target_source);
   return {edge.source, edge.target, back, carry * edge.covariance * carry.transpose()};
 }
 
@@ -103,7 +103,7 @@ closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
   int vertex = direct.target;
   for (const std::size_t k : cycle.path) {
     const GraphEdge edge = edges[k].target == vertex ? edges[k] : inverted(edges[k]);
-    const Matrix6d carry = app::adjointOf(edge.T_target_source.inverse());
+    const Matrix6d carry = adjointOf(edge.T_target_source.inverse());
     S = carry * S * carry.transpose() + edge.covariance;
     way = way * edge.T_target_source;
     vertex = edge.source;
@@ -121,4 +121,4 @@ closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
   return closure;
 }
 
-} // namespace bayesian_icp::evaluate
+} // namespace bayesian_icp::app

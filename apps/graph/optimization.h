@@ -1,0 +1,48 @@
+/** \file
+ * \brief The most likely poses of a pose graph, and how well they are known.
+ */
+#pragma once
+
+#include "graph/pose_graph.h"
+
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+/** \brief How edges that contradict the others are treated. */
+enum class RobustLoss {
+  /** All edges count as their covariances say. */
+  None,
+  /** An edge pulls no harder than at the border of its 95 % region. */
+  Huber,
+  /** Beyond that border an edge pulls less and less. */
+  Cauchy
+};
+
+/** \brief What came of an optimisation. */
+struct OptimizedPoses {
+  /** Empty if it has converged, and all poses have covariances. */
+  std::string complaint;
+  /** In the frame of the first one, which is fixed; covariances of the errors that
+   * edges leave if these are independent. */
+  std::vector<GaussianPose> poses;
+  /** Of each edge, r^T S^-1 r of its twist r from the edge to the poses found, without
+   * any loss; chi-square with 6 degrees for a graph in which nothing else is known. */
+  std::vector<double> squared_errors;
+};
+
+/** \brief Minimise the sum of r^T S^-1 r over the edges, or of a robust loss of it
+ * (Grisetti et al. 2010, eq. 3), by Ceres. One thread; the same input gives the same
+ * bits.
+ * \param[in] poses to begin with, T_0_k of vertex k; at least 1
+ * \param[in] edges between vertices 0 to poses.size() - 1, with positive definite
+ *            covariances
+ * \throws std::invalid_argument if an edge is of other vertices, or its covariance is
+ * not positive definite, or if no edges join a vertex to vertex 0 */
+OptimizedPoses
+optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
+               const std::vector<GraphEdge>& edges,
+               RobustLoss loss);
+
+} // namespace bayesian_icp::app

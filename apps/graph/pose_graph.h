@@ -1,0 +1,27 @@
+/** \file
+ * \brief Poses that are known to a covariance, and edges between them.
+ */
+#pragma once
+
+#include <bayesian_icp/pose.h>
+
+namespace bayesian_icp::app {
+
+/** \brief A pose that is known as well as its covariance says. */
+struct GaussianPose {
+  /** (x, y, z, roll, pitch, yaw) [m, rad]. */
+  Vector6d mean = Vector6d::Zero();
+  /** CovarianceConvention::RightSE3, in the frame of the scan [m, rad]. */
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/** \brief The pose of one vertex as seen from another. */
+struct GraphEdge {
+  int target = 0;
+  int source = 0;
+  Eigen::Matrix4d T_target_source = Eigen::Matrix4d::Identity();
+  /** CovarianceConvention::RightSE3 [m, rad]. */
+  Matrix6d covariance = Matrix6d::Identity();
+};
+
+} // namespace bayesian_icp::app
