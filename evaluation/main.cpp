@@ -9,6 +9,7 @@
 #include "samplers/samplers_command.h"
 #include "sbc/sbc_command.h"
 #include "study/report_program.h"
+#include "trajectories/trajectories_command.h"
 
 #include <functional>
 #include <iomanip>
@@ -47,6 +48,9 @@ subCommands()
       {"cycles",
        "closures of the cycles of a pose graph against its covariances",
        evaluate::runCyclesCommand},
+      {"trajectories",
+       "trajectories made of registrations, with the covariances of several methods",
+       evaluate::runTrajectoriesCommand},
       {"paper",
        "the paper's whole evaluation: all experiments below, and a report",
        evaluate::runPaperCommand},

@@ -99,6 +99,8 @@ defaultOptions(const std::string& scene)
     return drivenLidar(scene, {0.0, -1.5, 1.8});
   if (scene == "forest" || scene == "bare_ground")
     return drivenLidar(scene, {0.0, 0.0, 2.0});
+  if (scene == "corridor_loop")
+    return drivenLidar(scene, {-1.0, -4.0, 1.0});
   if (scene == "office_floor")
     return drivenLidar(scene, {0.0, 0.0, 1.0});
   if (scene == "table_top")

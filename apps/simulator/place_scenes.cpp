@@ -123,6 +123,29 @@ makePlainCorridor()
 }
 
 Scene
+makeCorridorLoop()
+{
+  const Vector3d outside(7.0, 5.0, 1.25), block(5.0, 3.0, 1.25);
+  const Vector3d centre(0.0, 0.0, 1.25);
+  Scene scene{
+      "corridors around a block, 14 m x 10 m, 2 m wide and 2.5 m high, with "
+      "cupboards and pillars at uneven distances",
+      "nothing, but little holds the motion along a corridor",
+      {{"outer walls",
+        [=](const Vector3d& p) { return -boxDistance(p - centre, outside); }},
+       {"block", [=](const Vector3d& p) { return boxDistance(p - centre, block); }}}};
+  for (const double x : {-4.2, -2.9, -1.1, 1.9, 4.3}) {
+    scene.parts.push_back(box("pillar", {x, -3.0 - 0.12, 0.0}, {x + 0.25, -3.0, 2.5}));
+    scene.parts.push_back(box("cupboard", {-x, 5.0 - 0.35, 0.0}, {-x + 0.9, 5.0, 1.9}));
+  }
+  for (const double y : {-2.3, 0.4, 1.7}) {
+    scene.parts.push_back(box("pillar", {7.0 - 0.15, y, 0.0}, {7.0, y + 0.3, 2.5}));
+    scene.parts.push_back(box("cupboard", {-5.0 - 0.3, y, 0.0}, {-5.0, y + 0.7, 1.8}));
+  }
+  return scene;
+}
+
+Scene
 makeStairs()
 {
   constexpr double rise = 0.17;

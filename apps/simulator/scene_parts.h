@@ -105,6 +105,10 @@ makeCorridor();
 Scene
 makePlainCorridor();
 
+/** \brief Four corridors around a block. */
+Scene
+makeCorridorLoop();
+
 Scene
 makeStairs();
 

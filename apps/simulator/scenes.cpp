@@ -33,6 +33,7 @@ sceneMakers()
       {"tool", makeTool},
       {"corridor", makeCorridor},
       {"plain_corridor", makePlainCorridor},
+      {"corridor_loop", makeCorridorLoop},
       {"stairs", makeStairs},
       {"room", makeRoom},
       {"ground", makeGround},

@@ -253,7 +253,7 @@ runCyclesCommand(int argc, const char* const* argv)
   const std::vector<std::string> files = io::optionTexts(given, "graph");
   if (files.size() != 1)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
-  const std::vector<GraphEdge> edges = readGraph(files[0]);
+  const std::vector<GraphEdge> edges = app::readGraph(files[0]);
   const std::vector<ClosedCycle> cycles = closedCycles(edges, options.max_length);
   if (cycles.empty())
     throw io::FileError(files[0],

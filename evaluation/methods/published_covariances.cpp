@@ -98,9 +98,10 @@ pointClosedForm(const CoverageCase& coverage_case, double sigma)
 }
 
 TwistGaussian
-planeClosedForm(const CoverageCase& coverage_case, double sigma)
+planeClosedForm(const CoverageCase& coverage_case, double sigma, Index max_points)
 {
-  const BaselineProblem problem(coverage_case, coverage_case.source.cols());
+  const BaselineProblem problem(
+      coverage_case, max_points > 0 ? max_points : coverage_case.source.cols());
   const PlaneFit planes = fitPlanes(problem);
   const Vector3d centre = problem.centreAt(planes.fit.pose);
   return {planes.fit.pose,
@@ -123,9 +124,9 @@ pointHessian(const CoverageCase& coverage_case)
 }
 
 TwistGaussian
-gicpHessian(const CoverageCase& coverage_case)
+gicpHessian(const CoverageCase& coverage_case, Index max_points)
 {
-  const BaselineProblem problem(coverage_case);
+  const BaselineProblem problem(coverage_case, max_points);
   const GicpFit gicp = fitPclGicp(problem.ofPcl());
   const Vector3d centre = problem.centreAt(gicp.fit.pose);
   return {gicp.fit.pose,

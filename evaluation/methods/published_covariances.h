@@ -32,18 +32,22 @@ struct TwistGaussian {
 TwistGaussian
 pointClosedForm(const CoverageCase& coverage_case, double sigma);
 
-/** \brief The same of point-to-plane ICP: Prakhya's form. */
+/** \brief The same of point-to-plane ICP: Prakhya's form.
+ * \param[in] max_points of the source, chosen at random; 0: all */
 TwistGaussian
-planeClosedForm(const CoverageCase& coverage_case, double sigma);
+planeClosedForm(const CoverageCase& coverage_case,
+                double sigma,
+                Eigen::Index max_points = 0);
 
 /** \brief Variance of the residuals times the inverse of point-to-point ICP's Hessian.
  */
 TwistGaussian
 pointHessian(const CoverageCase& coverage_case);
 
-/** \brief Inverse of the Hessian of PCL's GICP, about its result; from at most 2000
- * source points, chosen at random. */
+/** \brief Inverse of the Hessian of PCL's GICP, about its result; from at most
+ * \p max_points source points, chosen at random. */
 TwistGaussian
-gicpHessian(const CoverageCase& coverage_case);
+gicpHessian(const CoverageCase& coverage_case,
+            Eigen::Index max_points = max_source_points);
 
 } // namespace bayesian_icp::evaluate

@@ -127,7 +127,7 @@ paperMethods()
       gaussian("online-icp-noise",
                [](const CoverageCase& c) { return planeClosedForm(c, estimated); }),
       gaussian("hessian", pointHessian),
-      gaussian("gicp", gicpHessian)};
+      gaussian("gicp", [](const CoverageCase& c) { return gicpHessian(c); })};
   return methods;
 }
 

@@ -1,0 +1,202 @@
+#include "trajectories/registered_edge.h"
+
+#include "graph/adjoint.h"
+#include "io/text_hash.h"
+#include "methods/published_covariances.h"
+#include "track/track.h"
+
+#include <bayesian_icp/measurement.h>
+#include <bayesian_icp/pipeline.h>
+#include <bayesian_icp/random.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <stdexcept>
+
+namespace bayesian_icp::evaluate {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3Xd;
+
+namespace {
+
+constexpr AxisDeviation guess_sd = {0.1, 0.03};
+constexpr int min_closure_gap = 10, scans_between_closures = 5;
+constexpr Eigen::Index max_baseline_points = 5000;
+
+Eigen::Matrix<double, 21, 1>
+upperTriangleOf(const Matrix6d& matrix)
+{
+  Eigen::Matrix<double, 21, 1> numbers;
+  Eigen::Index next = 0;
+  for (int row = 0; row < 6; ++row)
+    for (int column = row; column < 6; ++column)
+      numbers[next++] = matrix(row, column);
+  return numbers;
+}
+
+bool
+isPositiveDefinite(const Matrix6d& matrix)
+{
+  return matrix.allFinite() && matrix.llt().info() == Eigen::Success;
+}
+
+/** \throws std::runtime_error if the method has no covariance */
+void
+take(const TwistGaussian& posterior, EdgeRun& run)
+{
+  // exp(xi) about the centre c is T exp(Ad(T^-1 C) xi), C the shift by c.
+  const Isometry3d into_source =
+      posterior.mean.inverse() * Eigen::Translation3d(posterior.centre);
+  const Matrix6d carry = app::adjointOf(into_source.matrix());
+  const Matrix6d covariance = carry * posterior.covariance * carry.transpose();
+  if (!isPositiveDefinite(covariance))
+    throw std::runtime_error("no covariance");
+  run.mean = poseOf(posterior.mean.matrix());
+  run.covariance = upperTriangleOf(covariance);
+}
+
+/** As pcl_bayesian_icp_track takes it: widened if it is doubtful.
+ * \throws std::runtime_error if it is of no use */
+void
+registerCalibrated(const CoverageCase& problem, EdgeRun& run)
+{
+  Options options;
+  options.prior.mean = problem.prior_mean;
+  options.prior.frame = PriorFrame::Origin;
+  options.chains.num_threads = 1;
+  const Summary summary =
+      estimatePosterior(problem.source, problem.target, problem.prior_mean, options)
+          .summary;
+  if (summary.data.flags.wrong_basin)
+    throw std::runtime_error("another basin");
+  const PoseEstimate edge =
+      withoutPrior(PoseEstimate(summary),
+                   Prior(options.prior.mean, options.prior.variance))
+          .estimate;
+  const std::string complaint = complaintAboutExport(edge, false);
+  if (!complaint.empty())
+    throw std::runtime_error(complaint);
+  run.mean = edge.mean;
+  run.covariance = upperTriangleOf(edge.covariance(CovarianceConvention::RightSE3));
+  if (summary.status == Status::Doubtful)
+    run.covariance *= app::doubt_factor;
+}
+
+void
+registerBy(const std::string& method, const CoverageCase& problem, EdgeRun& run)
+{
+  if (method == "calibrated")
+    registerCalibrated(problem, run);
+  else if (method == "gicp")
+    take(gicpHessian(problem, max_baseline_points), run);
+  else
+    take(planeClosedForm(problem, std::nan(""), max_baseline_points), run);
+}
+
+/** The nearest scan long before \p source, or -1. */
+int
+closureOf(const Recording& recording, int source, double distance)
+{
+  int nearest = -1;
+  const auto at = [&recording](int scan) {
+    return recording.poses.at(static_cast<std::size_t>(scan)).translation();
+  };
+  for (int target = 0; target + min_closure_gap <= source; ++target) {
+    const double length = (at(target) - at(source)).norm();
+    if (length < distance) {
+      distance = length;
+      nearest = target;
+    }
+  }
+  return nearest;
+}
+
+} // namespace
+
+app::GraphEdge
+graphEdgeOf(const EdgeRun& run)
+{
+  app::GraphEdge edge;
+  edge.target = run.name.target;
+  edge.source = run.name.source;
+  edge.T_target_source = matrixOf(run.mean);
+  Eigen::Index next = 0;
+  for (int row = 0; row < 6; ++row)
+    for (int column = row; column < 6; ++column)
+      edge.covariance(row, column) = edge.covariance(column, row) =
+          run.covariance[next++];
+  return edge;
+}
+
+const std::vector<std::string>&
+edgeMethods()
+{
+  static const std::vector<std::string> methods = {"calibrated", "gicp", "closed-form"};
+  return methods;
+}
+
+std::vector<std::pair<int, int>>
+pairsOf(const Recording& recording, int span, double closure_distance)
+{
+  std::vector<std::pair<int, int>> pairs;
+  for (int source = 1; source < static_cast<int>(recording.poses.size()); ++source) {
+    for (int target = source - 1; target >= std::max(0, source - span); --target)
+      pairs.emplace_back(target, source);
+    if (source % scans_between_closures != 0)
+      continue;
+    const int closure = closureOf(recording, source, closure_distance);
+    if (closure >= 0)
+      pairs.emplace_back(closure, source);
+  }
+  return pairs;
+}
+
+Isometry3d
+guessOf(const Recording& recording, std::uint64_t seed, int target, int source)
+{
+  Random random(
+      seed,
+      io::hashOf(recording.name + ' ' + io::textOf(target) + ' ' + io::textOf(source)));
+  const Vector6d deviation = random.normal6();
+  Isometry3d guess = recording.relativePose(static_cast<std::size_t>(target),
+                                            static_cast<std::size_t>(source));
+  guess.linear() = expSO3(guess_sd.rotation * deviation.tail<3>()) * guess.linear();
+  guess.translation() += guess_sd.translation * deviation.head<3>();
+  return guess;
+}
+
+EdgeRun
+registeredEdge(const EdgeName& name,
+               const Matrix3Xd& source,
+               const Matrix3Xd& target,
+               const Isometry3d& guess)
+{
+  CoverageCase problem;
+  problem.source = source;
+  problem.target = target;
+  problem.prior_mean = poseOf(guess.matrix());
+  problem.prior_sd = PriorOptions().variance.cwiseSqrt();
+  EdgeRun run;
+  run.name = name;
+  run.mean = problem.prior_mean;
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    registerBy(name.method, problem, run);
+  }
+  catch (const std::bad_alloc&) {
+    throw; // no fault of the method
+  }
+  catch (const std::exception& error) {
+    run.complaint = error.what();
+  }
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+  run.seconds = time.count();
+  return run;
+}
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,92 @@
+/** \file
+ * \brief Registrations of pairs of a recording, by several methods, as edges of a
+ * graph.
+ */
+#pragma once
+
+#include "graph/pose_graph.h"
+#include "study/run_file.h"
+#include "trajectories/recording.h"
+
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Which registration. */
+struct EdgeName {
+  std::string recording;
+  std::uint64_t seed = 0;
+  int target = 0, source = 0;
+  std::string method;
+
+  template <typename Name, typename Column>
+  static void
+  columns(Name& name, const Column& column)
+  {
+    column("recording", name.recording);
+    column("seed", name.seed);
+    column("target", name.target);
+    column("source", name.source);
+    column("method", name.method);
+  }
+};
+
+/** \brief What a method says about two scans. */
+struct EdgeRun {
+  EdgeName name;
+  /** Empty, or why there is no edge; \p mean is then where the registration began. */
+  std::string complaint;
+  /** T_target_source (x, y, z, roll, pitch, yaw) [m, rad]. */
+  Vector6d mean = Vector6d::Zero();
+  /** The upper triangle, row by row, of CovarianceConvention::RightSE3 [m, rad]. */
+  Eigen::Matrix<double, 21, 1> covariance = Eigen::Matrix<double, 21, 1>::Zero();
+  double seconds = 0.0;
+
+  template <typename Run, typename Column>
+  static void
+  columns(Run& run, const Column& column)
+  {
+    EdgeName::columns(run.name, column);
+    column("complaint", run.complaint);
+    coordinateColumns("mean_", run.mean, column);
+    for (Eigen::Index k = 0; k < run.covariance.size(); ++k)
+      column("covariance_" + io::textOf(k), run.covariance[k]);
+    column("seconds", run.seconds);
+  }
+};
+
+/** \brief The edges that are in a file. */
+using EdgeFile = RunFile<EdgeRun>;
+
+/** \brief The edge, in the graph's form. */
+app::GraphEdge
+graphEdgeOf(const EdgeRun& run);
+
+/** \brief `calibrated`: the preset with the default prior about the guess, taken out
+ * again; `gicp`: PCL's GICP and the inverse of its Hessian; `closed-form`:
+ * point-to-plane ICP with the prior, and Censi's covariance. The last two register at
+ * most 20 000 points. */
+const std::vector<std::string>&
+edgeMethods();
+
+/** \brief Which pairs of a recording are registered: each scan to those up to \p span
+ * before it, and each fifth one to the nearest one that is at least ten scans before it
+ * and within \p closure_distance [m], by the true poses; 0: none. */
+std::vector<std::pair<int, int>>
+pairsOf(const Recording& recording, int span, double closure_distance);
+
+/** \brief Where all methods begin: the true pose, with errors of 0.1 m and 0.03 rad on
+ * each axis, by the names of recording and scans.
+ * \param[in] seed of the study */
+Eigen::Isometry3d
+guessOf(const Recording& recording, std::uint64_t seed, int target, int source);
+
+/** \brief Register two scans in one thread. */
+EdgeRun
+registeredEdge(const EdgeName& name,
+               const Eigen::Matrix3Xd& source,
+               const Eigen::Matrix3Xd& target,
+               const Eigen::Isometry3d& guess);
+
+} // namespace bayesian_icp::evaluate

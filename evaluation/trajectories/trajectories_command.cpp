@@ -1,0 +1,279 @@
+#include "trajectories/trajectories_command.h"
+
+#include "io/folders.h"
+#include "io/output_folder.h"
+#include "io/program.h"
+#include "study/formatted_text.h"
+#include "study/option_values.h"
+#include "study/report_program.h"
+#include "threads/first_exception.h"
+#include "trajectories/trajectory_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+namespace bayesian_icp::evaluate {
+
+namespace po = boost::program_options;
+
+namespace {
+
+constexpr double milli = 1e3, degrees = 57.29577951308232;
+
+struct TrajectoriesOptions {
+  std::vector<std::string> names;
+  int num_seeds = 1;
+  int first_seed = 1;
+  int num_scans = 100;
+  int span = 3;
+  double closure_distance = 1.0;
+  int num_threads = 0;
+  std::string result_file = "results/trajectories.csv";
+  bool has_report = false;
+};
+
+std::vector<RegisteredRecording>
+recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
+{
+  std::vector<RegisteredRecording> all;
+  const auto num_scans = static_cast<std::size_t>(options.num_scans);
+  for (int k = 0; k < options.num_seeds; ++k) {
+    const auto seed = static_cast<std::uint64_t>(options.first_seed + k);
+    if (folder.empty())
+      for (const std::string& name : driveNames())
+        all.push_back({makeDrive(name, seed, num_scans), seed, {}});
+    else
+      for (const Recording& recording : readRecordings(folder, num_scans))
+        all.push_back({recording, seed, {}});
+  }
+  if (options.names.empty())
+    return all;
+  std::vector<RegisteredRecording> chosen;
+  for (const std::string& name : options.names) {
+    const std::size_t before = chosen.size();
+    std::copy_if(all.begin(),
+                 all.end(),
+                 std::back_inserter(chosen),
+                 [&](const auto& one) { return one.recording.name == name; });
+    if (chosen.size() == before)
+      throw io::UsageError("--recordings: there is no " + io::quoted(name));
+  }
+  return chosen;
+}
+
+/** One pair to be registered by those methods that have no row of it. */
+struct Task {
+  int target, source;
+  std::vector<EdgeName> names;
+};
+
+std::vector<Task>
+tasksOf(const RegisteredRecording& registered,
+        const TrajectoriesOptions& options,
+        const EdgeFile& results)
+{
+  std::vector<Task> tasks;
+  for (const auto& [target, source] :
+       pairsOf(registered.recording, options.span, options.closure_distance)) {
+    Task task{target, source, {}};
+    for (const std::string& method : edgeMethods()) {
+      const EdgeName name{
+          registered.recording.name, registered.seed, target, source, method};
+      if (results.find(name) == nullptr)
+        task.names.push_back(name);
+    }
+    if (!task.names.empty())
+      tasks.push_back(std::move(task));
+  }
+  return tasks;
+}
+
+void
+registerAll(const RegisteredRecording& registered,
+            const TrajectoriesOptions& options,
+            EdgeFile& results)
+{
+  const std::vector<Task> tasks = tasksOf(registered, options, results);
+  const std::string name =
+      registered.recording.name + ", seed " + io::textOf(registered.seed);
+  std::size_t num_done = 0;
+  FirstException failure;
+#pragma omp parallel for schedule(dynamic) num_threads(options.num_threads)
+  for (std::size_t k = 0; k < tasks.size(); ++k)
+    // No exception may leave a parallel region or a critical section.
+    failure.guard([&] {
+      const Task& task = tasks[k];
+      const auto read = [&](int scan) {
+        return registered.recording.read(static_cast<std::size_t>(scan));
+      };
+      const Eigen::Matrix3Xd source = read(task.source), target = read(task.target);
+      const Eigen::Isometry3d guess =
+          guessOf(registered.recording, registered.seed, task.target, task.source);
+      for (const EdgeName& edge : task.names) {
+        const EdgeRun run = registeredEdge(edge, source, target, guess);
+#pragma omp critical(trajectory_results)
+        failure.guard([&] { results.add(run); });
+      }
+#pragma omp critical(trajectory_results)
+      std::cerr << name + ": " + io::textOf(++num_done) + " of " +
+                       io::textOf(tasks.size()) + " pairs registered\n";
+    });
+  failure.rethrow();
+}
+
+/** The rows that belong to the recordings' pairs. */
+void
+takeEdges(const TrajectoriesOptions& options,
+          const EdgeFile& results,
+          std::vector<RegisteredRecording>& recordings)
+{
+  for (RegisteredRecording& one : recordings)
+    for (const auto& [target, source] :
+         pairsOf(one.recording, options.span, options.closure_distance))
+      for (const std::string& method : edgeMethods())
+        one.edges.push_back(
+            *results.find({one.recording.name, one.seed, target, source, method}));
+}
+
+std::string
+tableOf(const std::vector<TrajectoryRun>& runs)
+{
+  std::string text = format("%-30s %-2s %-11s %-11s %5s %7s %8s %8s %8s %8s %7s %7s\n",
+                            "recording (seed)",
+                            "of",
+                            "means",
+                            "covariances",
+                            "edges",
+                            "guesses",
+                            "ATE mm",
+                            "RPE mm",
+                            "RPE deg",
+                            "drift mm",
+                            "NEES/6",
+                            "cycles");
+  for (const TrajectoryRun& run : runs)
+    text +=
+        format("%-30s %-2.1s %-11s %-11s %5d %7d %8.2f %8.2f %8.3f %8.2f %7.2f %7.2f\n",
+               (run.recording + " (" + io::textOf(run.seed) + ')').c_str(),
+               run.quality.c_str(),
+               run.means.c_str(),
+               run.covariances.c_str(),
+               run.num_edges,
+               run.num_guesses,
+               milli * run.score.ate,
+               milli * run.score.rpe_translation,
+               degrees * run.score.rpe_rotation,
+               milli * run.score.drift_translation,
+               run.score.nees,
+               run.cycle_nees);
+  return text;
+}
+
+std::string
+helpText(const po::options_description& options)
+{
+  std::ostringstream help;
+  help << R"(Usage: pcl_bayesian_icp_evaluate trajectories [FOLDER] [options]
+
+Do the covariances of registrations make trajectories better, and is the
+stated accuracy of these true? Registers the scans of each recording to those
+up to --span before them, and to earlier scans at the same place. The same
+solver makes trajectories of the edges: with the means of preset calibrated
+and several covariances (its own, a constant one fitted to the other
+recordings, the inverse Hessian of GICP, Censi's closed form), and with the
+means of GICP and of point-to-plane ICP and their own.
+
+Without FOLDER, the recordings are simulated drives: )";
+  for (const std::string& name : driveNames())
+    help << name << (name == driveNames().back() ? ".\n" : ", ");
+  help << R"(FOLDER has recordings with true poses, a folder each, as for
+coverage --real. All methods begin at the true pose with errors of 0.1 m and
+0.03 rad on each axis, and no edge contains that guess. Where an edge to the
+scan before is missing, the guess takes its place.
+
+The table has the error of positions after alignment (ATE), of relative poses
+of neighbours (RPE), of the last pose (drift), the normalised squared error of
+all poses per degree of freedom (NEES/6) and that of closures of cycles of up
+to four edges (1 if covariances are right and errors of edges independent).
+Errors include those of the true poses ("of": exact, or quality A, B, C).
+
+Each registration is a row of a second CSV file, FILE_edges.csv, in which an
+interrupted study goes on.
+
+Exit codes: 0 good, 2 usage, 3 cannot read or write a file.
+
+)" << options;
+  return help.str();
+}
+
+po::options_description
+describe(TrajectoriesOptions& options)
+{
+  po::options_description description("Options", 88);
+  // clang-format off
+  description.add_options()
+    ("recordings", list(options.names), "only these, separated by commas")
+    ("seeds", integer(options.num_seeds, 1, max_seed), "times that each is registered, with other guesses, and other noise of drives")
+    ("first-seed", integer(options.first_seed, 0, max_seed), "seed of the first time")
+    ("scans", integer(options.num_scans, 2, 100000), "scans of a drive; of a recording at most as many")
+    ("span", integer(options.span, 1, 100), "scans before each to which it is registered")
+    ("closure-distance", positiveNumber(options.closure_distance),
+     "each fifth scan is also registered to the nearest one at least ten before it within this distance [m]")
+    ("threads", threads(options.num_threads), "registrations at a time; 0: as many as cores")
+    ("output", outputName("file", options.result_file), "CSV file of the trajectories")
+    ("report", io::flag(options.has_report),
+     "also make a report, with figures, of all results in that folder")
+    ("help", "show this text");
+  // clang-format on
+  return description;
+}
+
+std::string
+edgeFileName(const std::string& result_file)
+{
+  std::filesystem::path name = result_file;
+  name.replace_filename(name.stem().string() + "_edges.csv");
+  return name.string();
+}
+
+} // namespace
+
+int
+runTrajectoriesCommand(int argc, const char* const* argv)
+{
+  TrajectoriesOptions options;
+  const po::options_description description = describe(options);
+  const po::variables_map given =
+      io::splitCommandLine(argc, argv, description, "folder");
+  if (io::printHelpOrVersion(
+          given, "", [&description] { return helpText(description); }))
+    return 0;
+  io::takeOptions(given, description);
+  const std::vector<std::string> folders = io::optionTexts(given, "folder");
+  if (folders.size() > 1)
+    throw io::UsageError("one folder of recordings at most");
+  std::vector<RegisteredRecording> recordings =
+      recordingsOf(options, folders.empty() ? "" : folders[0]);
+  io::OutputFolder folder(io::folderOf(options.result_file));
+  folder.commit();
+  {
+    EdgeFile results(edgeFileName(options.result_file));
+    for (const RegisteredRecording& registered : recordings)
+      registerAll(registered, options, results);
+    takeEdges(options, results, recordings);
+  }
+  const std::vector<TrajectoryRun> runs = trajectoriesOf(recordings);
+  folder.add(std::filesystem::path(options.result_file).filename().string(),
+             [&](std::ostream& stream) {
+               stream << headerOf<TrajectoryRun>() << '\n';
+               for (const TrajectoryRun& run : runs)
+                 stream << rowOf(run) << '\n';
+             });
+  folder.commit();
+  io::print(tableOf(runs));
+  return options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
+}
+
+} // namespace bayesian_icp::evaluate
