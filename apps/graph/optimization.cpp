@@ -1,6 +1,6 @@
 #include "graph/optimization.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <ceres/autodiff_cost_function.h>
@@ -11,7 +11,9 @@
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 
@@ -78,15 +80,21 @@ struct RightTwists {
   }
 };
 
-/** log(T_edge^-1 T_0_target^-1 T_0_source), whitened. */
+/** log(T_edge^-1 T_0_target^-1 T_0_source), whitened, less what comes of the source's
+ * noise. */
 struct EdgeError {
   Eigen::Vector3d position;
   Eigen::Quaterniond rotation;
+  /** S^-1/2, symmetric. */
   Matrix6d whitening;
 
+  /** \param[in] noise of the source, 6 independent numbers with variance 1 */
   template <typename T>
   bool
-  operator()(const T* target_pose, const T* source_pose, T* residual) const
+  operator()(const T* target_pose,
+             const T* source_pose,
+             const T* noise,
+             T* residual) const
   {
     using Vector3 = Eigen::Matrix<T, 3, 1>;
     const PoseView<T> target(target_pose), source(source_pose);
@@ -100,7 +108,21 @@ struct EdgeError {
     const Vector3 turned = w.cross(shift);
     Eigen::Matrix<T, 6, 1> error;
     error << shift - T(0.5) * turned + T(1.0 / 12.0) * w.cross(turned), w;
-    Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} = whitening.cast<T>() * error;
+    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> shared(noise);
+    Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} =
+        (whitening.cast<T>() * error - T(std::sqrt(source_share)) * shared) /
+        T(std::sqrt(1.0 - source_share));
+    return true;
+  }
+};
+
+/** Of one source: as likely as a standard normal number each. */
+struct NoiseError {
+  template <typename T>
+  bool
+  operator()(const T* noise, T* residual) const
+  {
+    std::copy_n(noise, 6, residual);
     return true;
   }
 };
@@ -129,15 +151,15 @@ matrixOf(const Parameters& parameters)
 EdgeError
 errorOf(const GraphEdge& edge)
 {
-  const Eigen::LLT<Matrix6d> factor(edge.covariance);
-  if (factor.info() != Eigen::Success)
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
+  if (!(solver.eigenvalues()[0] > 0.0))
     throw std::invalid_argument(
         "the covariance of edge " + std::to_string(edge.target) + '-' +
         std::to_string(edge.source) + " is not positive definite");
   const Eigen::Isometry3d pose(edge.T_target_source);
   return {pose.translation(),
           Eigen::Quaterniond(pose.linear()).normalized(),
-          factor.matrixL().solve(Matrix6d(Matrix6d::Identity()))};
+          solver.operatorInverseSqrt()};
 }
 
 /** Whether edges lead from each vertex to vertex 0. */

@@ -11,14 +11,14 @@ import sys
 # The folder of this file is run as a program; it is also a package.
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 
-from report import coverage, cycles, frames, page, paper, samplers, sbc  # noqa: E402
+from report import coverage, cycles, frames, page, paper, samplers, sbc, trajectories  # noqa: E402
 
 
 def sections_of(output):
     """Of every study that the folder has files of, in a fixed order."""
     tables = frames.read_folder(output.folder)
     sections = paper.sections_of(output, tables)
-    for study in (coverage, sbc, samplers, cycles):
+    for study in (coverage, sbc, samplers, cycles, trajectories):
         for name, table in tables.items():
             if set(study.COLUMNS) <= set(table.columns) and len(table):
                 sections.append(study.section_of(output, name, table))

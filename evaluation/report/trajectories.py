@@ -1,0 +1,82 @@
+"""Trajectories of the edges of several methods: their errors, and whether covariances say so."""
+
+import numpy as np
+
+from report import page
+
+COLUMNS = ("recording", "means", "covariances", "ate_m", "rpe_m", "nees", "cycle_nees")
+DEGREES = 180.0 / np.pi
+LIKE_TIES = 1.02
+
+
+def name_of(means, covariances):
+    return means if means == covariances else f"{means}, covariances: {covariances}"
+
+
+def mean_of(rows):
+    """Root mean squares of errors over the seeds, means of the rest."""
+    root = {name: np.sqrt((rows[name] ** 2).mean()) for name in ("ate_m", "rpe_m", "rpe_rad", "drift_m")}
+    return {**root, "nees": rows.nees.mean(), "cycle_nees": rows.cycle_nees.mean()}
+
+
+def rows_of(table):
+    """A row for each recording and method, the smallest error of each recording in bold."""
+    rows = []
+    for recording, runs in table.groupby("recording", sort=False):
+        methods = runs.groupby(["means", "covariances"], sort=False)
+        means = {name_of(*key): mean_of(members) for key, members in methods}
+        best = min(one["ate_m"] for one in means.values())
+        for name, one in means.items():
+            ate = f"{1e3 * one['ate_m']:.2f}"
+            rows.append([
+                f"{recording} ({runs.quality.iloc[0]})",
+                name,
+                f"**{ate}**" if one["ate_m"] <= LIKE_TIES * best else ate,
+                f"{1e3 * one['rpe_m']:.2f}",
+                f"{DEGREES * one['rpe_rad']:.3f}",
+                f"{1e3 * one['drift_m']:.1f}",
+                f"{one['nees']:.2f}",
+                f"{one['cycle_nees']:.2f}",
+            ])  # fmt: skip
+    return rows
+
+
+def plot_errors(output, name, table):
+    """Errors relative to the trajectory with the calibrated covariances."""
+    recordings = list(table.recording.unique())
+    own = table[(table.means == "calibrated") & (table.covariances == "calibrated")]
+    reference = own.groupby("recording").ate_m.apply(lambda ate: np.sqrt((ate**2).mean()))
+    figure, axes = page.panels(1, 1, 6.5, 0.4 + 0.32 * len(recordings))
+    axis = axes[0][0]
+    methods = table.groupby(["means", "covariances"], sort=False)
+    for number, (key, runs) in enumerate(methods):
+        ate = runs.groupby("recording").ate_m.apply(lambda ate: np.sqrt((ate**2).mean()))
+        axis.plot(
+            [ate[r] / reference[r] for r in recordings], range(len(recordings)),
+            "o" if key[0] == "calibrated" else "x", label=name_of(*key), markersize=5,
+            color=page.COLOURS[number % len(page.COLOURS)],
+        )  # fmt: skip
+    axis.set_xscale("log")
+    axis.set_yticks(range(len(recordings)), recordings)
+    axis.invert_yaxis()
+    axis.set_xlabel("ATE / ATE of calibrated")
+    axis.legend(fontsize=6)
+    caption = (
+        "Error of the positions after alignment, divided by that with the means and covariances of "
+        "preset calibrated. Dots have the same means."
+    )
+    return page.save(output, f"{name}_errors", caption, figure)
+
+
+def section_of(output, name, table):
+    errors = page.Table(
+        "Root mean square errors over the seeds: positions after alignment (ATE; bold: the "
+        "smallest of the recording, or within 2 % of it), relative poses of neighbours (RPE), the "
+        "last pose (drift). Normalised squared error per degree of freedom of the poses (NEES/6) "
+        "and of the closures of cycles: 1 if covariances are right. The letter is the quality of "
+        "the true poses.",
+        ["recording", "edges of", "ATE [mm]", "RPE [mm]", "RPE [deg]", "drift [mm]", "NEES/6", "cycles"],
+        rows_of(table),
+    )
+    title = f"Trajectories ({name}.csv)"
+    return page.Section(title, [errors, plot_errors(output, name, table)])
