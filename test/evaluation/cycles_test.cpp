@@ -1,5 +1,6 @@
 // Closures of cycles of a graph whose errors are drawn from its covariances.
 #include "graph/cycle_closure.h"
+#include "graph/graph_file.h"
 #include "io/errors.h"
 #include "support/test_support.h"
 
