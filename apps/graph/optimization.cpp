@@ -261,6 +261,13 @@ private:
 
 } // namespace
 
+const char*
+toString(RobustLoss loss)
+{
+  static constexpr std::array<const char*, 3> names = {"none", "huber", "cauchy"};
+  return names[static_cast<std::size_t>(loss)];
+}
+
 OptimizedPoses
 optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
                const std::vector<GraphEdge>& edges,

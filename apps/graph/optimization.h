@@ -20,6 +20,10 @@ enum class RobustLoss {
   Cauchy
 };
 
+/** \brief Short name: "none", "huber", "cauchy". */
+const char*
+toString(RobustLoss loss);
+
 /** \brief What came of an optimisation. */
 struct OptimizedPoses {
   /** Empty if it has converged, and all poses have covariances. */
@@ -31,6 +35,14 @@ struct OptimizedPoses {
    * any loss; chi-square with 6 degrees for a graph in which nothing else is known. */
   std::vector<double> squared_errors;
 };
+
+/** \brief Whether an edge contradicts the others: its squared error is above the 99.9 %
+ * quantile of chi-square with 6 degrees of freedom. */
+constexpr bool
+isContradiction(double squared_error)
+{
+  return squared_error > 22.457744;
+}
 
 /** \brief Minimise the sum of r^T S^-1 r over the edges, or of a robust loss of it
  * (Grisetti et al. 2010, eq. 3), by Ceres. One thread; the same input gives the same

@@ -10,7 +10,6 @@ namespace bayesian_icp::app {
 
 namespace {
 
-constexpr double degrees = 57.29577951308232;
 /** Of the region that an ellipse shows, in two dimensions: sqrt(-2 log 0.05). */
 constexpr double deviations_of_95_percent = 2.447746830680816;
 constexpr std::size_t max_ellipses = 40;
