@@ -72,8 +72,9 @@ verdictHtml(const ScanGraph& graph, const OptimizedPoses& optimum)
   const bool is_good = num_contradictions == 0 && counts.num_complaints == 0;
   std::string sentence = "Edges in the graph";
   for (std::size_t k = 0; k < counts.num_taken.size(); ++k)
-    sentence += (k == 0 ? ": " : ", ") + io::textOf(counts.num_taken[k]) + " of kind " +
-                toString(static_cast<EdgeKind>(k));
+    sentence += (k == 0 ? ": " : ", ") +
+                std::string(toString(static_cast<EdgeKind>(k))) + ' ' +
+                io::textOf(counts.num_taken[k]);
   sentence +=
       ". Candidates for loops that were refused: " + io::textOf(counts.num_refused) +
       ". Other registrations that are not ok: " + io::textOf(counts.num_complaints) +
@@ -109,7 +110,7 @@ loopsHtml(const ScanGraph& graph)
       row = {nameOf(edge.edge),
              shortText(closure.error.head<3>().norm()),
              shortText(degrees * closure.error.tail<3>().norm()),
-             shortText(closure.squared_error),
+             io::fixedTextOf(closure.squared_error, 1),
              io::textOf(closure.num_degrees),
              shortText(closure.probability)};
     }
@@ -162,7 +163,7 @@ cyclesHtml(const std::vector<ClosedCycle>& cycles)
     open.rows.push_back({cycle.vertices,
                          shortText(cycle.closure.error.head<3>().norm()),
                          shortText(degrees * cycle.closure.error.tail<3>().norm()),
-                         shortText(cycle.closure.squared_error),
+                         io::fixedTextOf(cycle.closure.squared_error, 1),
                          shortText(cycle.closure.probability)});
   return limitedTableHtml(table) + limitedTableHtml(open);
 }
@@ -198,7 +199,7 @@ contradictionsHtml(const std::vector<ScanEdge>& edges,
     table.rows.push_back({nameOf(edge),
                           shortText(twist.head<3>().norm()),
                           shortText(degrees * twist.tail<3>().norm()),
-                          shortText(optimum.squared_errors[k]),
+                          io::fixedTextOf(optimum.squared_errors[k], 1),
                           io::textOf(num_open[k]),
                           toString(edges[k].kind)});
   }

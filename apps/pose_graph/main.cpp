@@ -64,7 +64,7 @@ tellContradictions(const ScanGraph& graph, const OptimizedPoses& optimum)
     if (!isContradiction(optimum.squared_errors[k]))
       continue;
     tell("edge " + nameOf(edges[k].edge) + " contradicts the others: squared error " +
-         io::textOf(optimum.squared_errors[k], 3) + " for 6 degrees of freedom");
+         io::fixedTextOf(optimum.squared_errors[k], 1) + " for 6 degrees of freedom");
     are_none = false;
   }
   return are_none;

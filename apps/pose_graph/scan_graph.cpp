@@ -50,7 +50,7 @@ const char*
 toString(EdgeKind kind)
 {
   static constexpr std::array<const char*, 4> names = {
-      "chain", "span", "loop", "found loop"};
+      "chain", "--span", "--loop", "--loops"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -113,10 +113,11 @@ ScanGraph::closeLoop(ScanEdge& edge) const
   edge.closure = closure;
   if (closure.probability >= min_loop_probability)
     return;
-  edge.complaint =
-      "contradicts the chain, " + sizeOf(closure.error) + " away: squared error " +
-      io::textOf(closure.squared_error, 3) + " for " + io::textOf(closure.num_degrees) +
-      " degrees of freedom, probability " + io::textOf(closure.probability, 2);
+  edge.complaint = "contradicts the chain, " + sizeOf(closure.error) +
+                   " away: squared error " + io::fixedTextOf(closure.squared_error, 1) +
+                   " for " + io::textOf(closure.num_degrees) +
+                   " degrees of freedom, probability " +
+                   io::textOf(closure.probability, 2);
 }
 
 void

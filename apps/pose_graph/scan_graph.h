@@ -42,7 +42,7 @@ enum class EdgeKind {
   Found
 };
 
-/** \brief Short name: "chain", "span", "loop", "found loop". */
+/** \brief "chain", or the option that asks for it. */
 const char*
 toString(EdgeKind kind);
 

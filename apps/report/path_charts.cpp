@@ -89,11 +89,10 @@ ellipseLines(const std::vector<GaussianPose>& poses, const Axes& axes, double& f
   factor = enlargement(width, extent);
   std::string lines;
   for (const Ellipse& ellipse : ellipses) {
-    for (const double number : {ellipse.x,
-                                ellipse.y,
-                                factor * ellipse.width,
-                                factor * ellipse.height,
-                                ellipse.angle})
+    // gnuplot has a size of its own for ellipses without one.
+    const double x = ellipse.width > 0.0 ? ellipse.x : std::nan("");
+    for (const double number :
+         {x, ellipse.y, factor * ellipse.width, factor * ellipse.height, ellipse.angle})
       lines += plotNumber(number) + ' ';
     lines += '\n';
   }
