@@ -13,7 +13,9 @@
 
 #include <array>
 #include <memory>
+#include <new>
 #include <stdexcept>
+#include <system_error>
 
 namespace bayesian_icp::app {
 
@@ -274,7 +276,12 @@ optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
                RobustLoss loss)
 {
   requireConnected(poses.size(), edges);
-  return Solver(poses, edges, loss).solve();
+  try {
+    return Solver(poses, edges, loss).solve();
+  }
+  catch (const std::system_error&) { // Ceres has no memory for a thread
+    throw std::bad_alloc();
+  }
 }
 
 } // namespace bayesian_icp::app

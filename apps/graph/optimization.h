@@ -51,7 +51,7 @@ isContradiction(double squared_error)
  * \param[in] edges between vertices 0 to poses.size() - 1, with positive definite
  *            covariances
  * \throws std::invalid_argument if an edge is of other vertices, or its covariance is
- * not positive definite, or if no edges join a vertex to vertex 0 */
+ * not positive definite, or if no edges join a vertex to vertex 0; std::bad_alloc */
 OptimizedPoses
 optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
                const std::vector<GraphEdge>& edges,
