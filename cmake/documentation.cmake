@@ -8,7 +8,7 @@ set(program_descriptions
     "pcl_bayesian_icp_simulate|simulate a pair of scans whose true pose is known"
     "pcl_bayesian_icp_transform|move a point cloud by a pose"
     "pcl_bayesian_icp_batch|register many pairs of point clouds, with their posteriors"
-    "pcl_bayesian_icp_pose_graph|register consecutive scans and write a pose graph"
+    "pcl_bayesian_icp_pose_graph|register scans, close loops and optimize the pose graph"
     "pcl_bayesian_icp_track|the trajectory of a sensor from its scans, with its covariance"
     "pcl_bayesian_icp_viewer|show how sure the pose of two registered point clouds is"
     "pcl_bayesian_icp_evaluate|check whether covariances of registrations are right"

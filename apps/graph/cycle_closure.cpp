@@ -94,23 +94,29 @@ cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length)
   return {cycles.rbegin(), cycles.rend()};
 }
 
-Closure
-closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
+GraphEdge
+wayAlong(const std::vector<GraphEdge>& edges,
+         int begin,
+         const std::vector<std::size_t>& path)
 {
-  const GraphEdge& direct = edges[cycle.direct];
-  Eigen::Matrix4d way = Eigen::Matrix4d::Identity();
-  Matrix6d S = Matrix6d::Zero();
-  int vertex = direct.target;
-  for (const std::size_t k : cycle.path) {
-    const GraphEdge edge = edges[k].target == vertex ? edges[k] : inverted(edges[k]);
+  GraphEdge way{begin, begin, Eigen::Matrix4d::Identity(), Matrix6d::Zero()};
+  for (const std::size_t k : path) {
+    const GraphEdge edge =
+        edges[k].target == way.source ? edges[k] : inverted(edges[k]);
     const Matrix6d carry = adjointOf(edge.T_target_source.inverse());
-    S = carry * S * carry.transpose() + edge.covariance;
-    way = way * edge.T_target_source;
-    vertex = edge.source;
+    way.covariance = carry * way.covariance * carry.transpose() + edge.covariance;
+    way.T_target_source = way.T_target_source * edge.T_target_source;
+    way.source = edge.source;
   }
-  S += direct.covariance;
+  return way;
+}
+
+Closure
+closureOf(const GraphEdge& direct, const GraphEdge& way)
+{
+  const Matrix6d S = way.covariance + direct.covariance;
   Closure closure;
-  closure.error = logSE3(direct.T_target_source.inverse() * way);
+  closure.error = logSE3(direct.T_target_source.inverse() * way.T_target_source);
   closure.squared_error = closure.error.dot(S.ldlt().solve(closure.error));
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
   closure.num_degrees = static_cast<int>(
@@ -119,6 +125,13 @@ closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
     closure.probability = boost::math::cdf(boost::math::complement(
         boost::math::chi_squared(closure.num_degrees), closure.squared_error));
   return closure;
+}
+
+Closure
+closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
+{
+  const GraphEdge& direct = edges[cycle.direct];
+  return closureOf(direct, wayAlong(edges, direct.target, cycle.path));
 }
 
 } // namespace bayesian_icp::app

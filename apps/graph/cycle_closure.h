@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "graph/graph_file.h"
+#include "graph/pose_graph.h"
 
 #include <vector>
 
@@ -24,9 +24,18 @@ struct Cycle {
 std::vector<Cycle>
 cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length);
 
+/** \brief One edge in place of several, to first order, as if their errors were
+ * independent.
+ * \param[in] path positions in \p edges, from vertex \p begin on; an edge may be taken
+ *            backwards */
+GraphEdge
+wayAlong(const std::vector<GraphEdge>& edges,
+         int begin,
+         const std::vector<std::size_t>& path);
+
 /** \brief How well a cycle closes. */
 struct Closure {
-  /** Twist from the direct edge to the path, in the frame of its source [m, rad]. */
+  /** Twist from the direct edge to the way, in the frame of its source [m, rad]. */
   Vector6d error = Vector6d::Zero();
   /** error^T S^-1 error, S the sum of the edges' covariances, carried to that frame. */
   double squared_error = 0.0;
@@ -41,8 +50,12 @@ struct Closure {
  * rad]: there an edge has no information of the clouds. */
 constexpr double max_deviation = 3.0;
 
-/** \brief Close a cycle, to first order, as if the errors of its edges were
- * independent. */
+/** \brief Close a cycle of two edges between the same vertices, to first order, as if
+ * their errors were independent. */
+Closure
+closureOf(const GraphEdge& direct, const GraphEdge& way);
+
+/** \brief The same of the direct edge of a cycle and its path. */
 Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle);
 

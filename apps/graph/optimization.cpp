@@ -15,7 +15,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <new>
 #include <stdexcept>
+#include <system_error>
 
 namespace bayesian_icp::app {
 
@@ -283,13 +285,25 @@ private:
 
 } // namespace
 
+const char*
+toString(RobustLoss loss)
+{
+  static constexpr std::array<const char*, 3> names = {"none", "huber", "cauchy"};
+  return names[static_cast<std::size_t>(loss)];
+}
+
 OptimizedPoses
 optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
                const std::vector<GraphEdge>& edges,
                RobustLoss loss)
 {
   requireConnected(poses.size(), edges);
-  return Solver(poses, edges, loss).solve();
+  try {
+    return Solver(poses, edges, loss).solve();
+  }
+  catch (const std::system_error&) { // Ceres has no memory for a thread
+    throw std::bad_alloc();
+  }
 }
 
 } // namespace bayesian_icp::app

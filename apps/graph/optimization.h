@@ -20,6 +20,10 @@ enum class RobustLoss {
   Cauchy
 };
 
+/** \brief Short name: "none", "huber", "cauchy". */
+const char*
+toString(RobustLoss loss);
+
 /** \brief What came of an optimisation. */
 struct OptimizedPoses {
   /** Empty if it has converged, and all poses have covariances. */
@@ -32,6 +36,14 @@ struct OptimizedPoses {
   std::vector<double> squared_errors;
 };
 
+/** \brief Whether an edge contradicts the others: its squared error is above the 99.9 %
+ * quantile of chi-square with 6 degrees of freedom. */
+constexpr bool
+isContradiction(double squared_error)
+{
+  return squared_error > 22.457744;
+}
+
 /** \brief Minimise the sum of r^T S^-1 r over the edges, or of a robust loss of it
  * (Grisetti et al. 2010, eq. 3), by Ceres. One thread; the same input gives the same
  * bits.
@@ -39,7 +51,7 @@ struct OptimizedPoses {
  * \param[in] edges between vertices 0 to poses.size() - 1, with positive definite
  *            covariances
  * \throws std::invalid_argument if an edge is of other vertices, or its covariance is
- * not positive definite, or if no edges join a vertex to vertex 0 */
+ * not positive definite, or if no edges join a vertex to vertex 0; std::bad_alloc */
 OptimizedPoses
 optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
                const std::vector<GraphEdge>& edges,

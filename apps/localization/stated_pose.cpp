@@ -103,6 +103,19 @@ angleRates(const Vector6d& pose)
 
 } // namespace
 
+StatedPose
+statedPoseOf(const Vector6d& mean, const Matrix6d& right_se3)
+{
+  StatedPose stated;
+  const Eigen::Matrix3d R = rotationOf(mean);
+  stated.position = mean.head<3>();
+  stated.orientation = R;
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R;
+  stated.covariance = turn * right_se3 * turn.transpose();
+  return stated;
+}
+
 PriorOptions
 priorFrom(const StatedPose& pose, const PriorFloor& floor, double& widening)
 {

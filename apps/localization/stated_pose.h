@@ -31,6 +31,12 @@ struct StatedPose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
+/** \brief A pose in the library's coordinates as priorFrom() takes it.
+ * \param[in] mean pose [m, rad]
+ * \param[in] right_se3 CovarianceConvention::RightSE3 */
+StatedPose
+statedPoseOf(const Vector6d& mean, const Matrix6d& right_se3);
+
 /** \brief Least standard deviations of a prior, for sources that leave elements of the
  * covariance at zero: a planar filter those of z, roll and pitch. */
 struct PriorFloor {

@@ -2,16 +2,28 @@
 
 #include "io/command_line.h"
 #include "io/folders.h"
+#include "register/choices.h"
 #include "register/settings_options.h"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 namespace bayesian_icp::app {
 
 namespace po = boost::program_options;
 
+static std::array<RobustLoss, 3>
+choicesOf(RobustLoss)
+{
+  return {RobustLoss::None, RobustLoss::Huber, RobustLoss::Cauchy};
+}
+
 namespace {
+
+constexpr int max_span = 1000;
+/** [m] */
+constexpr double max_radius = 1e6;
 
 po::options_description
 describeOptionsOfGraph(GraphCommand& command)
@@ -22,17 +34,36 @@ describeOptionsOfGraph(GraphCommand& command)
     ("help,h", "Show this text.")
     ("version", "Show the version.")
     ("output,o", io::fileName("FILE", command.output_file),
-     "File for the graph in g2o's format. (required)")
+     "File for the graph in g2o's format. (this or --optimize is required)")
+    ("quiet", io::flag(command.is_quiet), "Print problems only.");
+  po::options_description edges("Edges");
+  edges.add_options()
+    ("span", io::number("N", command.request.span),
+     "Also register each scan to those up to N before it. (default 1)")
     ("loop", po::value<std::vector<std::string>>()->value_name("I,J"),
-     "Also register scan J to scan I, counted from 0. May be given several times. "
-     "Without it, the graph is a chain.")
+     "Also register scan J to scan I, counted from 0. May be given several times.")
+    ("loops", io::number("M", command.request.loop_radius),
+     "Also register each scan to the nearest earlier one within M metres by the chain, "
+     "if the sensor was more than 2 M away in between. Such an edge has to have status "
+     "ok and to close with the chain (0.1 %).")
     ("weak-edges", io::flag(command.request.has_weak_edges),
      "Make an edge of the prior where a scan cannot be registered to the one before. "
-     "Without it, that edge is missing.")
-    ("quiet", io::flag(command.is_quiet), "Print problems only.");
+     "Without it, that edge is missing.");
+  po::options_description optimization("Optimization");
+  optimization.add_options()
+    ("optimize", io::fileName("FOLDER", command.optimized_folder),
+     "Find the most likely poses of the graph, and put them, their covariances, a report "
+     "and the graph into this folder.")
+    ("robust-loss", io::taken("LOSS", [&command](const std::string& name) {
+       if (!readChoice(name, command.loss))
+         io::refuseValue(name, namesOfChoices(command.loss));
+     }),
+     "How edges outside of their 95 % regions count: none, as their covariances say; "
+     "huber, they pull no harder than there; cauchy, they pull less and less. (default "
+     "none)");
   // clang-format on
   po::options_description all;
-  all.add(group);
+  all.add(group).add(edges).add(optimization);
   describeSettings(Settings(), all);
   return all;
 }
@@ -53,11 +84,34 @@ loopOf(const std::string& text, std::size_t num_scans)
   return {target, source};
 }
 
+void
+check(const po::variables_map& given, const GraphCommand& command)
+{
+  const GraphRequest& request = command.request;
+  if (command.output_file.empty() && command.optimized_folder.empty())
+    throw io::UsageError("--output or --optimize is needed");
+  if (given.count("robust-loss") > 0 && command.optimized_folder.empty())
+    throw io::UsageError("--robust-loss needs --optimize");
+  if (request.span < 1 || request.span > max_span)
+    throw io::UsageError("--span is " + io::textOf(request.span) +
+                         ", but must be from 1 to " + io::textOf(max_span));
+  if (given.count("loops") > 0 &&
+      !(request.loop_radius > 0.0 && request.loop_radius <= max_radius))
+    throw io::UsageError("--loops is " + io::textOf(request.loop_radius) +
+                         ", but must be above 0 and at most " + io::textOf(max_radius) +
+                         " m");
+  if (request.settings.are_lengths_scaled &&
+      (request.span > 1 || !request.loops.empty() || request.loop_radius > 0.0))
+    throw io::UsageError("--span, --loop and --loops need settings in metres, not in "
+                         "units of a cloud's size");
+}
+
 std::string
 helpText(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_pose_graph FOLDER -o FILE.g2o [options]
+       pcl_bayesian_icp_pose_graph FOLDER --optimize FOLDER [options]
        pcl_bayesian_icp_pose_graph SCAN SCAN ... -o FILE.g2o [options]
 
 Registers each scan to the one before it and writes a pose graph in g2o's
@@ -65,15 +119,27 @@ format. The scans of a folder are its .pcd files, sorted by name. Vertex k is
 the pose of scan k in the frame of scan 0. An edge has the posterior mean of a
 registration and its information. --guess and the prior describe the motion
 from one scan to the next: state your odometry there, and do not add it to the
-graph again. Edges of --loop have the information of the clouds alone, because
-their prior comes from the chain. A posterior that is neither ok nor doubtful
-makes no edge; missing and doubtful edges are reported. For more, see
-docs/pose_graph_and_filter.md.
+graph again. Edges of --span, --loop and --loops have the information of the
+clouds alone; their prior is about what the chain says. A posterior that is
+neither ok nor doubtful makes no edge, a doubtful one none of --span and
+--loops. Missing and doubtful edges are reported. A loop that you name stays
+in the graph even if it contradicts the chain.
+
+--optimize FOLDER finds the poses that fit all edges best. FOLDER gets
+  trajectory_tum.txt         scan number, position (m) and quaternion of each
+                             scan in the frame of scan 0
+  trajectory_covariance.txt  the 6x6 covariances, in ROS's convention (m, rad)
+  graph.g2o                  the graph, with these poses
+  report.html                the trajectory, how the cycles close, and edges that
+                             contradict the others (needs gnuplot)
+
+For more, see docs/pose_graph_and_filter.md.
 )" << options
        << R"(
 Exit codes:
-  0    all registrations are ok
-  1    some are not; the graph has been written
+  0    all registrations are ok, but for those of --loops
+  1    some are not, a loop that you named or an optimized edge contradicts the
+       others, or the poses cannot be optimized; the graph has been written
   2    wrong usage
   3    a file cannot be used or written
   130  interrupted (Ctrl-C or SIGTERM); nothing has been written
@@ -81,6 +147,7 @@ Exit codes:
 Example:
   pcl_bayesian_icp_pose_graph scans -o graph.g2o --loop 0,3 \
       --guess 0.5,0,0,0,0,0 --prior-variance 0.01,0.01,0.0004,1e-4,1e-4,1e-2
+  pcl_bayesian_icp_pose_graph scans --span 3 --loops 2 --optimize result
 )";
   return help.str();
 }
@@ -100,11 +167,11 @@ parseGraphCommand(int argc, const char* const* argv)
   GraphRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);
-  if (command.output_file.empty())
-    throw io::UsageError("--output is needed");
   for (const std::string& text : io::optionTexts(given, "loop"))
     request.loops.push_back(loopOf(text, request.scans.size()));
   request.settings = settingsFrom(given, Settings(), command.note);
+  check(given, command);
+  command.command = io::commandOf(argc, argv);
   return command;
 }
 

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "graph/optimization.h"
 #include "pose_graph/scan_graph.h"
 
 #include <optional>
@@ -13,10 +14,15 @@ namespace bayesian_icp::app {
 /** \brief What the user asks for. */
 struct GraphCommand {
   GraphRequest request;
+  /** At least one of them is not empty. */
   std::string output_file;
+  std::string optimized_folder;
+  RobustLoss loss = RobustLoss::None;
   bool is_quiet = false;
   /** Something that the user ought to know; empty if nothing. */
   std::string note;
+  /** As a shell takes it. */
+  std::string command;
 };
 
 /** \brief Read the command line, and look into the folder that it names.

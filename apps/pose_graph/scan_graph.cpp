@@ -1,21 +1,23 @@
 #include "pose_graph/scan_graph.h"
 
+#include "graph/loop_candidates.h"
+#include "graph/trajectory_files.h"
 #include "io/numbers.h"
+#include "localization/stated_pose.h"
 
+#include <bayesian_icp/exports.h>
 #include <bayesian_icp/measurement.h>
 
-#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <set>
 
 namespace bayesian_icp::app {
 
 namespace {
 
-/** Source in target, as edges are named. */
-std::string
-nameOf(int target, int source)
-{
-  return io::textOf(target) + '-' + io::textOf(source);
-}
+/** Probability below which a loop is said to contradict the chain. */
+constexpr double min_loop_probability = 0.001;
 
 /** The prior of a run. */
 Prior
@@ -26,7 +28,54 @@ priorOf(const Run& run)
                                run.source.points.cast<double>());
 }
 
+/** Put an estimate into an edge. \return why it cannot be one; empty if it is */
+std::string
+setEdge(const PoseEstimate& estimate, GraphEdge& edge)
+{
+  std::string complaint = complaintAboutExport(estimate, false);
+  if (!complaint.empty())
+    return complaint;
+  edge.T_target_source = matrixOf(estimate.mean);
+  edge.covariance =
+      invertibleCovariance(estimate.covariance(CovarianceConvention::RightSE3));
+  PoseEstimate invertible =
+      estimateOf(estimate.mean, edge.covariance, CovarianceConvention::RightSE3);
+  invertible.status = Status::Ok;
+  return complaintAboutExport(invertible, true);
+}
+
 } // namespace
+
+const char*
+toString(EdgeKind kind)
+{
+  static constexpr std::array<const char*, 4> names = {
+      "chain", "--span", "--loop", "--loops"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+std::vector<GraphEdge>
+edgesOf(const std::vector<ScanEdge>& edges)
+{
+  std::vector<GraphEdge> plain;
+  for (const ScanEdge& edge : edges)
+    plain.push_back(edge.edge);
+  return plain;
+}
+
+std::string
+nameOf(const GraphEdge& edge)
+{
+  return io::textOf(edge.target) + '-' + io::textOf(edge.source);
+}
+
+std::string
+sizeOf(const Vector6d& twist)
+{
+  constexpr int num_digits = 3;
+  return io::textOf(twist.head<3>().norm(), num_digits) + " m and " +
+         io::textOf(degrees * twist.tail<3>().norm(), num_digits) + " degrees";
+}
 
 ScanGraph::ScanGraph(const GraphRequest& request,
                      const std::function<void(bool, const std::string&)>& tell)
@@ -35,109 +84,203 @@ ScanGraph::ScanGraph(const GraphRequest& request,
 {}
 
 BatchPair
-ScanGraph::pairOf(int target, int source) const
+ScanGraph::pairOf(const ScanEdge& edge) const
 {
+  const GraphEdge& scans = edge.edge;
   BatchPair pair;
-  pair.name = nameOf(target, source);
-  pair.target_file = request_.scans.at(static_cast<std::size_t>(target));
-  pair.source_file = request_.scans.at(static_cast<std::size_t>(source));
+  pair.name = nameOf(scans);
+  pair.target_file = request_.scans.at(static_cast<std::size_t>(scans.target));
+  pair.source_file = request_.scans.at(static_cast<std::size_t>(scans.source));
   pair.settings = request_.settings;
+  if (edge.kind != EdgeKind::Chain) {
+    const GraphEdge way = wayBetween(scans.target, scans.source);
+    const Matrix6d wide = PriorOptions().variance.asDiagonal();
+    double widening = 1.0;
+    pair.settings.guess = way.T_target_source;
+    pair.settings.options.prior =
+        priorFrom(statedPoseOf(poseOf(way.T_target_source), way.covariance + wide),
+                  PriorFloor(),
+                  widening);
+  }
   return pair;
 }
 
-std::optional<PoseEstimate>
-ScanGraph::edgeOf(const BatchResult& result, bool is_loop)
+void
+ScanGraph::closeLoop(ScanEdge& edge) const
 {
-  const std::string what = "edge " + result.pair.name + ": ";
-  std::optional<PoseEstimate> edge;
-  std::string complaint = result.message;
-  if (result.run != nullptr) {
-    const PoseEstimate posterior(result.run->result.summary);
-    edge = is_loop ? withoutPrior(posterior, priorOf(*result.run)).estimate : posterior;
-    complaint = complaintAboutExport(*edge, true);
-  }
-  const bool is_ok = complaint.empty() && result.status == toString(Status::Ok);
-  num_not_ok_ += is_ok ? 0 : 1;
-  if (is_ok)
-    tell_(true, what + "ok (" + io::fixedTextOf(result.seconds, 1) + " s)");
-  else if (complaint.empty())
-    tell_(false, what + result.status + ": " + result.message);
-  if (complaint.empty())
-    return edge;
-  if (is_loop || result.run == nullptr || !request_.has_weak_edges) {
-    tell_(false, what + "MISSING, " + result.status + ": " + complaint);
-    return std::nullopt;
-  }
-  tell_(false, what + "the prior only, " + result.status + ": " + complaint);
-  return estimateOf(priorOf(*result.run));
+  const Closure closure =
+      closureOf(edge.edge, wayBetween(edge.edge.target, edge.edge.source));
+  edge.closure = closure;
+  if (closure.probability >= min_loop_probability)
+    return;
+  edge.complaint = "contradicts the chain, " + sizeOf(closure.error) +
+                   " away: squared error " + io::fixedTextOf(closure.squared_error, 1) +
+                   " for " + io::textOf(closure.num_degrees) +
+                   " degrees of freedom, probability " +
+                   io::textOf(closure.probability, 2);
 }
 
 void
-ScanGraph::registerPairs(const std::vector<std::pair<int, int>>& indices,
-                         bool are_loops)
+ScanGraph::take(const BatchResult& result, ScanEdge& edge) const
+{
+  edge.seconds = result.seconds;
+  const bool is_found = edge.kind == EdgeKind::Found;
+  const std::string left_out = is_found                      ? "refused, "
+                               : edge.kind == EdgeKind::Span ? "left out, "
+                                                             : "MISSING, ";
+  std::string complaint = result.message;
+  if (result.run != nullptr) {
+    const PoseEstimate posterior(result.run->result.summary);
+    complaint = setEdge(edge.kind == EdgeKind::Chain
+                            ? posterior
+                            : withoutPrior(posterior, priorOf(*result.run)).estimate,
+                        edge.edge);
+    edge.is_in_graph = complaint.empty();
+  }
+  if (edge.is_in_graph) {
+    if (result.status != toString(Status::Ok)) // also with the flag of a wrong basin
+      edge.complaint = result.status + ": " + result.message;
+    if (is_found || edge.kind == EdgeKind::Named)
+      closeLoop(edge);
+    if ((is_found || edge.kind == EdgeKind::Span) && !edge.complaint.empty()) {
+      edge.is_in_graph = false;
+      edge.complaint = left_out + edge.complaint;
+    }
+    return;
+  }
+  const std::string reason = result.status + ": " + complaint;
+  edge.is_in_graph = edge.kind == EdgeKind::Chain && request_.has_weak_edges &&
+                     result.run != nullptr &&
+                     setEdge(estimateOf(priorOf(*result.run)), edge.edge).empty();
+  edge.complaint = (edge.is_in_graph ? "the prior only, " : left_out) + reason;
+}
+
+void
+ScanGraph::report(const ScanEdge& edge) const
+{
+  std::string text = edge.complaint;
+  if (text.empty())
+    text = "ok (" + io::fixedTextOf(edge.seconds, 1) + " s)";
+  if (edge.complaint.empty() && edge.closure)
+    text += ", closes with probability " + io::textOf(edge.closure->probability, 2);
+  const bool is_found = edge.kind == EdgeKind::Found;
+  tell_(edge.complaint.empty() || is_found,
+        (is_found ? "loop " : "edge ") + nameOf(edge.edge) + ": " + text);
+}
+
+void
+ScanGraph::registerEdges(std::vector<ScanEdge> edges)
 {
   std::vector<BatchPair> pairs;
-  for (const auto& [target, source] : indices) {
-    pairs.push_back(pairOf(target, source));
-    if (are_loops) {
-      Settings& settings = pairs.back().settings;
-      settings.guess = poses_.at(static_cast<std::size_t>(target)).inverse() *
-                       poses_.at(static_cast<std::size_t>(source));
-      settings.options.prior.mean = PriorOptions().mean;
+  std::vector<std::size_t> positions;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    try {
+      pairs.push_back(pairOf(edges[k]));
+      positions.push_back(k);
+    }
+    catch (const Refusal& refusal) {
+      edges[k].complaint = std::string("MISSING: ") + refusal.what();
+      report(edges[k]);
     }
   }
-  const std::size_t first = edges_.size();
-  edges_.resize(first + pairs.size());
   runBatch(pairs,
            {request_.settings.options.chains.num_threads, ""},
            [&](const BatchResult& result) {
              const auto position =
                  static_cast<std::size_t>(&result.pair - pairs.data());
-             edges_[first + position] = edgeOf(result, are_loops);
+             ScanEdge& edge = edges[positions[position]];
+             take(result, edge);
+             report(edge);
            });
+  registrations_.insert(registrations_.end(), edges.begin(), edges.end());
 }
 
 void
 ScanGraph::chainPoses()
 {
-  poses_.assign(1, Eigen::Matrix4d::Identity());
-  const Vector6d& prior_mean = request_.settings.options.prior.mean;
-  const Eigen::Matrix4d expected =
-      prior_mean.allFinite() ? matrixOf(prior_mean) : request_.settings.guess;
-  for (const auto& edge : edges_)
-    poses_.push_back(poses_.back() * (edge ? matrixOf(edge->mean) : expected));
+  const PriorOptions& prior = request_.settings.options.prior;
+  const PriorOptions usual;
+  const Vector6d expected =
+      prior.mean.allFinite() ? prior.mean : poseOf(request_.settings.guess);
+  const Prior assumed(expected,
+                      prior.variance.allFinite() ? prior.variance : usual.variance);
+  GraphEdge way{0, 0, Eigen::Matrix4d::Identity(), Matrix6d::Zero()};
+  chain_.assign(1, GaussianPose());
+  for (const ScanEdge& edge : registrations_) {
+    steps_.push_back(edge.edge);
+    if (!edge.is_in_graph) {
+      const PoseEstimate estimate = estimateOf(assumed);
+      steps_.back().T_target_source = matrixOf(estimate.mean);
+      steps_.back().covariance = estimate.covariance(CovarianceConvention::RightSE3);
+    }
+    way = wayAlong({way, steps_.back()}, 0, {0, 1});
+    chain_.push_back({poseOf(way.T_target_source), way.covariance});
+  }
+}
+
+GraphEdge
+ScanGraph::wayBetween(int target, int source) const
+{
+  std::vector<std::size_t> path;
+  for (int k = std::min(target, source); k < std::max(target, source); ++k)
+    path.push_back(static_cast<std::size_t>(k));
+  if (target > source)
+    std::reverse(path.begin(), path.end());
+  return wayAlong(steps_, target, path);
+}
+
+std::vector<ScanEdge>
+ScanGraph::moreEdges() const
+{
+  std::vector<ScanEdge> edges;
+  std::set<std::pair<int, int>> known;
+  const auto add = [&](EdgeKind kind, int target, int source) {
+    if (!known.insert(std::minmax(target, source)).second && kind != EdgeKind::Named)
+      return;
+    edges.emplace_back();
+    edges.back().kind = kind;
+    edges.back().edge.target = target;
+    edges.back().edge.source = source;
+  };
+  for (const auto& [target, source] : request_.loops)
+    add(EdgeKind::Named, target, source);
+  for (int k = 0; k < static_cast<int>(chain_.size()); ++k)
+    for (int before = std::max(0, k - request_.span); before + 1 < k; ++before)
+      add(EdgeKind::Span, before, k);
+  if (request_.loop_radius > 0.0) {
+    const auto candidates = loopCandidates(chain_, request_.loop_radius);
+    for (const auto& [target, source] : candidates)
+      add(EdgeKind::Found, target, source);
+    tell_(true,
+          io::textOf(candidates.size()) + " candidates for loops, within " +
+              io::textOf(request_.loop_radius) + " m of an earlier scan");
+  }
+  return edges;
 }
 
 void
 ScanGraph::registerScans()
 {
-  std::vector<std::pair<int, int>> chain;
-  for (int k = 0; k + 1 < static_cast<int>(request_.scans.size()); ++k)
-    chain.emplace_back(k, k + 1);
-  registerPairs(chain, false);
+  std::vector<ScanEdge> chain;
+  for (int k = 0; k + 1 < static_cast<int>(request_.scans.size()); ++k) {
+    chain.emplace_back();
+    chain.back().edge.target = k;
+    chain.back().edge.source = k + 1;
+  }
+  registerEdges(chain);
   chainPoses();
-  registerPairs(request_.loops, true);
+  registerEdges(moreEdges());
 }
 
-std::string
-ScanGraph::g2oText() const
+std::vector<ScanEdge>
+ScanGraph::taken() const
 {
-  std::string text;
-  for (std::size_t k = 0; k < poses_.size(); ++k)
-    text += g2oVertex(poses_[k], static_cast<int>(k));
-  text += "FIX 0\n";
-  const std::size_t chain_length = poses_.size() - 1;
-  for (std::size_t k = 0; k < edges_.size(); ++k) {
-    if (!edges_[k])
-      continue;
-    ExportOptions options;
-    options.target_vertex =
-        k < chain_length ? static_cast<int>(k) : request_.loops[k - chain_length].first;
-    options.source_vertex = k < chain_length ? static_cast<int>(k) + 1
-                                             : request_.loops[k - chain_length].second;
-    text += g2oEdge(*edges_[k], options);
-  }
-  return text;
+  std::vector<ScanEdge> edges;
+  std::copy_if(registrations_.begin(),
+               registrations_.end(),
+               std::back_inserter(edges),
+               [](const ScanEdge& edge) { return edge.is_in_graph; });
+  return edges;
 }
 
 } // namespace bayesian_icp::app

@@ -4,8 +4,7 @@
 #pragma once
 
 #include "batch/batch_run.h"
-
-#include <bayesian_icp/exports.h>
+#include "graph/cycle_closure.h"
 
 #include <optional>
 #include <string>
@@ -18,15 +17,59 @@ namespace bayesian_icp::app {
 struct GraphRequest {
   /** Files of the scans, in their order. */
   std::vector<std::string> scans;
-  /** Target and source, positions in scans, of edges in addition to those of the chain.
-   */
+  /** Each scan is registered to so many scans before it. */
+  int span = 1;
+  /** Target and source, positions in scans, of more edges. */
   std::vector<std::pair<int, int>> loops;
+  /** Radius of loopCandidates() [m]; 0: none are looked for. */
+  double loop_radius = 0.0;
   /** The guess is that of each scan's pose in the frame of the one before. */
   Settings settings;
   /** Whether the prior takes the place of a registration of the chain that is of no
    * use. */
   bool has_weak_edges = false;
 };
+
+/** \brief Why two scans are registered. */
+enum class EdgeKind {
+  /** They are consecutive. */
+  Chain,
+  /** There are few scans between them: GraphRequest::span. */
+  Span,
+  /** GraphRequest::loops. */
+  Named,
+  /** The trajectory comes back: GraphRequest::loop_radius. */
+  Found
+};
+
+/** \brief "chain", or the option that asks for it. */
+const char*
+toString(EdgeKind kind);
+
+/** \brief A registration and what became of it. */
+struct ScanEdge {
+  EdgeKind kind = EdgeKind::Chain;
+  /** Without pose and covariance if there is no posterior of use. */
+  GraphEdge edge;
+  bool is_in_graph = false;
+  /** Why it is not in the graph, or what is wrong with it; empty if all is well. */
+  std::string complaint;
+  /** Of a loop and the chain between its scans. */
+  std::optional<Closure> closure;
+  double seconds = 0.0;
+};
+
+/** \brief The edges without their stories. */
+std::vector<GraphEdge>
+edgesOf(const std::vector<ScanEdge>& edges);
+
+/** \brief "3-7": the target, then the source. */
+std::string
+nameOf(const GraphEdge& edge);
+
+/** \brief "0.0312 m and 1.2 degrees" */
+std::string
+sizeOf(const Vector6d& twist);
 
 /** \brief Registrations on their way to a graph. Vertex k is the pose of scan k in the
  * frame of scan 0. */
@@ -37,47 +80,69 @@ public:
   ScanGraph(const GraphRequest& request,
             const std::function<void(bool, const std::string&)>& tell);
 
-  /** \brief Register each scan to the one before, then the loops, whose guesses are
+  /** \brief Register each scan to the one before, then all others, whose priors are
    * from the chain of mean poses. Both may end early after an interrupt.
    *
-   * An edge of the chain has the posterior, prior included; one of a loop has it
-   * without the prior, which is about what the chain says already. */
+   * An edge of the chain has the posterior, prior included; another one has it without
+   * the prior, which is about what the chain says already. A loop that was found is in
+   * the graph only if its status is ok and it closes with the chain. */
   void
   registerScans();
 
-  /** \brief The graph in g2o's format: VERTEX_SE3:QUAT, FIX 0, EDGE_SE3:QUAT. */
-  std::string
-  g2oText() const;
-
-  /** \brief Number of registrations whose status is not Ok, or whose edge is missing.
-   */
-  int
-  numNotOk() const
+  /** \brief All registrations: the chain, then the others. */
+  const std::vector<ScanEdge>&
+  registrations() const
   {
-    return num_not_ok_;
+    return registrations_;
+  }
+
+  /** \brief Those that are in the graph. */
+  std::vector<ScanEdge>
+  taken() const;
+
+  /** \brief The poses along the chain. Where an edge is missing, the prior takes its
+   * place. */
+  const std::vector<GaussianPose>&
+  chain() const
+  {
+    return chain_;
   }
 
 private:
+  /** The pair of an edge as it is to be registered. \throws Refusal */
   BatchPair
-  pairOf(int target, int source) const;
+  pairOf(const ScanEdge& edge) const;
 
-  /** Register pairs (target, source) and note their edges, in their order. */
   void
-  registerPairs(const std::vector<std::pair<int, int>>& indices, bool are_loops);
+  registerEdges(std::vector<ScanEdge> edges);
 
-  /** The edge of a registration; none, and a word about it, if that is of no use. */
-  std::optional<PoseEstimate>
-  edgeOf(const BatchResult& result, bool is_loop);
+  void
+  take(const BatchResult& result, ScanEdge& edge) const;
+
+  /** See whether a loop contradicts the chain. */
+  void
+  closeLoop(ScanEdge& edge) const;
+
+  void
+  report(const ScanEdge& edge) const;
 
   void
   chainPoses();
 
+  /** The edge along the chain. */
+  GraphEdge
+  wayBetween(int target, int source) const;
+
+  /** All that are not of the chain. */
+  std::vector<ScanEdge>
+  moreEdges() const;
+
   const GraphRequest& request_;
   std::function<void(bool, const std::string&)> tell_;
-  std::vector<Eigen::Matrix4d> poses_;
-  /** Edges of the chain, then those of the loops. */
-  std::vector<std::optional<PoseEstimate>> edges_;
-  int num_not_ok_ = 0;
+  std::vector<ScanEdge> registrations_;
+  /** From each scan to the next, all of them. */
+  std::vector<GraphEdge> steps_;
+  std::vector<GaussianPose> chain_;
 };
 
 } // namespace bayesian_icp::app

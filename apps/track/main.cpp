@@ -1,6 +1,7 @@
 /** \file
  * \brief pcl_bayesian_icp_track: the trajectory of a sensor from its scans.
  */
+#include "graph/trajectory_files.h"
 #include "io/cloud_file.h"
 #include "io/interrupt.h"
 #include "io/line_file.h"
@@ -9,7 +10,6 @@
 #include "io/program.h"
 #include "plot/gnuplot.h"
 #include "track/track_command.h"
-#include "track/track_files.h"
 #include "track/track_line.h"
 #include "track/track_report.h"
 #include "track/tracker.h"
@@ -66,9 +66,9 @@ writeFiles(const TrackCommand& command, const Track& track, io::OutputFolder& fo
   const auto write = [&folder](const std::string& name, const std::string& text) {
     folder.add(name, [&text](std::ostream& stream) { stream << text; });
   };
-  write("trajectory_tum.txt", tumText(track));
-  write("trajectory_covariance.txt", tumCovarianceText(track));
-  write("graph.g2o", g2oText(track));
+  write("trajectory_tum.txt", tumText(track.times(), track.poses()));
+  write("trajectory_covariance.txt", tumCovarianceText(track.times(), track.poses()));
+  write("graph.g2o", g2oText(track.poses(), track.edges()));
   if (plot::hasGnuplot())
     write("report.html", trackReportHtml(command, track));
   else {

@@ -75,6 +75,21 @@ Track::take(const TrackStep& step)
     changeTarget(step.kind);
 }
 
+std::vector<GraphEdge>
+Track::edges() const
+{
+  std::vector<GraphEdge> all;
+  const auto add = [&all](int scan, const TrackEdge& edge) {
+    all.push_back({edge.target, scan, matrixOf(edge.pose.mean), edge.pose.covariance});
+  };
+  for (const TrackStep& step : steps_) {
+    add(step.scan, step.edge);
+    for (const TrackEdge& edge : step.more_edges)
+      add(step.scan, edge);
+  }
+  return all;
+}
+
 Matrix6d
 Track::targetCovariance(const Eigen::Matrix4d& T_target_scan) const
 {

@@ -142,6 +142,11 @@ public:
     return poses_;
   }
 
+  /** \brief The edges of all steps, without the prior, in their order; those of
+   * predicted and split steps are the prediction. */
+  std::vector<GraphEdge>
+  edges() const;
+
   /** \brief Times of all scans [s]. */
   const std::vector<double>&
   times() const

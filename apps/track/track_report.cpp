@@ -1,193 +1,46 @@
 #include "track/track_report.h"
 
+#include "report/path_charts.h"
 #include "report/report_html.h"
 
-#include <Eigen/Eigenvalues>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 
 namespace bayesian_icp::app {
 
 namespace {
 
-constexpr double degrees = 57.29577951308232;
-/** Of the region that an ellipse shows, in two dimensions: sqrt(-2 log 0.05). */
-constexpr double deviations_of_95_percent = 2.447746830680816;
-constexpr std::size_t max_ellipses = 40;
 constexpr std::size_t max_rows_of_table = 100;
-
-/** Position errors along the axes of scan 0. */
-Eigen::Matrix3d
-positionCovariance(const GaussianPose& pose)
-{
-  const Eigen::Matrix3d R = rotationOf(pose.mean);
-  return R * pose.covariance.topLeftCorner<3, 3>() * R.transpose();
-}
-
-/** The two axes of scan 0 along which the trajectory is longest, in their order. */
-std::array<Eigen::Index, 2>
-longestAxes(const Track& track)
-{
-  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
-  for (const GaussianPose& pose : track.poses()) {
-    low = low.cwiseMin(pose.mean.head<3>());
-    high = high.cwiseMax(pose.mean.head<3>());
-  }
-  Eigen::Index shortest = 0;
-  (high - low).reverse().minCoeff(&shortest);
-  shortest = 2 - shortest; // of equal ones z
-  return {shortest == 0 ? 1 : 0, shortest == 2 ? 1 : 2};
-}
-
-struct Ellipse {
-  double x, y, width, height, angle; // [m, degrees]
-};
-
-Ellipse
-ellipseOf(const GaussianPose& pose, const std::array<Eigen::Index, 2>& axes)
-{
-  const Eigen::Matrix3d covariance = positionCovariance(pose);
-  Eigen::Matrix2d part;
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j)
-      part(i, j) = covariance(axes[std::size_t(i)], axes[std::size_t(j)]);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(part);
-  const Eigen::Vector2d lengths =
-      2.0 * deviations_of_95_percent * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::Vector2d direction = solver.eigenvectors().col(1);
-  return {pose.mean[axes[0]],
-          pose.mean[axes[1]],
-          lengths[1],
-          lengths[0],
-          degrees * std::atan2(direction[1], direction[0])};
-}
-
-/** By how much ellipses are enlarged: a power of ten that makes the last one at least a
- * fiftieth as wide as the trajectory is long. */
-double
-enlargement(const Ellipse& last, double extent)
-{
-  double factor = 1.0;
-  while (last.width > 0.0 && factor < 1e6 && factor * last.width < extent / 50.0)
-    factor *= 10.0;
-  return factor;
-}
-
-Chart
-pathChart(const Track& track)
-{
-  static constexpr std::array<const char*, 3> names = {"x", "y", "z"};
-  const std::array<Eigen::Index, 2> axes = longestAxes(track);
-  const std::vector<GaussianPose>& poses = track.poses();
-  std::string path, ellipses;
-  double extent = 0.0;
-  for (const GaussianPose& pose : poses) {
-    path +=
-        plotNumber(pose.mean[axes[0]]) + ' ' + plotNumber(pose.mean[axes[1]]) + '\n';
-    extent = std::max(extent, pose.mean.head<3>().cwiseAbs().maxCoeff());
-  }
-  const double factor = enlargement(ellipseOf(poses.back(), axes), extent);
-  const std::size_t step = poses.size() / max_ellipses + 1;
-  for (std::size_t k = poses.size(); k > 0; k -= std::min(k, step)) {
-    const Ellipse ellipse = ellipseOf(poses[k - 1], axes);
-    for (const double number : {ellipse.x,
-                                ellipse.y,
-                                factor * ellipse.width,
-                                factor * ellipse.height,
-                                ellipse.angle})
-      ellipses += plotNumber(number) + ' ';
-    ellipses += '\n';
-  }
-  const std::string x = names[std::size_t(axes[0])], y = names[std::size_t(axes[1])];
-  Chart chart;
-  chart.id = "path";
-  chart.title = "The trajectory";
-  chart.caption =
-      "Positions in the frame of scan 0, along the two axes along which the "
-      "trajectory is longest. Ellipses are 95 % regions" +
-      (factor > 1.0 ? ", enlarged " + io::textOf(factor) + " times."
-                    : std::string("."));
-  chart.description = chart.caption;
-  chart.width = html::FigureWidth::Scrolled;
-  chart.drawing = {
-      720,
-      480,
-      12,
-      plot::dataBlock("path", path) + plot::dataBlock("ellipses", ellipses) +
-          chart_style + "set size ratio -1\nset grid linewidth 0.3\nset xlabel '" + x +
-          " [m]'\nset ylabel '" + y +
-          " [m]'\nplot $ellipses using 1:2:3:4:5 with ellipses linecolor rgb '" +
-          chart_colours[1] +
-          "', $path using 1:2 with linespoints pointtype 7 "
-          "pointsize 0.3 linewidth 1.5 linecolor rgb '" +
-          chart_colours[0] + "'\n"};
-  return chart;
-}
-
-/** A line over time [s]; \p settings are gnuplot's. */
-Chart
-timeChart(const std::string& id,
-          const std::string& caption,
-          const std::string& label,
-          const std::string& lines,
-          const std::string& settings = "")
-{
-  Chart chart;
-  chart.id = id;
-  chart.title = chart.caption = chart.description = caption;
-  chart.drawing = {
-      420,
-      240,
-      12,
-      plot::dataBlock("data", lines) + chart_style +
-          "set grid linewidth 0.3\nset xlabel 'time [s]'\nset ylabel " +
-          plot::quotedForGnuplot(label) + '\n' + settings +
-          "plot $data using 1:2 with linespoints pointtype 7 pointsize 0.3 "
-          "linecolor rgb '" +
-          chart_colours[0] + "'\n"};
-  return chart;
-}
 
 std::vector<Chart>
 uncertaintyCharts(const Track& track)
 {
-  std::string positions, rotations, innovations;
+  static constexpr const char* x_label = "time [s]";
+  std::vector<double> times;
+  std::string innovations;
   for (std::size_t k = 0; k < track.poses().size(); ++k) {
-    const Matrix6d& covariance = track.poses()[k].covariance;
-    const std::string time = plotNumber(track.times()[k] - track.times()[0]) + ' ';
-    positions +=
-        time + plotNumber(std::sqrt(covariance.topLeftCorner<3, 3>().trace())) + '\n';
-    rotations +=
-        time +
-        plotNumber(degrees * std::sqrt(covariance.bottomRightCorner<3, 3>().trace())) +
-        '\n';
+    times.push_back(track.times()[k] - track.times()[0]);
     if (k == 0)
       continue;
     const int num_measured = 6 - track.steps()[k - 1].edge.num_unmeasured;
     if (num_measured > 0)
-      innovations +=
-          time + plotNumber(track.innovations()[k - 1] / num_measured) + '\n';
+      innovations += plotNumber(times[k]) + ' ' +
+                     plotNumber(track.innovations()[k - 1] / num_measured) + '\n';
   }
-  return {
-      timeChart("position",
-                "Standard deviation of the position in the frame of scan 0.",
-                "position [m]",
-                positions),
-      timeChart("rotation",
-                "Standard deviation of the rotation in the frame of scan 0.",
-                "rotation [degrees]",
-                rotations),
-      timeChart("innovation",
-                "Squared difference between prediction and registration, in units of "
-                "what both covariances allow. About 1 on average is right; far above "
-                "1, --acceleration or --angular-acceleration is too small.",
-                "per direction",
-                innovations.empty() ? "0 1\n" : innovations,
-                "set logscale y\nset arrow from graph 0, first 1 to graph 1, first 1 "
-                "nohead dashtype 2\n")};
+  std::vector<Chart> charts = deviationCharts(times, x_label, {track.poses(), {}, {}});
+  charts.push_back(lineChart(
+      "innovation",
+      "Squared difference between prediction and registration, in units of "
+      "what both covariances allow. About 1 on average is right; far above "
+      "1, --acceleration or --angular-acceleration is too small.",
+      x_label,
+      "per direction",
+      plot::dataBlock("data", innovations.empty() ? "0 1\n" : innovations) +
+          "set logscale y\nset arrow from graph 0, first 1 to graph 1, first 1 "
+          "nohead dashtype 2\nplot $data using 1:2 with linespoints pointtype 7 "
+          "pointsize 0.3 linecolor rgb '" +
+          path_colour + "'\n"));
+  return charts;
 }
 
 std::array<std::size_t, 4>
@@ -257,7 +110,7 @@ trackReportHtml(const TrackCommand& command, const Track& track)
   Section path, uncertainty, repeat;
   path.id = "trajectory";
   path.heading = "Where was the sensor?";
-  path.charts = {pathChart(track)};
+  path.charts = {pathChart({track.poses(), {}, {}})};
   path.below_html = tableOfProblems(command, track);
   uncertainty.id = "uncertainty";
   uncertainty.heading = "How sure is that?";

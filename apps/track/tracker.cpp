@@ -38,20 +38,6 @@ thinned(const Eigen::Matrix3Xd& points, double voxel_size)
   return points(Eigen::all, kept);
 }
 
-/** As a prior is stated to the library. */
-StatedPose
-statedPoseOf(const GaussianPose& pose)
-{
-  StatedPose stated;
-  const Eigen::Matrix3d R = rotationOf(pose.mean);
-  stated.position = pose.mean.head<3>();
-  stated.orientation = R;
-  Matrix6d turn = Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R;
-  stated.covariance = turn * pose.covariance * turn.transpose();
-  return stated;
-}
-
 /** What came of a registration; the better, the later. */
 enum class Quality { Cancelled, Useless, Contradiction, Doubtful, Good };
 
@@ -190,7 +176,8 @@ Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
     prediction.covariance += track_.targetCovariance(matrixOf(prediction.mean));
     Options options = request_.settings.options;
     double widening = 1.0;
-    options.prior = priorFrom(statedPoseOf(prediction), PriorFloor(), widening);
+    options.prior = priorFrom(
+        statedPoseOf(prediction.mean, prediction.covariance), PriorFloor(), widening);
     Registration result = registered(points, *target_, options, progress);
     result.edge.pose.covariance +=
         track_.targetCovariance(matrixOf(result.edge.pose.mean));

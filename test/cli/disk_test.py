@@ -56,7 +56,8 @@ class FullDisk(FaultTest):
         for tool in self.invocations(self.folder):
             with self.subTest(tool=tool):
                 # The graph of two scans is small, and so are the tables of the studies.
-                size = 100 if tool in ("pose graph", "coverage", "sbc") else 1000
+                is_small = tool.endswith("pose graph") or tool in ("coverage", "sbc")
+                size = 100 if is_small else 1000
                 self.check(
                     tool, self.new_folder(), preexec_fn=limited(resource.RLIMIT_FSIZE, size)
                 )

@@ -149,6 +149,10 @@ class FaultTest(ToolTest):
                 [POSE_GRAPH, source, target, *FAST, "--weak-edges", "--quiet", "-o", output / "g.g2o"],
                 {"g.g2o"},
             ),
+            "optimized pose graph": (
+                [POSE_GRAPH, source, target, *FAST, "--weak-edges", "--quiet", "--optimize", output],
+                TRACKED - {"edges.jsonl"},
+            ),
             "track": ([TRACK, target, source, *FAST, "--quiet", "-o", output], TRACKED),
             "coverage": (
                 [EVALUATE, "coverage", *ONE_CASE, *study, output / "coverage.csv"],

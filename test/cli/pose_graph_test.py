@@ -105,6 +105,102 @@ class PoseGraphOfSimulatedScans(PoseGraphTest):
         self.assertLess(quadratic(error, information) / 2, CHI2_HIGH[6])
 
 
+class PoseGraphSpan(PoseGraphTest):
+    def test_has_an_edge_for_each_near_scan(self):
+        eyes = ["0,-1.2,0.7", "0.06,-1.19,0.72", "0.12,-1.17,0.71", "0.18,-1.14,0.7"]
+        scans, from_world = self.trajectory(eyes)
+        result = call(POSE_GRAPH, scans, "--span", 2, "-o", self.graph)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        _, edges = read_graph(self.graph)
+        self.assertEqual(sorted(edges), [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3)], result.stderr)
+        for (i, j), (pose, information) in edges.items():
+            true = composed(from_world[i], inverted(from_world[j]))
+            self.assertLess(quadratic(g2o_error(pose, true), information), CHI2_HIGH[6], (i, j))
+
+
+class PoseGraphLoops(PoseGraphTest):
+    """A camera that goes once around a table."""
+
+    NUM_STEPS = 12
+
+    def setUp(self):
+        super().setUp()
+        angles = [2 * math.pi * k / self.NUM_STEPS for k in range(self.NUM_STEPS + 1)]
+        eyes = [f"{1.2 * math.cos(a)},{1.2 * math.sin(a)},0.7" for a in angles]
+        scans, from_world = self.trajectory(eyes)
+        self.scans = [scans / f"scan_{k}.pcd" for k in range(self.NUM_STEPS + 1)]
+        self.truth = [composed(from_world[0], inverted(pose)) for pose in from_world]
+        self.result = self.folder / "result"
+
+    def odometry(self, turn, variance):
+        """Options that state the motion, the same from each scan to the next, but for a
+        factor of its rotation."""
+        position, (x, y, z, w) = self.truth[1]
+        roll = math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
+        pitch = math.asin(2 * (w * y - z * x))
+        yaw = math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        numbers = [*position, turn * roll, turn * pitch, turn * yaw]
+        return ["--guess", ",".join(f"{n:.4f}" for n in numbers), "--prior-variance", variance]
+
+    def drift(self, vertices):
+        """Root mean square of the errors of the positions."""
+        errors = [g2o_error(vertices[k], self.truth[k])[:3] for k in vertices]
+        return math.sqrt(sum(c * c for error in errors for c in error) / len(errors))
+
+    def rows(self, name):
+        lines = (self.result / name).read_text().splitlines()
+        return [list(map(float, line.split())) for line in lines]
+
+    def check_trajectory(self, vertices):
+        poses, covariances = map(self.rows, ("trajectory_tum.txt", "trajectory_covariance.txt"))
+        self.assertEqual([row[0] for row in poses], list(range(self.NUM_STEPS + 1)))
+        variances = [row[1] + row[8] + row[15] for row in covariances]
+        for k, (row, variance) in enumerate(zip(poses, variances)):
+            found = (row[1:4], tuple(row[4:]))
+            self.assertLess(max(map(abs, g2o_error(vertices[k], found))), 1e-12)
+            error = math.dist(row[1:4], self.truth[k][0])
+            self.assertLessEqual(error, 4 * math.sqrt(variance) + 1e-12, k)
+        # The end is as near to the beginning as the scans after that.
+        self.assertEqual(variances[0], 0.0)
+        self.assertLess(variances[-1], variances[self.NUM_STEPS // 2])
+
+    def test_they_take_drift_away_if_they_close(self):
+        loops = ["--loops", 0.4]
+        words = [*self.scans, *self.odometry(1.02, 0.0025), *loops]
+        result = call(POSE_GRAPH, *words, "-o", self.graph, "--optimize", self.result)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertIn("1 candidates for loops, within 0.4 m of", result.stderr)
+        self.assertRegex(result.stderr, r"loop 0-12: ok .*, closes with probability 0\.")
+        vertices, edges = read_graph(self.graph)
+        self.assertIn((0, 12), edges)
+        self.assertEqual((self.result / "graph.g2o").read_text(), self.graph.read_text())
+        chain = [chained(edges[i, i + 1][0] for i in range(k)) for k in vertices]
+        self.assertLess(self.drift(vertices), 0.7 * self.drift(dict(enumerate(chain))))
+        self.check_trajectory(vertices)
+        report = (self.result / "report.html").read_text()
+        for part in ("Where was the sensor?", "Do the edges agree?", ">0-12<", "optimized poses"):
+            self.assertTrue(part in report, part)
+        self.assertTrue(report.endswith("</html>\n"))
+
+        # An odometry that is sure and wrong: the chain does not end where it began.
+        words = [*self.scans, *self.odometry(1.04, 1e-6)]
+        result = call(POSE_GRAPH, *words, *loops, "-o", self.graph)
+        self.assertNotIn((0, 12), read_graph(self.graph)[1])
+        self.assertRegex(
+            result.stderr,
+            r"loop 0-12: refused, contradicts the chain, [\d.]+ m and [\d.]+ degrees away: squared "
+            r"error \d+\.\d for 6 degrees of freedom, probability ",
+        )
+        words += ["--quiet", "--loop", "0,12", "--robust-loss", "cauchy", "--optimize", self.result]
+        result = call(POSE_GRAPH, *words)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("edge 0-12: contradicts the chain", result.stderr)
+        self.assertRegex(result.stderr, r"edge \d+-\d+ contradicts the others: squared error \d")
+        self.assertIn((0, 12), read_graph(self.result / "graph.g2o")[1])
+        report = (self.result / "report.html").read_text()
+        self.assertTrue("Edges contradict each other" in report)
+
+
 class PoseGraphEdges(PoseGraphTest):
     def test_no_silent_edge(self):
         source, target = self.small_pair()
@@ -139,6 +235,14 @@ class PoseGraphEdges(PoseGraphTest):
         self.assertEqual(sorted(vertices), [0, 1, 2, 3])
         self.assertNotIn((1, 2), edges)
 
+        # The graph is in two parts.
+        result = call(POSE_GRAPH, *scans, "--optimize", self.folder / "result", *options)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("cannot be optimized: no edges join scan 2 to scan 0", result.stderr)
+        names = [path.name for path in (self.folder / "result").iterdir()]
+        self.assertEqual(names, ["graph.g2o"])
+        self.assertEqual(read_graph(self.folder / "result" / "graph.g2o"), (vertices, edges))
+
     def test_loops_do_not_count_the_prior(self):
         """In its plane a bare table top is held by the prior alone."""
         scans = [DATA / "table_top" / "target.pcd", DATA / "table_top" / "source.pcd"]
@@ -154,6 +258,11 @@ class PoseGraphEdges(PoseGraphTest):
             self.assertGreater(loop[axis][axis], 1000 * variance)
         self.assertLess(loop[2][2], 1e6 * chain[2][2])
 
+    def test_help_names_the_files(self):
+        text = call(POSE_GRAPH, "--help").stdout
+        for part in ("--span", "--loops", "--optimize", "--robust-loss", "trajectory_tum.txt"):
+            self.assertIn(part, text)
+
     def test_refused(self):
         source, target = self.small_pair()
         for code, words, part in (
@@ -163,6 +272,12 @@ class PoseGraphEdges(PoseGraphTest):
             (2, [source, target, "-o", "g", "--loop", "0,2"], "--loop: '0,2'"),
             (2, [source, target, "-o", "g", "--loop", "1,1"], "--loop: '1,1'"),
             (2, [source, target, "-o", "g", "--sigma", "1"], "--sigma"),
+            (2, [source, target, "-o", "g", "--span", "0"], "--span is 0, but must be from 1"),
+            (2, [source, target, "-o", "g", "--loops", "0"], "--loops is 0, but must be above"),
+            (2, [source, target, "-o", "g", "--loops", "nan"], "--loops"),
+            (2, [source, target, "-o", "g", "--robust-loss", "huber"], "needs --optimize"),
+            (2, [source, target, "--optimize", "g", "--robust-loss", "tukey"], "'tukey' is not"),
+            (3, [source, target, "--optimize", "/proc/none/g"], "/proc/none"),
             (3, [self.folder / "scans", "-o", "g"], "fewer than two"),
             (3, [source, target, "-o", "/proc/none/g"], "/proc/none"),
         ):

@@ -53,9 +53,16 @@ def small_pose(error):
 
 
 def pose_of_matrix(m):
-    w = math.sqrt(1 + m[0][0] + m[1][1] + m[2][2]) / 2
-    q = [(m[2][1] - m[1][2]), (m[0][2] - m[2][0]), (m[1][0] - m[0][1])]
-    return [m[k][3] for k in range(3)], (*(c / (4 * w) for c in q), w)
+    # Each row is the quaternion, multiplied by four times one of its numbers.
+    trace = m[0][0] + m[1][1] + m[2][2]
+    x, y, z = m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]
+    rows = [[m[i][k] + m[k][i] for k in range(3)] + [(x, y, z)[i]] for i in range(3)]
+    for i in range(3):
+        rows[i][i] += 1 - trace
+    rows.append([x, y, z, 1 + trace])
+    row = max(rows, key=lambda row: math.hypot(*row))
+    length = math.copysign(math.hypot(*row), row[3])
+    return [m[k][3] for k in range(3)], tuple(c / length for c in row)
 
 
 def solved(matrix, columns):

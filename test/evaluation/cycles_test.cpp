@@ -1,5 +1,6 @@
 // Closures of cycles of a graph whose errors are drawn from its covariances.
 #include "graph/cycle_closure.h"
+#include "graph/graph_file.h"
 #include "io/errors.h"
 #include "support/test_support.h"
 
@@ -121,8 +122,7 @@ TEST(Cycles, DoNotSeeWhatDrawsAllEdgesAlike)
     edge.T_target_source(0, 3) = 0.9 * way; // 0.1 to 0.3 m, 100 deviations and more
     edges.push_back(edge);
   }
-  const Closure closure =
-      app::closureOf(edges, app::cyclesOf(edges, 3).at(0));
+  const Closure closure = app::closureOf(edges, app::cyclesOf(edges, 3).at(0));
   EXPECT_LT(closure.squared_error, 1e-9);
 }
 
@@ -134,8 +134,7 @@ TEST(Cycles, DoNotCountWhatNoCloudHasSeen)
                                   drawnEdge(poses, 1, 2, random),
                                   drawnEdge(poses, 0, 2, random)};
   edges[1].covariance(2, 2) += 30.0 * 30.0;
-  const Closure closure =
-      app::closureOf(edges, app::cyclesOf(edges, 3).at(0));
+  const Closure closure = app::closureOf(edges, app::cyclesOf(edges, 3).at(0));
   EXPECT_EQ(closure.num_degrees, 5);
 }
 

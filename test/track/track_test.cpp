@@ -1,6 +1,6 @@
 // What a track does with good and bad steps, and its lines and files.
+#include "graph/trajectory_files.h"
 #include "track/track.h"
-#include "track/track_files.h"
 #include "track/track_line.h"
 
 #include <gtest/gtest.h>
@@ -143,8 +143,10 @@ TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
     EXPECT_EQ(track.poses()[std::size_t(k)].covariance,
               again.poses()[std::size_t(k)].covariance);
   }
-  EXPECT_EQ(app::g2oText(track), app::g2oText(again));
-  EXPECT_EQ(app::tumCovarianceText(track), app::tumCovarianceText(again));
+  EXPECT_EQ(app::g2oText(track.poses(), track.edges()),
+            app::g2oText(again.poses(), again.edges()));
+  EXPECT_EQ(app::tumCovarianceText(track.times(), track.poses()),
+            app::tumCovarianceText(again.times(), again.poses()));
 }
 
 TEST(Track, RefusesLinesOfAnotherOne)

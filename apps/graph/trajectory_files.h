@@ -1,0 +1,34 @@
+/** \file
+ * \brief Trajectories and pose graphs as files for other software.
+ */
+#pragma once
+
+#include "graph/pose_graph.h"
+
+#include <string>
+#include <vector>
+
+namespace bayesian_icp::app {
+
+/** \brief TUM trajectory: a line of each pose.
+ * \param[in] times of at least as many poses [s] */
+std::string
+tumText(const std::vector<double>& times, const std::vector<GaussianPose>& poses);
+
+/** \brief The covariances of tumText(), in CovarianceConvention::R3xSO3. */
+std::string
+tumCovarianceText(const std::vector<double>& times,
+                  const std::vector<GaussianPose>& poses);
+
+/** \brief A graph in g2o's format: VERTEX_SE3:QUAT of each pose, FIX 0, EDGE_SE3:QUAT
+ * of each edge, with invertibleCovariance(). */
+std::string
+g2oText(const std::vector<GaussianPose>& poses, const std::vector<GraphEdge>& edges);
+
+/** \brief The covariance, if it can be inverted. Where a motion oblique to the axes is
+ * not seen, and others are seen well, it is made wider: all variances by a little.
+ * \param[in] covariance CovarianceConvention::RightSE3 */
+Matrix6d
+invertibleCovariance(const Matrix6d& covariance);
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,292 @@
+#include "pose_graph/graph_report.h"
+
+#include "graph/closed_cycles.h"
+#include "report/path_charts.h"
+#include "report/report_html.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+constexpr std::size_t max_rows = 50;
+constexpr int num_digits = 3;
+
+std::string
+shortText(double value)
+{
+  return io::textOf(value, num_digits);
+}
+
+bool
+isLoop(const ScanEdge& edge)
+{
+  return edge.kind == EdgeKind::Named || edge.kind == EdgeKind::Found;
+}
+
+/** The table, if it has rows, with a word about those that there is no room for. */
+std::string
+limitedTableHtml(html::Table table)
+{
+  if (table.rows.empty())
+    return "";
+  const std::size_t num_rows = table.rows.size();
+  table.rows.resize(std::min(num_rows, max_rows));
+  return html::tableHtml(table) +
+         html::paragraphHtml(
+             num_rows > max_rows ? io::textOf(num_rows - max_rows) + " more." : "");
+}
+
+/** What the verdict counts. */
+struct Counts {
+  std::size_t num_complaints = 0; // refused loops are none
+  std::size_t num_refused = 0;
+  std::array<std::size_t, 4> num_taken{}; // by EdgeKind
+};
+
+Counts
+countsOf(const ScanGraph& graph)
+{
+  Counts counts;
+  for (const ScanEdge& edge : graph.registrations()) {
+    if (edge.is_in_graph)
+      ++counts.num_taken[static_cast<std::size_t>(edge.kind)];
+    if (edge.kind == EdgeKind::Found)
+      counts.num_refused += edge.is_in_graph ? 0 : 1;
+    else
+      counts.num_complaints += edge.complaint.empty() ? 0 : 1;
+  }
+  return counts;
+}
+
+std::string
+verdictHtml(const ScanGraph& graph, const OptimizedPoses& optimum)
+{
+  const Counts counts = countsOf(graph);
+  const auto num_contradictions = std::count_if(
+      optimum.squared_errors.begin(), optimum.squared_errors.end(), isContradiction);
+  const bool is_good = num_contradictions == 0 && counts.num_complaints == 0;
+  std::string sentence = "Edges in the graph";
+  for (std::size_t k = 0; k < counts.num_taken.size(); ++k)
+    sentence += (k == 0 ? ": " : ", ") +
+                std::string(toString(static_cast<EdgeKind>(k))) + ' ' +
+                io::textOf(counts.num_taken[k]);
+  sentence +=
+      ". Candidates for loops that were refused: " + io::textOf(counts.num_refused) +
+      ". Other registrations that are not ok: " + io::textOf(counts.num_complaints) +
+      ". Edges that contradict the others: " + io::textOf(num_contradictions) + '.';
+  return html::boxHtml(is_good ? html::Tone::Good : html::Tone::Caution,
+                       is_good ? "All edges agree"
+                       : num_contradictions > 0
+                           ? "Edges contradict each other"
+                           : "Not every registration has status ok",
+                       html::paragraphHtml(sentence));
+}
+
+std::string
+loopsHtml(const ScanGraph& graph)
+{
+  html::Table table;
+  table.caption = "Loops, and how they close with the chain before the optimization";
+  table.header = {"loop",
+                  "error [m]",
+                  "error [degrees]",
+                  "squared error",
+                  "degrees of freedom",
+                  "probability",
+                  "in the graph",
+                  "complaint"};
+  table.first_column_of_words = 6;
+  for (const ScanEdge& edge : graph.registrations()) {
+    if (!isLoop(edge))
+      continue;
+    std::vector<std::string> row = {nameOf(edge.edge), "", "", "", "", ""};
+    if (edge.closure) {
+      const Closure& closure = *edge.closure;
+      row = {nameOf(edge.edge),
+             shortText(closure.error.head<3>().norm()),
+             shortText(degrees * closure.error.tail<3>().norm()),
+             io::fixedTextOf(closure.squared_error, 1),
+             io::textOf(closure.num_degrees),
+             shortText(closure.probability)};
+    }
+    row.emplace_back(edge.is_in_graph ? "yes" : "no");
+    row.push_back(edge.complaint);
+    table.rows.push_back(row);
+  }
+  return limitedTableHtml(table);
+}
+
+std::string
+complaintsHtml(const ScanGraph& graph)
+{
+  html::Table table;
+  table.caption = "Registrations that are not ok";
+  table.header = {"edge", "kind", "in the graph", "complaint"};
+  table.first_column_of_words = 1;
+  for (const ScanEdge& edge : graph.registrations())
+    if (!isLoop(edge) && !edge.complaint.empty())
+      table.rows.push_back({nameOf(edge.edge),
+                            toString(edge.kind),
+                            edge.is_in_graph ? "yes" : "no",
+                            edge.complaint});
+  return limitedTableHtml(table);
+}
+
+std::string
+cyclesHtml(const std::vector<ClosedCycle>& cycles)
+{
+  html::Table table;
+  table.caption = "Cycles of edges, as they are registered";
+  table.header = {"edges",
+                  "cycles",
+                  "degrees of freedom",
+                  "squared error per degree",
+                  "in the 50 % region [%]",
+                  "in the 95 % region [%]"};
+  for (const CycleStatistics& line : statisticsOf(cycles))
+    table.rows.push_back({line.name,
+                          io::textOf(line.num_cycles),
+                          io::fixedTextOf(line.num_degrees, 1),
+                          io::fixedTextOf(line.nees_per_degree, 2),
+                          io::fixedTextOf(100.0 * line.share_in_half, 0),
+                          io::fixedTextOf(100.0 * line.share_in_95, 0)});
+  html::Table open;
+  open.caption = "Cycles that do not close (probability below 1 %)";
+  open.header = {
+      "scans", "error [m]", "error [degrees]", "squared error", "probability"};
+  for (const ClosedCycle& cycle : openCycles(cycles))
+    open.rows.push_back({cycle.vertices,
+                         shortText(cycle.closure.error.head<3>().norm()),
+                         shortText(degrees * cycle.closure.error.tail<3>().norm()),
+                         io::fixedTextOf(cycle.closure.squared_error, 1),
+                         shortText(cycle.closure.probability)});
+  return limitedTableHtml(table) + limitedTableHtml(open);
+}
+
+std::string
+contradictionsHtml(const std::vector<ScanEdge>& edges,
+                   const std::vector<ClosedCycle>& cycles,
+                   const OptimizedPoses& optimum)
+{
+  html::Table table;
+  table.caption = "Edges that contradict the others: squared error above the 99.9 % "
+                  "quantile, or none of their cycles closes";
+  table.header = {"edge",
+                  "from the optimized poses [m]",
+                  "[degrees]",
+                  "squared error",
+                  "cycles of which none closes",
+                  "kind"};
+  table.first_column_of_words = 5;
+  std::vector<std::size_t> num_open(edges.size(), 0);
+  for (const Suspect& suspect : suspectsOf(cycles))
+    num_open[suspect.edge] = suspect.num_cycles;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    if (!isContradiction(optimum.squared_errors[k]) && num_open[k] == 0)
+      continue;
+    const GraphEdge& edge = edges[k].edge;
+    const auto poseOfVertex = [&optimum](int vertex) {
+      return matrixOf(optimum.poses[static_cast<std::size_t>(vertex)].mean);
+    };
+    const Vector6d twist =
+        logSE3(edge.T_target_source.inverse() * poseOfVertex(edge.target).inverse() *
+               poseOfVertex(edge.source));
+    table.rows.push_back({nameOf(edge),
+                          shortText(twist.head<3>().norm()),
+                          shortText(degrees * twist.tail<3>().norm()),
+                          io::fixedTextOf(optimum.squared_errors[k], 1),
+                          io::textOf(num_open[k]),
+                          toString(edges[k].kind)});
+  }
+  return limitedTableHtml(table);
+}
+
+Section
+trajectorySection(const ScanGraph& graph, const PathData& path)
+{
+  Section section;
+  section.id = "trajectory";
+  section.heading = "Where was the sensor?";
+  std::vector<std::pair<std::string, std::string>> colours = {
+      {path_colour, "optimized poses"},
+      {ellipse_colour, "their 95 % regions"},
+      {before_colour, "the chain of scans alone"}};
+  if (!path.loops.empty())
+    colours.emplace_back(loop_colour, "loops");
+  section.above_html = html::legendHtml(colours);
+  section.charts = {pathChart(path)};
+  section.below_html = loopsHtml(graph) + complaintsHtml(graph);
+  return section;
+}
+
+Section
+uncertaintySection(const PathData& path)
+{
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < path.poses.size(); ++k)
+    numbers.push_back(static_cast<double>(k));
+  Section section;
+  section.id = "uncertainty";
+  section.heading = "How sure is that?";
+  section.above_html =
+      html::paragraphHtml(
+          "The covariances take the errors of two registrations as independent, "
+          "although they may have a scan in common.") +
+      html::legendHtml({{path_colour, "optimized poses"},
+                        {before_colour, "the chain of scans alone"}});
+  section.charts = deviationCharts(numbers, "scan", path);
+  return section;
+}
+
+Section
+agreementSection(const std::vector<ScanEdge>& edges, const OptimizedPoses& optimum)
+{
+  const std::vector<GraphEdge> plain = edgesOf(edges);
+  const std::vector<ClosedCycle> cycles = closedCycles(plain, plain.size() + 1);
+  Section section;
+  section.id = "agreement";
+  section.heading = "Do the edges agree?";
+  section.above_html =
+      cycles.empty()
+          ? html::paragraphHtml("No cycle: nothing tests the edges. --span and --loops "
+                                "make some.")
+          : html::paragraphHtml(
+                "The product of the poses around a cycle should be the identity, "
+                "within the sum of the covariances. The squared error per degree of "
+                "freedom is 1 on average if the covariances are right; larger ones "
+                "mean that they are too small, or that an edge is wrong.") +
+                cyclesHtml(cycles);
+  section.below_html = contradictionsHtml(edges, cycles, optimum);
+  return section;
+}
+
+} // namespace
+
+std::string
+graphReportHtml(const GraphCommand& command,
+                const ScanGraph& graph,
+                const OptimizedPoses& optimum)
+{
+  const std::vector<ScanEdge> edges = graph.taken();
+  PathData path{optimum.poses, graph.chain(), {}};
+  for (const ScanEdge& edge : edges)
+    if (isLoop(edge))
+      path.loops.emplace_back(edge.edge.target, edge.edge.source);
+  Section repeat;
+  repeat.id = "repeat";
+  repeat.heading = "To repeat the run";
+  repeat.above_html = html::codeHtml(command.command);
+  return html::pageHtml("Pose graph of " + io::textOf(optimum.poses.size()) + " scans",
+                        verdictHtml(graph, optimum) +
+                            sectionsHtml({trajectorySection(graph, path),
+                                          uncertaintySection(path),
+                                          agreementSection(edges, optimum),
+                                          repeat}));
+}
+
+} // namespace bayesian_icp::app

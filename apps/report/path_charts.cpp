@@ -1,0 +1,238 @@
+#include "report/path_charts.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** Of the region that an ellipse shows, in two dimensions: sqrt(-2 log 0.05). */
+constexpr double deviations_of_95_percent = 2.447746830680816;
+constexpr std::size_t max_ellipses = 40;
+
+using Axes = std::array<Eigen::Index, 2>;
+
+/** Position errors along the axes of scan 0. */
+Eigen::Matrix3d
+positionCovariance(const GaussianPose& pose)
+{
+  const Eigen::Matrix3d R = rotationOf(pose.mean);
+  return R * pose.covariance.topLeftCorner<3, 3>() * R.transpose();
+}
+
+/** The two axes of scan 0 along which the trajectory is longest, in their order. */
+Axes
+longestAxes(const std::vector<GaussianPose>& poses)
+{
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
+  for (const GaussianPose& pose : poses) {
+    low = low.cwiseMin(pose.mean.head<3>());
+    high = high.cwiseMax(pose.mean.head<3>());
+  }
+  Eigen::Index shortest = 0;
+  (high - low).reverse().minCoeff(&shortest);
+  shortest = 2 - shortest; // of equal ones z
+  return {shortest == 0 ? 1 : 0, shortest == 2 ? 1 : 2};
+}
+
+struct Ellipse {
+  double x, y, width, height, angle; // [m, degrees]
+};
+
+Ellipse
+ellipseOf(const GaussianPose& pose, const Axes& axes)
+{
+  const Eigen::Matrix3d covariance = positionCovariance(pose);
+  Eigen::Matrix2d part;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      part(i, j) = covariance(axes[std::size_t(i)], axes[std::size_t(j)]);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(part);
+  const Eigen::Vector2d lengths =
+      2.0 * deviations_of_95_percent * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::Vector2d direction = solver.eigenvectors().col(1);
+  return {pose.mean[axes[0]],
+          pose.mean[axes[1]],
+          lengths[1],
+          lengths[0],
+          degrees * std::atan2(direction[1], direction[0])};
+}
+
+/** By how much ellipses are enlarged: a power of ten that makes the largest one at
+ * least a fiftieth as wide as the trajectory is long. */
+double
+enlargement(double width, double extent)
+{
+  double factor = 1.0;
+  while (width > 0.0 && factor < 1e6 && factor * width < extent / 50.0)
+    factor *= 10.0;
+  return factor;
+}
+
+/** The ellipses as gnuplot reads them. \param[out] factor by which they are enlarged */
+std::string
+ellipseLines(const std::vector<GaussianPose>& poses, const Axes& axes, double& factor)
+{
+  std::vector<Ellipse> ellipses;
+  double extent = 0.0, width = 0.0;
+  for (const GaussianPose& pose : poses)
+    extent = std::max(extent, pose.mean.head<3>().cwiseAbs().maxCoeff());
+  const std::size_t step = poses.size() / max_ellipses + 1;
+  for (std::size_t k = poses.size(); k > 0; k -= std::min(k, step)) {
+    ellipses.push_back(ellipseOf(poses[k - 1], axes));
+    width = std::max(width, ellipses.back().width);
+  }
+  factor = enlargement(width, extent);
+  std::string lines;
+  for (const Ellipse& ellipse : ellipses) {
+    // gnuplot has a size of its own for ellipses without one.
+    const double x = ellipse.width > 0.0 ? ellipse.x : std::nan("");
+    for (const double number :
+         {x, ellipse.y, factor * ellipse.width, factor * ellipse.height, ellipse.angle})
+      lines += plotNumber(number) + ' ';
+    lines += '\n';
+  }
+  return lines;
+}
+
+std::string
+pointLine(const GaussianPose& pose, const Axes& axes)
+{
+  return plotNumber(pose.mean[axes[0]]) + ' ' + plotNumber(pose.mean[axes[1]]) + '\n';
+}
+
+std::string
+pathLines(const std::vector<GaussianPose>& poses, const Axes& axes)
+{
+  std::string lines;
+  for (const GaussianPose& pose : poses)
+    lines += pointLine(pose, axes);
+  return lines;
+}
+
+std::string
+lineStyle(double width, const char* colour)
+{
+  return " with lines linewidth " + plotNumber(width) + " linecolor rgb '" + colour +
+         '\'';
+}
+
+std::string
+pathScript(const PathData& path, const Axes& axes, const std::string& ellipses)
+{
+  std::string loops;
+  for (const auto& [first, second] : path.loops)
+    for (const int k : {first, second})
+      loops +=
+          pointLine(path.poses.at(std::size_t(k)), axes) + (k == second ? "\n" : "");
+  std::string blocks = plot::dataBlock("path", pathLines(path.poses, axes)) +
+                       plot::dataBlock("ellipses", ellipses);
+  std::string plots = "plot $ellipses using 1:2:3:4:5 with ellipses linecolor rgb '" +
+                      std::string(ellipse_colour) + '\'';
+  if (!path.before.empty()) {
+    blocks += plot::dataBlock("before", pathLines(path.before, axes));
+    plots += ", $before using 1:2" + lineStyle(1.0, before_colour) + " dashtype 2";
+  }
+  if (!path.loops.empty()) {
+    blocks += plot::dataBlock("loops", loops);
+    plots += ", $loops using 1:2" + lineStyle(1.5, loop_colour);
+  }
+  return blocks + chart_style + "set size ratio -1\nset grid linewidth 0.3\n" +
+         "set xlabel '" + "xyz"[axes[0]] + " [m]'\nset ylabel '" + "xyz"[axes[1]] +
+         " [m]'\n" + plots +
+         ", $path using 1:2 with linespoints pointtype 7 pointsize 0.3 linewidth 1.5 "
+         "linecolor rgb '" +
+         path_colour + "'\n";
+}
+
+/** A line of each pose: x and what \p deviationOf says of its covariance. */
+template <typename DeviationOf>
+std::string
+deviationLines(const std::vector<double>& x,
+               const std::vector<GaussianPose>& poses,
+               const DeviationOf& deviationOf)
+{
+  std::string lines;
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    lines +=
+        plotNumber(x.at(k)) + ' ' + plotNumber(deviationOf(poses[k].covariance)) + '\n';
+  return lines;
+}
+
+} // namespace
+
+Chart
+pathChart(const PathData& path)
+{
+  const Axes axes = longestAxes(path.poses);
+  double factor = 1.0;
+  const std::string ellipses = ellipseLines(path.poses, axes, factor);
+  Chart chart;
+  chart.id = "path";
+  chart.title = "The trajectory";
+  chart.caption =
+      "Positions in the frame of scan 0, along the two axes along which the "
+      "trajectory is longest. Ellipses are 95 % regions" +
+      (factor > 1.0 ? ", enlarged " + io::textOf(factor) + " times."
+                    : std::string("."));
+  chart.description = chart.caption;
+  chart.width = html::FigureWidth::Scrolled;
+  chart.drawing = {720, 480, 12, pathScript(path, axes, ellipses)};
+  return chart;
+}
+
+std::vector<Chart>
+deviationCharts(const std::vector<double>& x,
+                const std::string& x_label,
+                const PathData& path)
+{
+  const auto of_position = [](const Matrix6d& covariance) {
+    return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
+  };
+  const auto of_rotation = [](const Matrix6d& covariance) {
+    return degrees * std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+  };
+  const auto chartOf = [&](const std::string& name,
+                           const std::string& unit,
+                           const auto& deviationOf) {
+    std::string script =
+        plot::dataBlock("data", deviationLines(x, path.poses, deviationOf));
+    std::string plots = "plot $data using 1:2" + lineStyle(1.5, path_colour);
+    if (!path.before.empty()) {
+      script += plot::dataBlock("before", deviationLines(x, path.before, deviationOf));
+      plots += ", $before using 1:2" + lineStyle(1.0, before_colour) + " dashtype 2";
+    }
+    return lineChart(name,
+                     "Standard deviation of the " + name + " in the frame of scan 0.",
+                     x_label,
+                     name + " [" + unit + ']',
+                     script + plots + '\n');
+  };
+  return {chartOf("position", "m", of_position),
+          chartOf("rotation", "degrees", of_rotation)};
+}
+
+Chart
+lineChart(const std::string& id,
+          const std::string& caption,
+          const std::string& x_label,
+          const std::string& y_label,
+          const std::string& script)
+{
+  Chart chart;
+  chart.id = id;
+  chart.title = chart.caption = chart.description = caption;
+  chart.drawing = {420,
+                   240,
+                   12,
+                   chart_style + std::string("set grid linewidth 0.3\nset xlabel ") +
+                       plot::quotedForGnuplot(x_label) + "\nset ylabel " +
+                       plot::quotedForGnuplot(y_label) + '\n' + script};
+  return chart;
+}
+
+} // namespace bayesian_icp::app

@@ -1,0 +1,287 @@
+// Poses and covariances of optimised graphs against closed forms and known truths.
+#include "graph/adjoint.h"
+#include "graph/cycle_closure.h"
+#include "graph/loop_candidates.h"
+#include "graph/optimization.h"
+#include "support/test_support.h"
+
+#include <bayesian_icp/random.h>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <cmath>
+#include <stdexcept>
+
+using namespace bayesian_icp;
+using app::GaussianPose;
+using app::GraphEdge;
+using app::OptimizedPoses;
+using app::RobustLoss;
+
+namespace {
+
+using Poses = std::vector<Eigen::Matrix4d>;
+
+/** Correlated, of about 1 cm and 2 mrad. */
+Matrix6d
+someCovariance(Random& random)
+{
+  Matrix6d sum = Matrix6d::Zero();
+  for (int k = 0; k < 12; ++k) {
+    Vector6d direction = random.normal6();
+    direction.head<3>() *= 0.003;
+    direction.tail<3>() *= 0.0006;
+    sum += direction * direction.transpose();
+  }
+  return sum;
+}
+
+/** Between two of \p poses, with an error that is drawn from its covariance. */
+GraphEdge
+drawnEdge(const Poses& poses, int target, int source, Random& random)
+{
+  const Matrix6d covariance = someCovariance(random);
+  const Vector6d error = covariance.llt().matrixL() * random.normal6();
+  return {target,
+          source,
+          poses[std::size_t(target)].inverse() * poses[std::size_t(source)] *
+              expSE3(-error),
+          covariance};
+}
+
+/** About a metre apart, and the first one is the frame. */
+Poses
+somePoses(std::size_t count, Random& random)
+{
+  Poses poses(1, Eigen::Matrix4d::Identity());
+  while (poses.size() < count)
+    poses.push_back(matrixOf(test::randomPose(random, 0.9)));
+  return poses;
+}
+
+/** As a tool has them before the optimisation. */
+Poses
+chained(const std::vector<GraphEdge>& edges, std::size_t count)
+{
+  Poses poses(1, Eigen::Matrix4d::Identity());
+  for (std::size_t k = 0; k + 1 < count; ++k)
+    poses.push_back(poses.back() * edges[k].T_target_source);
+  return poses;
+}
+
+/** Edges k to k + 1, and back to 0. */
+std::vector<GraphEdge>
+drawnLoop(const Poses& poses, Random& random)
+{
+  std::vector<GraphEdge> edges;
+  const int last = static_cast<int>(poses.size()) - 1;
+  for (int k = 0; k < last; ++k)
+    edges.push_back(drawnEdge(poses, k, k + 1, random));
+  edges.push_back(drawnEdge(poses, last, 0, random));
+  return edges;
+}
+
+/** Twist from what was found to the truth, on the right. */
+Vector6d
+errorOf(const GaussianPose& found, const Eigen::Matrix4d& truth)
+{
+  return logSE3(matrixOf(found.mean).inverse() * truth);
+}
+
+double
+relativeDifference(const Matrix6d& a, const Matrix6d& b)
+{
+  return (a - b).norm() / b.norm();
+}
+
+} // namespace
+
+TEST(OptimizedPosesOf, AChainAreTheChainAndCovariancesAddUpAlongIt)
+{
+  Random random(1, 0);
+  const Poses truth = somePoses(5, random);
+  std::vector<GraphEdge> edges = drawnLoop(truth, random);
+  edges.pop_back();
+  const Poses chain = chained(edges, 5);
+  const OptimizedPoses found = optimizedPoses(chain, edges, RobustLoss::None);
+  EXPECT_EQ(found.complaint, "");
+  ASSERT_EQ(found.poses.size(), 5u);
+  EXPECT_EQ(found.poses[0].covariance, Matrix6d(Matrix6d::Zero()));
+  for (std::size_t k = 1; k < 5; ++k) {
+    EXPECT_LT(errorOf(found.poses[k], chain[k]).norm(), 1e-9);
+    Matrix6d sum = Matrix6d::Zero();
+    for (std::size_t i = 0; i < k; ++i) {
+      // An error on the right of pose i + 1, carried to the right of pose k.
+      const Matrix6d carry = app::adjointOf(chain[k].inverse() * chain[i + 1]);
+      sum += carry * edges[i].covariance * carry.transpose();
+    }
+    EXPECT_LT(relativeDifference(found.poses[k].covariance, sum), 1e-6) << k;
+  }
+  for (const double squared_error : found.squared_errors)
+    EXPECT_LT(squared_error, 1e-9);
+}
+
+TEST(OptimizedPosesOf, TwoParallelEdgesAreTheirMeanWeightedByInformation)
+{
+  Random random(2, 0);
+  const Poses truth = somePoses(2, random);
+  std::vector<GraphEdge> edges = {drawnEdge(truth, 0, 1, random),
+                                  drawnEdge(truth, 0, 1, random)};
+  const Vector6d between =
+      logSE3(edges[0].T_target_source.inverse() * edges[1].T_target_source);
+  const Matrix6d A = edges[0].covariance.inverse(), B = edges[1].covariance.inverse();
+  const Matrix6d covariance = (A + B).inverse();
+  const Eigen::Matrix4d mean =
+      edges[0].T_target_source * expSE3(Vector6d(covariance * (B * between)));
+  const OptimizedPoses found =
+      optimizedPoses(chained(edges, 2), edges, RobustLoss::None);
+  EXPECT_EQ(found.complaint, "");
+  const Vector6d error = errorOf(found.poses[1], mean);
+  // To second order in the difference of the edges.
+  EXPECT_LT(error.norm(), 0.01 * between.norm());
+  EXPECT_LT(relativeDifference(found.poses[1].covariance, covariance), 0.02);
+  const Matrix6d S = edges[0].covariance + edges[1].covariance;
+  EXPECT_NEAR(found.squared_errors[0] + found.squared_errors[1],
+              between.dot(S.inverse() * between),
+              0.01 * between.dot(S.inverse() * between));
+}
+
+TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
+{
+  constexpr int num_runs = 300;
+  Random random(3, 0);
+  double of_poses = 0.0, of_edges = 0.0, of_chain = 0.0;
+  for (int run = 0; run < num_runs; ++run) {
+    const Poses truth = somePoses(5, random);
+    const std::vector<GraphEdge> edges = drawnLoop(truth, random);
+    const Poses chain = chained(edges, 5);
+    const OptimizedPoses found = optimizedPoses(chain, edges, RobustLoss::None);
+    ASSERT_EQ(found.complaint, "");
+    const Vector6d error = errorOf(found.poses[4], truth[4]);
+    of_poses += error.dot(found.poses[4].covariance.ldlt().solve(error)) / num_runs;
+    for (const double squared_error : found.squared_errors)
+      of_edges += squared_error / num_runs;
+    of_chain += errorOf({poseOf(chain[4]), {}}, truth[4]).squaredNorm() /
+                error.squaredNorm() / num_runs;
+  }
+  // A chi-square of 6 degrees each: 30 residuals, 24 unknowns.
+  const double tolerance = 4.0 * std::sqrt(12.0 / num_runs);
+  EXPECT_NEAR(of_poses, 6.0, tolerance);
+  EXPECT_NEAR(of_edges, 6.0, tolerance);
+  EXPECT_GT(of_chain, 2.0);
+}
+
+TEST(OptimizedPosesOf, AGraphWithAWrongEdgeHardlyMoveWithARobustLoss)
+{
+  Random random(4, 0);
+  const Poses truth = somePoses(8, random);
+  std::vector<GraphEdge> edges = drawnLoop(truth, random);
+  for (int k = 0; k + 2 < 8; ++k)
+    edges.push_back(drawnEdge(truth, k, k + 2, random));
+  const Poses chain = chained(edges, 8);
+  const OptimizedPoses right = optimizedPoses(chain, edges, RobustLoss::None);
+  GraphEdge wrong = drawnEdge(truth, 1, 6, random);
+  wrong.T_target_source(0, 3) += 1.0;
+  edges.push_back(wrong);
+  const auto movedBy = [&](RobustLoss loss) {
+    const OptimizedPoses found = optimizedPoses(chain, edges, loss);
+    EXPECT_EQ(found.complaint, "");
+    EXPECT_GT(found.squared_errors.back(), 100.0);
+    return errorOf(found.poses[6], matrixOf(right.poses[6].mean)).head<3>().norm();
+  };
+  const double by_none = movedBy(RobustLoss::None);
+  const double by_huber = movedBy(RobustLoss::Huber);
+  const double by_cauchy = movedBy(RobustLoss::Cauchy);
+  const double deviation =
+      std::sqrt(right.poses[6].covariance.topLeftCorner<3, 3>().trace());
+  EXPECT_GT(by_none, 10.0 * deviation);
+  EXPECT_LT(by_huber, 0.5 * by_none);
+  EXPECT_LT(by_cauchy, 0.2 * deviation);
+}
+
+TEST(OptimizedPosesOf, GraphsThatAreNoneAreRefused)
+{
+  Random random(5, 0);
+  const Poses truth = somePoses(4, random);
+  std::vector<GraphEdge> edges = drawnLoop(truth, random);
+  edges.pop_back();
+  const auto messageOf = [&] {
+    try {
+      optimizedPoses(truth, edges, RobustLoss::None);
+    }
+    catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(messageOf(), "");
+  edges[2].source = 4;
+  EXPECT_EQ(messageOf(), "vertex 4 has no pose");
+  edges[2] = drawnEdge(truth, 3, 2, random);
+  edges[2].covariance(0, 0) = -1.0;
+  EXPECT_EQ(messageOf(), "the covariance of edge 3-2 is not positive definite");
+  edges.pop_back();
+  EXPECT_EQ(messageOf(), "no edges join scan 3 to scan 0");
+}
+
+TEST(OptimizedPosesOf, OneScanIsWhereItIs)
+{
+  const OptimizedPoses found =
+      app::optimizedPoses({Eigen::Matrix4d::Identity()}, {}, RobustLoss::None);
+  EXPECT_EQ(found.complaint, "");
+  ASSERT_EQ(found.poses.size(), 1u);
+  EXPECT_LT(found.poses[0].mean.norm(), 1e-15);
+}
+
+TEST(Way, AlongAChainHasTheCovarianceThatTheOptimisationFinds)
+{
+  Random random(6, 0);
+  const Poses truth = somePoses(4, random);
+  std::vector<GraphEdge> edges = drawnLoop(truth, random);
+  edges.pop_back();
+  const OptimizedPoses found =
+      optimizedPoses(chained(edges, 4), edges, RobustLoss::None);
+  const GraphEdge way = app::wayAlong(edges, 0, {0, 1, 2});
+  EXPECT_EQ(way.target, 0);
+  EXPECT_EQ(way.source, 3);
+  EXPECT_LT(errorOf(found.poses[3], way.T_target_source).norm(), 1e-9);
+  EXPECT_LT(relativeDifference(found.poses[3].covariance, way.covariance), 1e-6);
+  // And back to where it began.
+  const GraphEdge there_and_back = app::wayAlong(edges, 0, {0, 1, 1, 0});
+  EXPECT_EQ(there_and_back.source, 0);
+  EXPECT_LT((there_and_back.T_target_source - Eigen::Matrix4d::Identity()).norm(),
+            1e-12);
+}
+
+namespace {
+
+std::vector<GaussianPose>
+posesAlongX(const std::vector<double>& positions)
+{
+  std::vector<GaussianPose> poses;
+  for (const double x : positions) {
+    poses.emplace_back();
+    poses.back().mean[0] = x;
+  }
+  return poses;
+}
+
+} // namespace
+
+TEST(LoopCandidates, AreNearestPosesFromBeforeTheSensorWasAway)
+{
+  using Pairs = std::vector<std::pair<int, int>>;
+  const auto poses = posesAlongX({0.0, 0.5, 1.0, 2.0, 3.0, 1.2, 0.6, 0.55});
+  EXPECT_EQ(app::loopCandidates(poses, 0.7), (Pairs{{2, 5}, {1, 6}, {1, 7}}));
+  EXPECT_EQ(app::loopCandidates(poses, 0.1), (Pairs{{1, 6}, {1, 7}}));
+}
+
+TEST(LoopCandidates, AreNotMadeOfNeighboursInTheSequence)
+{
+  EXPECT_TRUE(
+      app::loopCandidates(posesAlongX({0.0, 0.1, 0.2, 0.3, 0.4, 0.5}), 0.4).empty());
+  EXPECT_TRUE(app::loopCandidates(posesAlongX({0.0, 0.1, 0.0, 0.1, 0.0}), 0.2).empty());
+}
