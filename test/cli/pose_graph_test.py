@@ -1,12 +1,12 @@
-"""pcl_bayesian_icp_pose_graph against trajectories that are known, and kalman_fusion."""
+"""pcl_bayesian_icp_pose_graph against trajectories that are known."""
 
 import math
 import os
 import unittest
 
 import cloud_files
-from cli_tool import DATA, ToolTest
-from robot_formats import quaternion_of, read_g2o_edge, turned
+from cli_tool import DATA
+from robot_formats import read_g2o_edge
 from trajectories import (
     CHI2_HIGH,
     CHI2_LOW,
@@ -18,14 +18,12 @@ from trajectories import (
     g2o_error,
     inverse,
     inverted,
-    pose_of_matrix,
     quadratic,
     read_graph,
     small_pose,
 )
 
 POSE_GRAPH = os.environ["PCL_BAYESIAN_ICP_POSE_GRAPH"]
-KALMAN_FUSION = os.environ["PCL_BAYESIAN_ICP_KALMAN_FUSION"]
 
 def chain_covariance(edges):
     """Of the last pose of the chain, from those of its edges, to first order."""
@@ -284,37 +282,6 @@ class PoseGraphEdges(PoseGraphTest):
             with self.subTest(words=words):
                 (self.folder / "scans").mkdir(exist_ok=True)
                 self.assert_refused(code, call(POSE_GRAPH, *words), part)
-
-
-class KalmanFusion(ToolTest):
-    def test_each_direction_from_who_knows_it(self):
-        """A can turns about its axis unseen: the odometry says how far."""
-        folder = DATA / "can"
-        lines = (folder / "T_target_source.txt").read_text().splitlines()
-        true = pose_of_matrix([list(map(float, line.split())) for line in lines])
-        # Errors of the odometry of about its standard deviation, 0.02.
-        error = [0.015, -0.02, 0.01, 0.01, -0.008, 0.009]
-        odometry = composed(true, inverted(small_pose(error)))
-        axes = [turned(odometry[1], [float(i == k) for i in range(3)]) for k in range(3)]
-        rows = [[axes[k][i] for k in range(3)] + [odometry[0][i]] for i in range(3)]
-        rows.append([0.0, 0.0, 0.0, 1.0])
-        text = "\n".join(" ".join(map(repr, row)) for row in rows)
-        matrix = self.file("odometry.txt", text)
-        result = call(KALMAN_FUSION, folder / "source.pcd", folder / "target.pcd", matrix)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("directions that they do not see: 1", result.stdout)
-        fused = result.stdout[result.stdout.index("fused") :]
-        numbers = [list(map(float, line.split(":")[1].split())) for line in fused.splitlines()[1:3]]
-        deviations = numbers[1]
-        # Half of the information about the axis would be 0.014: the odometry twice.
-        self.assertAlmostEqual(deviations[5], 0.02, delta=0.001)
-        for k in range(5):
-            self.assertLess(deviations[k], 0.005)
-        pose = (numbers[0][:3], quaternion_of(*numbers[0][3:]))
-        error = g2o_error(pose, true)
-        for k in range(6):
-            error_of_axis = error[k] * (1 if k < 3 else 2)
-            self.assertLess(abs(error_of_axis), 4 * deviations[k])
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from robot_formats import conjugate, multiplied, read_g2o_edge, turned
 SIMULATE = os.environ["PCL_BAYESIAN_ICP_SIMULATE"]
 
 # 99.9 % and 0.1 % quantiles of chi-square, by degrees of freedom (R 4.2, qchisq).
-CHI2_HIGH = {6: 22.458, 18: 42.312}
+CHI2_HIGH = {1: 10.828, 6: 22.458, 18: 42.312}
 CHI2_LOW = {18: 4.905}
 IDENTITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
