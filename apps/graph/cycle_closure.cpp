@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <cmath>
 #include <deque>
 #include <map>
 #include <set>
@@ -75,6 +76,51 @@ inverted(const GraphEdge& edge)
   return {edge.source, edge.target, back, carry * edge.covariance * carry.transpose()};
 }
 
+/** Errors of edges, linear in theirs, of which those with the same source have a share
+ * in common. */
+class SumOfErrors {
+public:
+  /** \param[in] carry from twists at the edge's source */
+  void
+  add(const GraphEdge& edge, const Matrix6d& carry)
+  {
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
+    const Matrix6d root = carry * solver.operatorSqrt();
+    alone_ += (1.0 - edge.share) * root * root.transpose();
+    of_sources_.try_emplace(edge.source, Matrix6d::Zero()).first->second +=
+        std::sqrt(edge.share) * root;
+  }
+
+  Matrix6d
+  covariance() const
+  {
+    Matrix6d sum = alone_;
+    for (const auto& [source, root] : of_sources_)
+      sum += root * root.transpose();
+    return sum;
+  }
+
+private:
+  Matrix6d alone_ = Matrix6d::Zero();
+  std::map<int, Matrix6d> of_sources_;
+};
+
+/** \param[in] S covariance of the difference */
+Closure
+closureWith(const GraphEdge& direct, const GraphEdge& way, const Matrix6d& S)
+{
+  Closure closure;
+  closure.error = logSE3(direct.T_target_source.inverse() * way.T_target_source);
+  closure.squared_error = closure.error.dot(S.ldlt().solve(closure.error));
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
+  closure.num_degrees = static_cast<int>(
+      (solver.eigenvalues().array() < max_deviation * max_deviation).count());
+  if (closure.num_degrees > 0)
+    closure.probability = boost::math::cdf(boost::math::complement(
+        boost::math::chi_squared(closure.num_degrees), closure.squared_error));
+  return closure;
+}
+
 } // namespace
 
 std::vector<Cycle>
@@ -114,24 +160,31 @@ wayAlong(const std::vector<GraphEdge>& edges,
 Closure
 closureOf(const GraphEdge& direct, const GraphEdge& way)
 {
-  const Matrix6d S = way.covariance + direct.covariance;
-  Closure closure;
-  closure.error = logSE3(direct.T_target_source.inverse() * way.T_target_source);
-  closure.squared_error = closure.error.dot(S.ldlt().solve(closure.error));
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
-  closure.num_degrees = static_cast<int>(
-      (solver.eigenvalues().array() < max_deviation * max_deviation).count());
-  if (closure.num_degrees > 0)
-    closure.probability = boost::math::cdf(boost::math::complement(
-        boost::math::chi_squared(closure.num_degrees), closure.squared_error));
-  return closure;
+  return closureWith(direct, way, way.covariance + direct.covariance);
 }
 
 Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
 {
   const GraphEdge& direct = edges[cycle.direct];
-  return closureOf(direct, wayAlong(edges, direct.target, cycle.path));
+  const GraphEdge way = wayAlong(edges, direct.target, cycle.path);
+  SumOfErrors sum;
+  sum.add(direct, Matrix6d::Identity());
+  GraphEdge rest;
+  rest.target = direct.source;
+  for (auto k = cycle.path.rbegin(); k != cycle.path.rend(); ++k) {
+    const GraphEdge& edge = edges[*k];
+    const bool is_forward = edge.source == rest.target;
+    const Eigen::Matrix4d T = edge.T_target_source;
+    // The closure's error is that of the direct edge less those of the path; backwards,
+    // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi).
+    const Matrix6d carry = adjointOf(rest.T_target_source.inverse());
+    sum.add(edge, is_forward ? Matrix6d(-carry) : Matrix6d(carry * adjointOf(T)));
+    rest.T_target_source =
+        (is_forward ? T : Eigen::Matrix4d(T.inverse())) * rest.T_target_source;
+    rest.target = is_forward ? edge.target : edge.source;
+  }
+  return closureWith(direct, way, sum.covariance());
 }
 
 } // namespace bayesian_icp::app

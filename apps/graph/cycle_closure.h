@@ -55,7 +55,8 @@ constexpr double max_deviation = 3.0;
 Closure
 closureOf(const GraphEdge& direct, const GraphEdge& way);
 
-/** \brief The same of the direct edge of a cycle and its path. */
+/** \brief Close a cycle, to first order. Errors are independent but for those of edges
+ * with the same source: GraphEdge::share. */
 Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle);
 

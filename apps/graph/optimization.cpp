@@ -89,6 +89,7 @@ struct EdgeError {
   Eigen::Quaterniond rotation;
   /** S^-1/2, symmetric. */
   Matrix6d whitening;
+  double share;
 
   /** \param[in] noise of the source, 6 independent numbers with variance 1 */
   template <typename T>
@@ -112,8 +113,8 @@ struct EdgeError {
     error << shift - T(0.5) * turned + T(1.0 / 12.0) * w.cross(turned), w;
     const Eigen::Map<const Eigen::Matrix<T, 6, 1>> shared(noise);
     Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} =
-        (whitening.cast<T>() * error - T(std::sqrt(source_share)) * shared) /
-        T(std::sqrt(1.0 - source_share));
+        (whitening.cast<T>() * error - T(std::sqrt(share)) * shared) /
+        T(std::sqrt(1.0 - share));
     return true;
   }
 };
@@ -161,7 +162,8 @@ errorOf(const GraphEdge& edge)
   const Eigen::Isometry3d pose(edge.T_target_source);
   return {pose.translation(),
           Eigen::Quaterniond(pose.linear()).normalized(),
-          solver.operatorInverseSqrt()};
+          solver.operatorInverseSqrt(),
+          edge.share};
 }
 
 /** Whether edges lead from each vertex to vertex 0. */
@@ -206,20 +208,21 @@ public:
          const std::vector<GraphEdge>& edges,
          RobustLoss loss)
   : loss_(lossOf(loss))
+  , noises_(poses.size())
   , problem_(borrowing())
   {
     for (const Eigen::Matrix4d& pose : poses)
       parameters_.push_back(parametersOf(pose));
-    for (Parameters& parameters : parameters_)
-      problem_.AddParameterBlock(parameters.data(), 7, &twists_);
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      problem_.AddParameterBlock(parameters_[k].data(), 7, &twists_);
+      problem_.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<NoiseError, 6, 6>(new NoiseError),
+          nullptr,
+          noises_[k].data());
+    }
     problem_.SetParameterBlockConstant(parameters_.front().data());
     for (const GraphEdge& edge : edges)
-      residuals_.push_back(problem_.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7>(
-              new EdgeError(errorOf(edge))),
-          loss_.get(),
-          parameters_[static_cast<std::size_t>(edge.target)].data(),
-          parameters_[static_cast<std::size_t>(edge.source)].data()));
+      addEdge(edge);
   }
 
   OptimizedPoses
@@ -238,16 +241,45 @@ public:
       result.complaint = "the poses have not converged: " + summary.message;
     for (const Parameters& parameters : parameters_)
       result.poses.push_back({poseOf(matrixOf(parameters)), Matrix6d::Zero()});
-    for (const ceres::ResidualBlockId residual : residuals_) {
-      double cost = 0.0;
-      problem_.EvaluateResidualBlock(residual, false, &cost, nullptr, nullptr);
-      result.squared_errors.push_back(2.0 * cost);
-    }
+    for (const PlacedEdge& edge : edges_)
+      result.squared_errors.push_back(squaredErrorOf(edge));
     addCovariances(result);
     return result;
   }
 
 private:
+  struct PlacedEdge {
+    EdgeError error;
+    const double *target, *source;
+  };
+
+  void
+  addEdge(const GraphEdge& edge)
+  {
+    const EdgeError error = errorOf(edge);
+    const auto source = static_cast<std::size_t>(edge.source);
+    double* const target_pose =
+        parameters_[static_cast<std::size_t>(edge.target)].data();
+    double* const source_pose = parameters_[source].data();
+    edges_.push_back({error, target_pose, source_pose});
+    problem_.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6>(new EdgeError(error)),
+        loss_.get(),
+        target_pose,
+        source_pose,
+        noises_[source].data());
+  }
+
+  /** Whatever part of the error is the source's. */
+  static double
+  squaredErrorOf(const PlacedEdge& edge)
+  {
+    const std::array<double, 6> no_noise{};
+    Vector6d residual;
+    edge.error(edge.target, edge.source, no_noise.data(), residual.data());
+    return (1.0 - edge.error.share) * residual.squaredNorm();
+  }
+
   static ceres::Problem::Options
   borrowing()
   {
@@ -279,8 +311,10 @@ private:
   ceres::AutoDiffManifold<RightTwists, 7, 6> twists_;
   std::unique_ptr<ceres::LossFunction> loss_;
   std::vector<Parameters> parameters_;
+  /** Of each scan as a source, in units of the deviations of its edges. */
+  std::vector<std::array<double, 6>> noises_;
+  std::vector<PlacedEdge> edges_;
   ceres::Problem problem_;
-  std::vector<ceres::ResidualBlockId> residuals_;
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 
 #include "graph/pose_graph.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,12 +25,19 @@ enum class RobustLoss {
 const char*
 toString(RobustLoss loss);
 
+/** \brief All of them, for register/choices.h. */
+inline std::array<RobustLoss, 3>
+choicesOf(RobustLoss)
+{
+  return {RobustLoss::None, RobustLoss::Huber, RobustLoss::Cauchy};
+}
+
 /** \brief What came of an optimisation. */
 struct OptimizedPoses {
   /** Empty if it has converged, and all poses have covariances. */
   std::string complaint;
-  /** In the frame of the first one, which is fixed; covariances of the errors that
-   * edges leave if these are independent. */
+  /** In the frame of the first one, which is fixed, with the covariances of the errors
+   * that edges leave. */
   std::vector<GaussianPose> poses;
   /** Of each edge, r^T S^-1 r of its twist r from the edge to the poses found, without
    * any loss; chi-square with 6 degrees for a graph in which nothing else is known. */
@@ -47,6 +55,8 @@ isContradiction(double squared_error)
 /** \brief Minimise the sum of r^T S^-1 r over the edges, or of a robust loss of it
  * (Grisetti et al. 2010, eq. 3), by Ceres. One thread; the same input gives the same
  * bits.
+ *
+ * Errors are independent but for those of edges with the same source: GraphEdge::share.
  * \param[in] poses to begin with, T_0_k of vertex k; at least 1
  * \param[in] edges between vertices 0 to poses.size() - 1, with positive definite
  *            covariances

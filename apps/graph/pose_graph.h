@@ -18,6 +18,12 @@ struct GaussianPose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
+/** \brief Part of the variance of registrations that all those with the same source
+ * have in common: the noise of its points. Measured on simulated drives with three
+ * sensors (docs/track.md); a target's noise is averaged over its surface, and
+ * registrations with the same target have less in common. */
+constexpr double source_share = 0.6;
+
 /** \brief The pose of one vertex as seen from another. */
 struct GraphEdge {
   int target = 0;
@@ -25,6 +31,10 @@ struct GraphEdge {
   Eigen::Matrix4d T_target_source = Eigen::Matrix4d::Identity();
   /** CovarianceConvention::RightSE3 [m, rad]. */
   Matrix6d covariance = Matrix6d::Identity();
+  /** Errors S^1/2 z of two edges with the same source are correlated: z of one and of
+   * the other have the covariance sqrt(share share) times the identity. From 0,
+   * independent of all others, to below 1. */
+  double share = source_share;
 };
 
 } // namespace bayesian_icp::app

@@ -13,12 +13,6 @@ namespace bayesian_icp::app {
 
 namespace po = boost::program_options;
 
-static std::array<RobustLoss, 3>
-choicesOf(RobustLoss)
-{
-  return {RobustLoss::None, RobustLoss::Huber, RobustLoss::Cauchy};
-}
-
 namespace {
 
 constexpr int max_span = 1000;

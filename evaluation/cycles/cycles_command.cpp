@@ -32,6 +32,7 @@ constexpr std::size_t max_lines = 20;
 
 struct CyclesOptions {
   int max_length = 4;
+  double share = app::source_share;
   std::string result_file = "results/cycles.csv";
   bool has_report = false;
 };
@@ -118,7 +119,8 @@ Are the covariances of a pose graph right? Needs no true poses. Around each
 cycle of edges the product of the poses should be the identity, within the
 sum of the covariances. The normalised squared error of closures (NEES) is
 then 1 per degree of freedom on average, and 50 % and 95 % of the closures
-are in their regions. Larger errors mean that covariances are too small, or
+are in their regions. Edges with the same source (the second vertex) share its
+noise: --source-share says how much of their variance. Larger errors mean that covariances are too small, or
 that an edge is wrong. Directions in which a closure is less certain than
 3 m or 3 rad are not counted: no cloud has seen them.
 
@@ -126,9 +128,7 @@ Make the graph with pcl_bayesian_icp_track --span 3; edges that contain a
 prior close too well.
 
 It cannot see errors that all edges share: if each registration is drawn
-towards no motion in the same proportion, every cycle still closes. Edges
-with a scan in common are correlated, which makes closures better or worse
-than the sum of the covariances says.
+towards no motion in the same proportion, every cycle still closes.
 
 A table goes to the standard output; every cycle is a row of a CSV file.
 Exit codes: 0 good, 1 the errors of all cycles together are larger than chance
@@ -148,6 +148,14 @@ runCyclesCommand(int argc, const char* const* argv)
   // clang-format off
   description.add_options()
     ("max-length", integer(options.max_length, 3, 100), "most edges of a cycle")
+    ("source-share", po::value<double>()->default_value(options.share)->notifier(
+       [&options](double share) {
+         if (!(share >= 0.0 && share <= 1.0))
+           io::refuseValue(io::textOf(share), "from 0 to 1");
+         options.share = share;
+       }),
+     "part of the variance that edges with the same source have in common, its noise; 0 "
+     "for edges that are independent")
     ("output", outputName("file", options.result_file), "CSV file of the closures")
     ("report", io::flag(options.has_report),
      "also make a report, with figures, of all results in that folder")
@@ -162,7 +170,9 @@ runCyclesCommand(int argc, const char* const* argv)
   const std::vector<std::string> files = io::optionTexts(given, "graph");
   if (files.size() != 1)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
-  const std::vector<GraphEdge> edges = app::readGraph(files[0]);
+  std::vector<GraphEdge> edges = app::readGraph(files[0]);
+  for (GraphEdge& edge : edges)
+    edge.share = options.share;
   const std::vector<ClosedCycle> cycles =
       app::closedCycles(edges, static_cast<std::size_t>(options.max_length));
   if (cycles.empty())

@@ -24,7 +24,6 @@ using Eigen::Matrix3Xd;
 
 namespace {
 
-constexpr AxisDeviation guess_sd = {0.1, 0.03};
 constexpr int min_closure_gap = 10, scans_between_closures = 5;
 constexpr Eigen::Index max_baseline_points = 5000;
 

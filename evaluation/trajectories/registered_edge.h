@@ -76,8 +76,11 @@ edgeMethods();
 std::vector<std::pair<int, int>>
 pairsOf(const Recording& recording, int span, double closure_distance);
 
-/** \brief Where all methods begin: the true pose, with errors of 0.1 m and 0.03 rad on
- * each axis, by the names of recording and scans.
+/** \brief Deviations of guessOf(). */
+constexpr AxisDeviation guess_sd = {0.1, 0.03};
+
+/** \brief Where all methods begin: the true pose with independent errors of each axis,
+ * as an odometry has them; by the names of recording and scans.
  * \param[in] seed of the study */
 Eigen::Isometry3d
 guessOf(const Recording& recording, std::uint64_t seed, int target, int source);

@@ -1,7 +1,6 @@
 #include "trajectories/trajectory_run.h"
 
-#include "graph/cycle_closure.h"
-#include "graph/optimization.h"
+#include "graph/closed_cycles.h"
 
 #include <cmath>
 #include <map>
@@ -18,8 +17,6 @@ namespace {
 
 constexpr const char* constant = "constant";
 constexpr std::size_t max_cycle_length = 4;
-/** Of an edge that has to be guessed, each axis [m, rad]. */
-constexpr AxisDeviation guess_sd = {0.1, 0.03};
 
 using Pair = std::pair<int, int>;
 
@@ -101,27 +98,23 @@ combinedEdges(const RegisteredRecording& registered,
   return edges;
 }
 
-/** Join each scan to the one before it. \return how often by the guess */
-int
-joinAll(const RegisteredRecording& registered, std::vector<GraphEdge>& edges)
+/** The guesses of each scan's pose in the one before it. */
+std::vector<GraphEdge>
+odometryOf(const RegisteredRecording& registered)
 {
-  const auto num_scans = static_cast<int>(registered.recording.poses.size());
-  std::vector<bool> is_joined(static_cast<std::size_t>(num_scans), false);
-  for (const GraphEdge& edge : edges)
-    if (edge.source == edge.target + 1)
-      is_joined[static_cast<std::size_t>(edge.source)] = true;
-  int num_guesses = 0;
-  for (int source = 1; source < num_scans; ++source)
-    if (!is_joined[static_cast<std::size_t>(source)]) {
-      const Isometry3d guess =
-          guessOf(registered.recording, registered.seed, source - 1, source);
-      edges.push_back({source - 1, source, guess.matrix(), covarianceOf(guess_sd)});
-      ++num_guesses;
-    }
-  return num_guesses;
+  std::vector<GraphEdge> edges;
+  for (int source = 1; source < static_cast<int>(registered.recording.poses.size());
+       ++source)
+    edges.push_back(
+        {source - 1,
+         source,
+         guessOf(registered.recording, registered.seed, source - 1, source).matrix(),
+         covarianceOf(guess_sd),
+         0.0});
+  return edges;
 }
 
-/** Poses along the edges from each scan to the one before it. */
+/** Poses along the edges from each scan to the one before it, of several the last. */
 std::vector<Eigen::Matrix4d>
 chained(const std::vector<GraphEdge>& edges, std::size_t num_scans)
 {
@@ -137,23 +130,18 @@ chained(const std::vector<GraphEdge>& edges, std::size_t num_scans)
 void
 scoreCycles(const std::vector<GraphEdge>& edges, TrajectoryRun& run)
 {
-  double squared_error = 0.0, num_degrees = 0.0;
-  for (const app::Cycle& cycle : app::cyclesOf(edges, max_cycle_length)) {
-    const app::Closure closure = app::closureOf(edges, cycle);
-    if (closure.num_degrees == 0)
-      continue;
-    squared_error += closure.squared_error;
-    num_degrees += closure.num_degrees;
-    ++run.num_cycles;
-  }
-  run.cycle_nees = num_degrees > 0.0 ? squared_error / num_degrees : std::nan("");
+  const std::vector<app::CycleStatistics> lines =
+      app::statisticsOf(app::closedCycles(edges, max_cycle_length));
+  run.num_cycles = lines.empty() ? 0 : static_cast<int>(lines.back().num_cycles);
+  run.cycle_nees = lines.empty() ? std::nan("") : lines.back().nees_per_degree;
 }
 
 TrajectoryRun
 trajectoryOf(const std::vector<RegisteredRecording>& recordings,
              const RegisteredRecording& registered,
              const std::string& means,
-             const std::string& covariances)
+             const std::string& covariances,
+             app::RobustLoss loss)
 {
   const Recording& recording = registered.recording;
   TrajectoryRun run;
@@ -163,16 +151,18 @@ trajectoryOf(const std::vector<RegisteredRecording>& recordings,
   run.means = means;
   run.covariances = covariances;
   run.num_scans = static_cast<int>(recording.poses.size());
-  std::vector<GraphEdge> edges =
-      combinedEdges(registered,
-                    means,
-                    covariances,
-                    constantCovariance(recordings, registered, means));
+  std::vector<GraphEdge> edges = combinedEdges(
+      registered,
+      means,
+      covariances,
+      covariances == constant ? constantCovariance(recordings, registered, means)
+                              : Matrix6d::Identity());
   scoreCycles(edges, run);
-  run.num_guesses = joinAll(registered, edges);
   run.num_edges = static_cast<int>(edges.size());
-  const app::OptimizedPoses optimized = app::optimizedPoses(
-      chained(edges, recording.poses.size()), edges, app::RobustLoss::None);
+  const std::vector<GraphEdge> odometry = odometryOf(registered);
+  edges.insert(edges.begin(), odometry.begin(), odometry.end());
+  const app::OptimizedPoses optimized =
+      app::optimizedPoses(chained(edges, recording.poses.size()), edges, loss);
   run.score = scoreOf(optimized.poses, recording.poses);
   if (!optimized.complaint.empty())
     run.score.nees = run.score.nees_of_last = std::nan("");
@@ -182,7 +172,7 @@ trajectoryOf(const std::vector<RegisteredRecording>& recordings,
 } // namespace
 
 std::vector<TrajectoryRun>
-trajectoriesOf(const std::vector<RegisteredRecording>& recordings)
+trajectoriesOf(const std::vector<RegisteredRecording>& recordings, app::RobustLoss loss)
 {
   static const std::vector<std::pair<std::string, std::string>> combinations = {
       {"calibrated", "calibrated"},
@@ -195,7 +185,7 @@ trajectoriesOf(const std::vector<RegisteredRecording>& recordings)
   std::vector<TrajectoryRun> runs;
   for (const RegisteredRecording& registered : recordings)
     for (const auto& [means, covariances] : combinations)
-      runs.push_back(trajectoryOf(recordings, registered, means, covariances));
+      runs.push_back(trajectoryOf(recordings, registered, means, covariances, loss));
   return runs;
 }
 

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "graph/optimization.h"
 #include "trajectories/registered_edge.h"
 #include "trajectories/trajectory_score.h"
 
@@ -23,9 +24,8 @@ struct TrajectoryRun {
    * covariances may be "constant". */
   std::string means, covariances;
   int num_scans = 0;
-  /** Of all kinds, and those that had to be replaced by the guess because a scan would
-   * not have been joined to the one before it. */
-  int num_edges = 0, num_guesses = 0;
+  /** Registrations that are of use. */
+  int num_edges = 0;
   TrajectoryScore score;
   /** Closures of cycles of up to four edges, see closureOf(): their number, and the sum
    * of their squared errors over that of their degrees. */
@@ -43,7 +43,6 @@ struct TrajectoryRun {
     column("covariances", run.covariances);
     column("num_scans", run.num_scans);
     column("num_edges", run.num_edges);
-    column("num_guesses", run.num_guesses);
     column("ate_m", run.score.ate);
     column("rpe_m", run.score.rpe_translation);
     column("rpe_rad", run.score.rpe_rotation);
@@ -56,14 +55,16 @@ struct TrajectoryRun {
   }
 };
 
-/** \brief All trajectories of all recordings: the means of `calibrated` with each
- * covariance, and those of each other method with its own; `constant` also with the
- * means of `gicp`.
+/** \brief All trajectories of all recordings, from registrations and from guessOf()
+ * as an odometry from each scan to the next, which is the same for all: the means of
+ * `calibrated` with each covariance, and those of each other method with its own;
+ * `constant` also with the means of `gicp`.
  *
  * A constant covariance is that of one axis for translations and one for rotations: the
  * mean square of the errors of the edges that these means have in the other recordings
  * of the same kind, simulated or with poses of quality A and B. */
 std::vector<TrajectoryRun>
-trajectoriesOf(const std::vector<RegisteredRecording>& recordings);
+trajectoriesOf(const std::vector<RegisteredRecording>& recordings,
+               app::RobustLoss loss);
 
 } // namespace bayesian_icp::evaluate

@@ -52,6 +52,7 @@ drawnEdge(const std::vector<Eigen::Matrix4d>& poses,
   edge.target = target;
   edge.source = source;
   edge.covariance = someCovariance(random);
+  edge.share = 0.0;
   const Vector6d error = edge.covariance.llt().matrixL() * random.normal6();
   edge.T_target_source = poses[std::size_t(target)].inverse() *
                          poses[std::size_t(source)] * expSE3(-error);

@@ -10,8 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -49,7 +51,8 @@ drawnEdge(const Poses& poses, int target, int source, Random& random)
           source,
           poses[std::size_t(target)].inverse() * poses[std::size_t(source)] *
               expSE3(-error),
-          covariance};
+          covariance,
+          0.0};
 }
 
 /** About a metre apart, and the first one is the frame. */
@@ -172,6 +175,42 @@ TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
   EXPECT_NEAR(of_poses, 6.0, tolerance);
   EXPECT_NEAR(of_edges, 6.0, tolerance);
   EXPECT_GT(of_chain, 2.0);
+}
+
+TEST(OptimizedPosesOf, EdgesThatShareTheNoiseOfASourceAreAsFarOffAsStated)
+{
+  constexpr int num_runs = 300, num_poses = 8;
+  constexpr double share = 0.6;
+  Random random(7, 0);
+  double shared = 0.0, independent = 0.0;
+  for (int run = 0; run < num_runs; ++run) {
+    const Poses truth = somePoses(num_poses, random);
+    std::vector<GraphEdge> edges;
+    for (int source = 1; source < num_poses; ++source) {
+      const Vector6d noise = random.normal6();
+      for (int target = source - 1; target >= std::max(0, source - 3); --target) {
+        GraphEdge edge = drawnEdge(truth, target, source, random);
+        const Vector6d z =
+            std::sqrt(share) * noise + std::sqrt(1.0 - share) * random.normal6();
+        const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
+        edge.T_target_source = truth[std::size_t(target)].inverse() *
+                               truth[std::size_t(source)] *
+                               expSE3(Vector6d(-solver.operatorSqrt() * z));
+        edges.push_back(edge);
+      }
+    }
+    const auto squaredErrorFor = [&](double assumed_share) {
+      for (GraphEdge& edge : edges)
+        edge.share = assumed_share;
+      const OptimizedPoses found = optimizedPoses(truth, edges, RobustLoss::None);
+      const Vector6d error = errorOf(found.poses.back(), truth.back());
+      return error.dot(found.poses.back().covariance.ldlt().solve(error));
+    };
+    shared += squaredErrorFor(share) / num_runs;
+    independent += squaredErrorFor(0.0) / num_runs;
+  }
+  EXPECT_NEAR(shared, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
+  EXPECT_GT(independent, 9.0);
 }
 
 TEST(OptimizedPosesOf, AGraphWithAWrongEdgeHardlyMoveWithARobustLoss)
