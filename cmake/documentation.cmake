@@ -16,6 +16,7 @@ set(program_descriptions
     "pcl_bayesian_icp_evaluate samplers|compare draws of the samplers with a gold standard"
     "pcl_bayesian_icp_evaluate sbc|simulation-based calibration of the samplers"
     "pcl_bayesian_icp_evaluate cycles|whether a pose graph's cycles close within its covariances"
+    "pcl_bayesian_icp_evaluate trajectories|whether covariances make trajectories better"
     "pcl_bayesian_icp_evaluate paper|the paper's whole evaluation and a report"
     "pcl_bayesian_icp_evaluate distribution|divergence of every method from Monte Carlo ICP"
     "pcl_bayesian_icp_evaluate samples|divergence as a function of the number of draws"

@@ -235,8 +235,8 @@ uncertaintySection(const PathData& path)
   section.heading = "How sure is that?";
   section.above_html =
       html::paragraphHtml(
-          "The covariances take the errors of two registrations as independent, "
-          "although they may have a scan in common.") +
+          "Registrations with the same source share the noise of its points; other "
+          "errors are taken as independent.") +
       html::legendHtml({{path_colour, "optimized poses"},
                         {before_colour, "the chain of scans alone"}});
   section.charts = deviationCharts(numbers, "scan", path);

@@ -15,7 +15,8 @@ def name_of(means, covariances):
 
 def mean_of(rows):
     """Root mean squares of errors over the seeds, means of the rest."""
-    root = {name: np.sqrt((rows[name] ** 2).mean()) for name in ("ate_m", "rpe_m", "rpe_rad", "drift_m")}
+    errors = ("ate_m", "rpe_m", "rpe_rad", "drift_m")
+    root = {name: np.sqrt((rows[name] ** 2).mean()) for name in errors}
     return {**root, "nees": rows.nees.mean(), "cycle_nees": rows.cycle_nees.mean()}
 
 
@@ -60,7 +61,7 @@ def plot_errors(output, name, table):
     axis.set_yticks(range(len(recordings)), recordings)
     axis.invert_yaxis()
     axis.set_xlabel("ATE / ATE of calibrated")
-    axis.legend(fontsize=6)
+    axis.legend(fontsize=6, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     caption = (
         "Error of the positions after alignment, divided by that with the means and covariances of "
         "preset calibrated. Dots have the same means."
@@ -75,7 +76,8 @@ def section_of(output, name, table):
         "last pose (drift). Normalised squared error per degree of freedom of the poses (NEES/6) "
         "and of the closures of cycles: 1 if covariances are right. The letter is the quality of "
         "the true poses.",
-        ["recording", "edges of", "ATE [mm]", "RPE [mm]", "RPE [deg]", "drift [mm]", "NEES/6", "cycles"],
+        ["recording", "edges of", "ATE [mm]", "RPE [mm]", "RPE [deg]", "drift [mm]", "NEES/6",
+         "cycles"],
         rows_of(table),
     )
     title = f"Trajectories ({name}.csv)"
