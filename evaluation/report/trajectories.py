@@ -21,7 +21,7 @@ def mean_of(rows):
 
 
 def rows_of(table):
-    """A row for each recording and method, the smallest error of each recording in bold."""
+    """A row for each recording and method, the smallest error of each recording marked."""
     rows = []
     for recording, runs in table.groupby("recording", sort=False):
         methods = runs.groupby(["means", "covariances"], sort=False)
@@ -32,7 +32,7 @@ def rows_of(table):
             rows.append([
                 f"{recording} ({runs.quality.iloc[0]})",
                 name,
-                f"**{ate}**" if one["ate_m"] <= LIKE_TIES * best else ate,
+                f"{ate} *" if one["ate_m"] <= LIKE_TIES * best else ate,
                 f"{1e3 * one['rpe_m']:.2f}",
                 f"{DEGREES * one['rpe_rad']:.3f}",
                 f"{1e3 * one['drift_m']:.1f}",
@@ -59,7 +59,7 @@ def plot_errors(output, name, table):
         )  # fmt: skip
     axis.set_xscale("log")
     axis.set_yticks(range(len(recordings)), recordings)
-    axis.invert_yaxis()
+    axis.set_ylim(len(recordings) - 0.5, -0.5)
     axis.set_xlabel("ATE / ATE of calibrated")
     axis.legend(fontsize=6, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     caption = (
@@ -71,7 +71,7 @@ def plot_errors(output, name, table):
 
 def section_of(output, name, table):
     errors = page.Table(
-        "Root mean square errors over the seeds: positions after alignment (ATE; bold: the "
+        "Root mean square errors over the seeds: positions after alignment (ATE; *: the "
         "smallest of the recording, or within 2 % of it), relative poses of neighbours (RPE), the "
         "last pose (drift). Normalised squared error per degree of freedom of the poses (NEES/6) "
         "and of the closures of cycles: 1 if covariances are right. The letter is the quality of "

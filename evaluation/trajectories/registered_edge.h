@@ -16,6 +16,8 @@ namespace bayesian_icp::evaluate {
 /** \brief Which registration. */
 struct EdgeName {
   std::string recording;
+  /** Of the recording: a drive of another number of scans has other poses. */
+  int num_scans = 0;
   std::uint64_t seed = 0;
   int target = 0, source = 0;
   std::string method;
@@ -25,6 +27,7 @@ struct EdgeName {
   columns(Name& name, const Column& column)
   {
     column("recording", name.recording);
+    column("num_scans", name.num_scans);
     column("seed", name.seed);
     column("target", name.target);
     column("source", name.source);

@@ -71,6 +71,22 @@ struct Task {
   std::vector<EdgeName> names;
 };
 
+/** Of one pair, one for each method. */
+std::vector<EdgeName>
+namesOf(const RegisteredRecording& registered, int target, int source)
+{
+  const Recording& recording = registered.recording;
+  std::vector<EdgeName> names;
+  for (const std::string& method : edgeMethods())
+    names.push_back({recording.name,
+                     static_cast<int>(recording.poses.size()),
+                     registered.seed,
+                     target,
+                     source,
+                     method});
+  return names;
+}
+
 std::vector<Task>
 tasksOf(const RegisteredRecording& registered,
         const TrajectoriesOptions& options,
@@ -80,12 +96,9 @@ tasksOf(const RegisteredRecording& registered,
   for (const auto& [target, source] :
        pairsOf(registered.recording, options.span, options.closure_distance)) {
     Task task{target, source, {}};
-    for (const std::string& method : edgeMethods()) {
-      const EdgeName name{
-          registered.recording.name, registered.seed, target, source, method};
+    for (const EdgeName& name : namesOf(registered, target, source))
       if (results.find(name) == nullptr)
         task.names.push_back(name);
-    }
     if (!task.names.empty())
       tasks.push_back(std::move(task));
   }
@@ -134,9 +147,8 @@ takeEdges(const TrajectoriesOptions& options,
   for (RegisteredRecording& one : recordings)
     for (const auto& [target, source] :
          pairsOf(one.recording, options.span, options.closure_distance))
-      for (const std::string& method : edgeMethods())
-        one.edges.push_back(
-            *results.find({one.recording.name, one.seed, target, source, method}));
+      for (const EdgeName& name : namesOf(one, target, source))
+        one.edges.push_back(*results.find(name));
 }
 
 std::string

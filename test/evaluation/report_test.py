@@ -11,7 +11,17 @@ import unittest
 import numpy as np
 import pandas as pd
 import report
-from report import coverage, distribution, frames, page, paper, samplers, sbc, table_one
+from report import (
+    coverage,
+    distribution,
+    frames,
+    page,
+    paper,
+    samplers,
+    sbc,
+    table_one,
+    trajectories,
+)
 
 INFINITY = float("inf")
 
@@ -81,6 +91,26 @@ class TableOne(unittest.TestCase):
         self.assertEqual(table_one.agreement("Bayesian ICP", "Bayesian ICP"), "yes")
         self.assertEqual(table_one.agreement("Bayesian ICP", "Online-ICP"), "no")
         self.assertEqual(table_one.agreement("undecided", "Online-ICP"), "undecided")
+
+
+class Trajectories(FolderTest):
+    def test_seeds_are_put_together_and_the_best_is_marked(self):
+        rows = pd.DataFrame({
+            "recording": "street", "quality": "exact",
+            "means": ["calibrated"] * 4, "covariances": ["calibrated", "constant"] * 2,
+            "ate_m": [0.003, 0.0042, 0.004, 0.0042], "rpe_m": 0.001, "rpe_rad": 0.01,
+            "drift_m": 0.02, "nees": [1.0, 2.0, 3.0, 2.0], "cycle_nees": 0.5,
+        })  # fmt: skip
+        # The root of (9 + 16) / 2 is 3.54.
+        self.assertEqual(
+            trajectories.rows_of(rows),
+            [["street (exact)", "calibrated", "3.54 *", "1.00", "0.573", "20.0", "2.00", "0.50"],
+             ["street (exact)", "calibrated, covariances: constant", "4.20", "1.00", "0.573",
+              "20.0", "2.00", "0.50"]],
+        )  # fmt: skip
+        section = trajectories.section_of(self.output, "drives", rows)
+        self.assertEqual(section.title, "Trajectories (drives.csv)")
+        self.assertTrue((self.folder / "drives_errors.svg").exists())
 
 
 def coverage_rows(num_rows=10, **changes):

@@ -68,7 +68,7 @@ drawnRecording(const std::string& name, std::uint64_t seed)
             .matrix() *
         expSE3(-error));
     for (const std::string& method : edgeMethods()) {
-      run.name = {name, seed, target, source, method};
+      run.name = {name, 20, seed, target, source, method};
       run.complaint = method == "closed-form" ? "none" : "";
       const double scale = method == "gicp" ? 0.1 : 1.0;
       run.covariance.setZero();
@@ -218,6 +218,9 @@ TEST_F(TrajectoriesCommand, GoesOnWhereItStopped)
   const std::string rows = contentOf(folder_ / "r/a.csv");
   EXPECT_NE(rows.find("office_floor,exact,1,calibrated,constant,3,"),
             std::string::npos);
+  const CommandResult other = run("--recordings office_floor --scans 2 --span 1 "
+                                  "--output r/a.csv");
+  EXPECT_NE(other.output.find("1 of 1 pairs"), std::string::npos) << other.output;
   const CommandResult second = run(arguments + " --report");
   EXPECT_EQ(second.exit_code, 0) << second.output;
   EXPECT_EQ(second.output.find("pairs"), std::string::npos) << second.output;
