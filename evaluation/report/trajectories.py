@@ -10,7 +10,7 @@ LIKE_TIES = 1.02
 
 
 def name_of(means, covariances):
-    return means if means == covariances else f"{means}, covariances: {covariances}"
+    return means if means == covariances else f"{means} + {covariances}"
 
 
 def mean_of(rows):
@@ -47,7 +47,7 @@ def plot_errors(output, name, table):
     recordings = list(table.recording.unique())
     own = table[(table.means == "calibrated") & (table.covariances == "calibrated")]
     reference = own.groupby("recording").ate_m.apply(lambda ate: np.sqrt((ate**2).mean()))
-    figure, axes = page.panels(1, 1, 6.5, 0.4 + 0.32 * len(recordings))
+    figure, axes = page.panels(1, 1, 7.5, max(1.6, 0.6 + 0.25 * len(recordings)))
     axis = axes[0][0]
     methods = table.groupby(["means", "covariances"], sort=False)
     for number, (key, runs) in enumerate(methods):
@@ -61,12 +61,11 @@ def plot_errors(output, name, table):
     axis.set_yticks(range(len(recordings)), recordings)
     axis.set_ylim(len(recordings) - 0.5, -0.5)
     axis.set_xlabel("ATE / ATE of calibrated")
-    axis.legend(fontsize=6, loc="upper left", bbox_to_anchor=(1.01, 1.0))
     caption = (
         "Error of the positions after alignment, divided by that with the means and covariances of "
-        "preset calibrated. Dots have the same means."
+        "preset calibrated. Dots have its means; behind a plus are other covariances."
     )
-    return page.save(output, f"{name}_errors", caption, figure)
+    return page.save(output, f"{name}_errors", caption, figure, axis)
 
 
 def section_of(output, name, table):

@@ -105,12 +105,12 @@ class Trajectories(FolderTest):
         self.assertEqual(
             trajectories.rows_of(rows),
             [["street (exact)", "calibrated", "3.54 *", "1.00", "0.573", "20.0", "2.00", "0.50"],
-             ["street (exact)", "calibrated, covariances: constant", "4.20", "1.00", "0.573",
+             ["street (exact)", "calibrated + constant", "4.20", "1.00", "0.573",
               "20.0", "2.00", "0.50"]],
         )  # fmt: skip
         section = trajectories.section_of(self.output, "drives", rows)
         self.assertEqual(section.title, "Trajectories (drives.csv)")
-        self.assertTrue((self.folder / "drives_errors.svg").exists())
+        self.assertIn(b"</svg>", self.output.files["drives_errors.svg"])
 
 
 def coverage_rows(num_rows=10, **changes):
