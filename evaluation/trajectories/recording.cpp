@@ -1,6 +1,7 @@
 #include "trajectories/recording.h"
 
 #include "io/cloud_file.h"
+#include "io/errors.h"
 #include "simulator/simulation.h"
 #include "study/scan_sequences.h"
 
@@ -155,6 +156,8 @@ readRecordings(const std::string& folder, std::size_t max_scans)
 {
   std::vector<Recording> recordings;
   for (const ScanSequence& sequence : readSequences(folder)) {
+    if (sequence.poses.size() < 2)
+      throw io::FileError(sequence.folder, "has fewer than two scans");
     Recording recording;
     recording.name = sequence.name;
     recording.quality = sequence.quality;

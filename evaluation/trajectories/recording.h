@@ -51,7 +51,8 @@ makeDrive(const std::string& name, std::uint64_t seed, std::size_t num_scans);
 /** \brief The recordings in a folder of sequences, see readSequences().
  * \param[in] folder that has them
  * \param[in] max_scans of each recording, the first ones
- * \throws io::FileError */
+ * \throws io::FileError what is wrong with a file, or if a recording has one scan only
+ */
 std::vector<Recording>
 readRecordings(const std::string& folder, std::size_t max_scans);
 
