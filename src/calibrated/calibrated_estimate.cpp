@@ -56,6 +56,12 @@ constexpr double max_unheld_steps = 1.0;
  * secants. Chosen on simulated scans, docs/lab/calibration.md. */
 constexpr int information_degrees_of_freedom = 20;
 
+/** Where the data leave a motion to the prior, the mode moves to the posterior mean if
+ * that is further away than this many prior standard deviations, at most so many times,
+ * and only if this part of the active points stays active. */
+constexpr double max_distance_of_mean = 0.5, min_support_after_move = 0.5;
+constexpr int max_moves = 2;
+
 /** Two ends of starts, and which is the mode. */
 struct Ends {
   RobustFit best;
@@ -106,9 +112,34 @@ followStarts(const SurfaceScorer& scorer,
   });
   ends.num_queries = num_points * (ends.best.num_evaluations + icp.num_evaluations +
                                    ends.other.num_evaluations);
-  if (ends.other.cost < ends.best.cost)
-    std::swap(ends.best, ends.other);
   return ends;
+}
+
+/** Follow the ends on all points. What is one place, to within the target's noise, is
+ * followed once. */
+void
+followEnds(const SurfaceScorer& scorer, const Prior& prior, Ends& ends)
+{
+  const double noise = scorer.model().medianSigma();
+  RobustFitOptions fit;
+  fit.max_steps = max_mode_steps;
+  fit.tolerance = mode_tolerance * noise;
+  const auto follow = [&](RobustFit& end) {
+    end = fitRobustly(scorer, prior, end.pose, fit);
+    ends.num_queries += scorer.sourcePoints().cols() * end.num_evaluations;
+  };
+  if (relativeCost(ends.other, ends.best) < 1.0)
+    std::swap(ends.best, ends.other);
+  const Vector6d way =
+      twistBetween(ends.best.pose, ends.other.pose, ends.best.pose * scorer.centroid());
+  const bool are_apart =
+      way.dot(displacementMetric(scorer, ends.best.pose) * way) > noise * noise;
+  follow(ends.best);
+  if (!are_apart)
+    return;
+  follow(ends.other);
+  if (relativeCost(ends.other, ends.best) < 1.0)
+    std::swap(ends.best, ends.other);
 }
 
 /** Covariance whose principal axes, in the displacement metric, are the first
@@ -166,18 +197,13 @@ finish(const Secants& secants, const DebitedInformation& debited, CalibratedEsti
 
 /** The mode with all that is evaluated at it. */
 CalibratedEstimate
-atMode(const SurfaceScorer& scorer,
-       const Prior& prior,
-       const Ends& ends,
-       const RobustFit& mode)
+atMode(const SurfaceScorer& scorer, const Prior& prior, const RobustFit& mode)
 {
   CalibratedEstimate e;
   e.mode = mode.pose;
   e.centre = e.mode * scorer.centroid();
   e.residual_scale = mode.residual_scale;
   e.cost = mode.cost;
-  e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
-  e.other_cost_ratio = ends.other.cost / ends.best.cost;
   PatchHints hints;
   scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
   e.prior = twistPrior(prior, e.mode, e.centre);
@@ -228,6 +254,38 @@ measureCurvature(const SurfaceScorer& scorer,
   return num_evaluations;
 }
 
+/** The estimate about one mode. */
+CalibratedEstimate
+estimateAt(const SurfaceScorer& scorer,
+           const Prior& prior,
+           const EstimateOptions& options,
+           const RobustFit& mode)
+{
+  CalibratedEstimate e = atMode(scorer, prior, mode);
+  // 4: J.
+  const double tau = e.residual_scale;
+  const ScoreCovariance J =
+      scoreCovariance(activeScores(e.scores, scorer.sourcePoints()),
+                      tau * tau * e.prior.precision,
+                      options.num_threads);
+  e.kappa_48 = J.kappa_48;
+  e.kappa_inf = J.kappa_inf;
+  // 5: H; 6: what noise explains of it; 7: mean and covariance.
+  const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
+  e.num_queries = scorer.sourcePoints().cols() * (1 + num_evaluations);
+  return e;
+}
+
+/** Whether the data leave a motion to the prior, and the prior's mean is far along it:
+ * the surface may bend until there, and another mode may be near. */
+bool
+isFarFromMean(const CalibratedEstimate& e)
+{
+  return e.keep.minCoeff() == 0.0 && e.mean.allFinite() &&
+         e.mean.dot(e.prior.precision * e.mean) >
+             max_distance_of_mean * max_distance_of_mean;
+}
+
 } // namespace
 
 Eigen::Matrix3Xd
@@ -247,28 +305,28 @@ estimateCalibrated(const SurfaceScorer& scorer,
                    const EstimateOptions& options,
                    const Isometry3d* start)
 {
-  const Index num_points = scorer.sourcePoints().cols();
-  const double noise = scorer.model().medianSigma();
   // Numbers are those of the sections of docs/calibration.md. 3: the mode.
-  const Ends ends = followStarts(scorer, prior, options, start);
-  RobustFitOptions fit;
-  fit.max_steps = max_mode_steps;
-  fit.tolerance = mode_tolerance * noise;
-  const RobustFit mode = fitRobustly(scorer, prior, ends.best.pose, fit);
-  CalibratedEstimate e = atMode(scorer, prior, ends, mode);
-
-  // 4: J.
-  const double tau = e.residual_scale;
-  const ScoreCovariance J =
-      scoreCovariance(activeScores(e.scores, scorer.sourcePoints()),
-                      tau * tau * e.prior.precision,
-                      options.num_threads);
-  e.kappa_48 = J.kappa_48;
-  e.kappa_inf = J.kappa_inf;
-  // 5: H; 6: what noise explains of it; 7: mean and covariance.
-  const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
-  e.num_queries =
-      ends.num_queries + num_points * (mode.num_evaluations + 1 + num_evaluations);
+  Ends ends = followStarts(scorer, prior, options, start);
+  followEnds(scorer, prior, ends);
+  CalibratedEstimate e = estimateAt(scorer, prior, options, ends.best);
+  e.num_queries += ends.num_queries;
+  for (int move = 0; move < max_moves && isFarFromMean(e); ++move) {
+    RobustFitOptions fit;
+    fit.max_steps = max_mode_steps;
+    fit.tolerance = mode_tolerance * scorer.model().medianSigma();
+    const RobustFit mode =
+        fitRobustly(scorer, prior, movedBy(e.mean, e.centre, e.mode), fit);
+    CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
+    next.num_queries +=
+        e.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
+    if (next.scores.num_active < min_support_after_move * e.scores.num_active) {
+      e.num_queries = next.num_queries;
+      break;
+    }
+    e = std::move(next);
+  }
+  e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
+  e.other_cost_ratio = relativeCost(ends.other, ends.best);
   return e;
 }
 

@@ -33,6 +33,10 @@ constexpr double point_weight = 1e4;
 constexpr int max_point_steps = 20;
 constexpr double point_tolerance = 1e-4;
 
+/** Standard deviations of the difference of two fits' residuals that tell them apart.
+ */
+constexpr double clear_deviations = 2.0;
+
 struct NormalEquations {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
@@ -120,9 +124,24 @@ fitRobustly(const SurfaceScorer& scorer,
   }
   scorer.evaluate(fit.pose, fit.pose * scorer.centroid(), no_weights, hints, linear);
   ++fit.num_evaluations;
+  fit.residuals = cappedResiduals(linear);
   fit.cost = meanCappedResidual(linear);
   fit.residual_scale = residualScale(linear);
   return fit;
+}
+
+double
+relativeCost(const RobustFit& a, const RobustFit& b)
+{
+  const auto is_common = !(a.residuals + b.residuals).array().isNaN();
+  const auto sumOf = [&](const auto& values) {
+    return is_common.select(values, 0.0).sum();
+  };
+  const double sum_a = sumOf(a.residuals.array()), sum_b = sumOf(b.residuals.array());
+  const double sum_of_squares = sumOf((a.residuals - b.residuals).array().square());
+  return std::abs(sum_a - sum_b) > clear_deviations * std::sqrt(sum_of_squares)
+             ? sum_a / sum_b
+             : a.cost / b.cost;
 }
 
 RobustFit

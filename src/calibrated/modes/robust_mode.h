@@ -25,7 +25,8 @@ struct RobustFit {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   /** residualScale() there. */
   double residual_scale = 1.0;
-  /** meanCappedResidual() there. */
+  /** cappedResiduals() there, and their mean as in meanCappedResidual(). */
+  Eigen::VectorXd residuals;
   double cost = 0.0;
   /** Evaluations of all points. */
   int num_evaluations = 0;
@@ -39,6 +40,16 @@ fitRobustly(const SurfaceScorer& scorer,
             const Prior& prior,
             const Eigen::Isometry3d& start,
             const RobustFitOptions& options);
+
+/** \brief Cost of \p a in units of the cost of \p b, two fits of the same points.
+ *
+ * Only the points that have a patch at both are compared, if these tell the fits apart
+ * (by two standard deviations of the difference). That more points have a patch only
+ * says that the target was seen there: two views of a wall overlap most where the
+ * sensor has not moved. If these points do not tell, all points are compared, and a
+ * point without a patch counts as one that does not fit. */
+double
+relativeCost(const RobustFit& a, const RobustFit& b);
 
 /** \brief Point-to-point ICP on the model's points from \p start, with a weak prior. */
 RobustFit

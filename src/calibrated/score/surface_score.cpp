@@ -109,16 +109,21 @@ residualScale(const SurfaceScores& scores)
   return std::max(min_residual_scale, 1.4826 * medianOf(std::move(magnitudes)));
 }
 
+Eigen::VectorXd
+cappedResiduals(const SurfaceScores& scores)
+{
+  Eigen::VectorXd capped = scores.residuals.cwiseAbs().cwiseMin(residual_cap);
+  for (std::size_t i = 0; i < scores.has_patch.size(); ++i)
+    if (!scores.has_patch[i])
+      capped[static_cast<Eigen::Index>(i)] = std::numeric_limits<double>::quiet_NaN();
+  return capped;
+}
+
 double
 meanCappedResidual(const SurfaceScores& scores)
 {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < scores.has_patch.size(); ++i)
-    sum += scores.has_patch[i]
-               ? std::min(residual_cap,
-                          std::abs(scores.residuals[static_cast<Eigen::Index>(i)]))
-               : residual_cap;
-  return sum / static_cast<double>(scores.has_patch.size());
+  const Eigen::VectorXd capped = cappedResiduals(scores);
+  return capped.array().isNaN().select(residual_cap, capped).mean();
 }
 
 SurfaceScorer::SurfaceScorer(const Eigen::Matrix3Xd& source_points,

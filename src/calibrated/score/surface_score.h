@@ -51,6 +51,10 @@ tukeyWeight(double z);
 double
 residualScale(const SurfaceScores& scores);
 
+/** \brief min(|u|, 5) of each point; NaN of a point without a usable patch. */
+Eigen::VectorXd
+cappedResiduals(const SurfaceScores& scores);
+
 /** \brief Mean of min(|u|, 5). A point without a usable patch counts 5. */
 double
 meanCappedResidual(const SurfaceScores& scores);
