@@ -57,9 +57,12 @@ constexpr double max_unheld_steps = 1.0;
 constexpr int information_degrees_of_freedom = 20;
 
 /** Where the data leave a motion to the prior, the mode moves to the posterior mean if
- * that is further away than this many prior standard deviations, at most so many times,
- * and only if this part of the active points stays active. */
-constexpr double max_distance_of_mean = 0.5, min_support_after_move = 0.5;
+ * that is further away than this many prior standard deviations, at most so many times.
+ * It stays where it is if the mean is further away than this part of the source's root
+ * mean square radius (the points meet another side of the body there, or its end), or
+ * if less than half of the active points would stay active. */
+constexpr double min_distance_of_mean = 0.5, max_distance_to_radius = 0.6;
+constexpr double min_support_after_move = 0.5;
 constexpr int max_moves = 2;
 
 /** Two ends of starts, and which is the mode. */
@@ -115,31 +118,41 @@ followStarts(const SurfaceScorer& scorer,
   return ends;
 }
 
+RobustFit
+fitOnAllPoints(const SurfaceScorer& scorer, const Prior& prior, const Isometry3d& start)
+{
+  RobustFitOptions fit;
+  fit.max_steps = max_mode_steps;
+  fit.tolerance = mode_tolerance * scorer.model().medianSigma();
+  return fitRobustly(scorer, prior, start, fit);
+}
+
 /** Follow the ends on all points. What is one place, to within the target's noise, is
  * followed once. */
 void
 followEnds(const SurfaceScorer& scorer, const Prior& prior, Ends& ends)
 {
-  const double noise = scorer.model().medianSigma();
-  RobustFitOptions fit;
-  fit.max_steps = max_mode_steps;
-  fit.tolerance = mode_tolerance * noise;
   const auto follow = [&](RobustFit& end) {
-    end = fitRobustly(scorer, prior, end.pose, fit);
+    end = fitOnAllPoints(scorer, prior, end.pose);
     ends.num_queries += scorer.sourcePoints().cols() * end.num_evaluations;
   };
-  if (relativeCost(ends.other, ends.best) < 1.0)
-    std::swap(ends.best, ends.other);
+  const auto putBetterFirst = [&ends] {
+    if (relativeCost(ends.other, ends.best) < 1.0)
+      std::swap(ends.best, ends.other);
+  };
+  putBetterFirst();
+  const double noise = scorer.model().medianSigma();
   const Vector6d way =
       twistBetween(ends.best.pose, ends.other.pose, ends.best.pose * scorer.centroid());
   const bool are_apart =
       way.dot(displacementMetric(scorer, ends.best.pose) * way) > noise * noise;
   follow(ends.best);
-  if (!are_apart)
+  if (!are_apart) {
+    ends.other = ends.best;
     return;
+  }
   follow(ends.other);
-  if (relativeCost(ends.other, ends.best) < 1.0)
-    std::swap(ends.best, ends.other);
+  putBetterFirst();
 }
 
 /** Covariance whose principal axes, in the displacement metric, are the first
@@ -276,14 +289,36 @@ estimateAt(const SurfaceScorer& scorer,
   return e;
 }
 
-/** Whether the data leave a motion to the prior, and the prior's mean is far along it:
- * the surface may bend until there, and another mode may be near. */
+/** Whether the mode has to move to the mean: along the way the surface may bend, and
+ * another mode may be near. */
 bool
 isFarFromMean(const CalibratedEstimate& e)
 {
-  return e.keep.minCoeff() == 0.0 && e.mean.allFinite() &&
-         e.mean.dot(e.prior.precision * e.mean) >
-             max_distance_of_mean * max_distance_of_mean;
+  const double to_prior = std::sqrt(e.mean.dot(e.prior.precision * e.mean));
+  const double length = std::sqrt(e.mean.dot(e.displacement_metric * e.mean));
+  return e.keep.minCoeff() == 0.0 && to_prior > min_distance_of_mean &&
+         length < max_distance_to_radius * radiusOf(e.displacement_metric);
+}
+
+/** The estimate about the mode nearest to the mean. \return whether it has moved */
+bool
+moveToMean(const SurfaceScorer& scorer,
+           const Prior& prior,
+           const EstimateOptions& options,
+           CalibratedEstimate& e)
+{
+  const RobustFit mode =
+      fitOnAllPoints(scorer, prior, movedBy(e.mean, e.centre, e.mode));
+  CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
+  next.num_queries +=
+      e.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
+  const bool moves =
+      next.scores.num_active >= min_support_after_move * e.scores.num_active;
+  if (moves)
+    e = std::move(next);
+  else
+    e.num_queries = next.num_queries;
+  return moves;
 }
 
 } // namespace
@@ -310,21 +345,9 @@ estimateCalibrated(const SurfaceScorer& scorer,
   followEnds(scorer, prior, ends);
   CalibratedEstimate e = estimateAt(scorer, prior, options, ends.best);
   e.num_queries += ends.num_queries;
-  for (int move = 0; move < max_moves && isFarFromMean(e); ++move) {
-    RobustFitOptions fit;
-    fit.max_steps = max_mode_steps;
-    fit.tolerance = mode_tolerance * scorer.model().medianSigma();
-    const RobustFit mode =
-        fitRobustly(scorer, prior, movedBy(e.mean, e.centre, e.mode), fit);
-    CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
-    next.num_queries +=
-        e.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
-    if (next.scores.num_active < min_support_after_move * e.scores.num_active) {
-      e.num_queries = next.num_queries;
+  for (int move = 0; move < max_moves && isFarFromMean(e); ++move)
+    if (!moveToMean(scorer, prior, options, e))
       break;
-    }
-    e = std::move(next);
-  }
   e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
   e.other_cost_ratio = relativeCost(ends.other, ends.best);
   return e;

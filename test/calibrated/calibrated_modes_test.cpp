@@ -1,6 +1,7 @@
 // Further modes of preset `calibrated`: a cube, whose sides look alike, scanned from
 // all sides.
 #include "calibrated/modes/calibrated_modes.h"
+#include "calibrated/modes/robust_mode.h"
 
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/random.h>
@@ -99,6 +100,41 @@ distanceOfTruth(const CalibratedEstimate& e, const Eigen::Isometry3d& truth)
 {
   const Vector6d error = twistBetween(e.mode, truth, e.centre) - e.mean;
   return error.dot(e.covariance.ldlt().solve(error));
+}
+
+/** A fit whose points have these residuals; the last \p num_unseen have no patch. */
+RobustFit
+fitWith(double residual, Eigen::Index num_unseen)
+{
+  RobustFit fit;
+  fit.residuals.setConstant(100, residual);
+  fit.residuals.tail(num_unseen).setConstant(std::nan(""));
+  fit.cost = (residual * static_cast<double>(100 - num_unseen) +
+              5.0 * static_cast<double>(num_unseen)) /
+             100.0;
+  return fit;
+}
+
+TEST(RelativeCost, OverlapDoesNotCountWherePointsTellFitsApart)
+{
+  const RobustFit right = fitWith(1.0, 40), overlapping = fitWith(1.25, 0);
+  EXPECT_LT(overlapping.cost, right.cost);
+  EXPECT_DOUBLE_EQ(relativeCost(overlapping, right), 1.25);
+  EXPECT_DOUBLE_EQ(relativeCost(right, overlapping), 0.8);
+}
+
+TEST(RelativeCost, OverlapCountsWherePointsDoNotTell)
+{
+  // The 60 common points differ by 0.5 up and down: by 3 in sum, with a standard
+  // deviation of 0.5 sqrt(60) = 3.9.
+  RobustFit seen = fitWith(1.0, 0);
+  const RobustFit unseen = fitWith(1.0, 40);
+  for (Eigen::Index i = 0; i < 60; ++i)
+    seen.residuals[i] += i < 33 ? 0.5 : -0.5;
+  EXPECT_DOUBLE_EQ(relativeCost(unseen, seen), unseen.cost / seen.cost);
+  // Clouds that do not meet have no common points.
+  const RobustFit nowhere = fitWith(1.0, 100);
+  EXPECT_DOUBLE_EQ(relativeCost(nowhere, seen), 5.0 / seen.cost);
 }
 
 TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)

@@ -286,6 +286,10 @@ TEST(SurfaceScore, ScaleAndCostOfResiduals)
   // Magnitudes 0.1, 0.5, 1, 2, 7; the fourth point has no patch and costs 5.
   EXPECT_DOUBLE_EQ(residualScale(scores), 1.4826);
   EXPECT_DOUBLE_EQ(meanCappedResidual(scores), (1.0 + 2.0 + 0.5 + 5.0 + 5.0 + 0.1) / 6);
+  const Eigen::VectorXd capped = cappedResiduals(scores);
+  EXPECT_TRUE(std::isnan(capped[3]));
+  EXPECT_EQ(capped[1], 2.0);
+  EXPECT_EQ(capped[4], 5.0);
   scores.residuals *= 0.1;
   EXPECT_DOUBLE_EQ(residualScale(scores), 0.3);
 }

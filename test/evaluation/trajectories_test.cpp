@@ -92,6 +92,27 @@ protected:
 
 } // namespace
 
+TEST(Trajectories, ACameraAlongABareWallIsRightAboutTheMotionsThatItSees)
+{
+  // Most of what the camera sees is a wall and the floor. Two views of them overlap
+  // most where the camera has not moved, which must not count as evidence.
+  constexpr int num_runs = 6;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= num_runs; ++seed) {
+    const Recording drive = makeDrive("room_camera", seed, 100);
+    const EdgeName name{drive.name, 100, seed, 21, 24, "calibrated"};
+    const EdgeRun run = registeredEdge(
+        name, drive.read(24), drive.read(21), guessOf(drive, seed, 21, 24));
+    ASSERT_EQ(run.complaint, "") << seed;
+    const app::GraphEdge edge = graphEdgeOf(run);
+    const Vector6d error = logSE3(Isometry3d(edge.T_target_source).inverse().matrix() *
+                                  drive.relativePose(21, 24).matrix());
+    sum += error.dot(edge.covariance.ldlt().solve(error));
+  }
+  // 99.9 % quantile of chi-square with 36 degrees of freedom.
+  EXPECT_LT(sum, 67.985);
+}
+
 TEST(Trajectories, AlignedErrorIsThatOfTheShape)
 {
   const std::vector<Isometry3d> truth = straightLine(40);

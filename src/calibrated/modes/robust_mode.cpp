@@ -133,12 +133,15 @@ fitRobustly(const SurfaceScorer& scorer,
 double
 relativeCost(const RobustFit& a, const RobustFit& b)
 {
-  const auto is_common = !(a.residuals + b.residuals).array().isNaN();
-  const auto sumOf = [&](const auto& values) {
-    return is_common.select(values, 0.0).sum();
-  };
-  const double sum_a = sumOf(a.residuals.array()), sum_b = sumOf(b.residuals.array());
-  const double sum_of_squares = sumOf((a.residuals - b.residuals).array().square());
+  double sum_a = 0.0, sum_b = 0.0, sum_of_squares = 0.0;
+  for (Index i = 0; i < a.residuals.size(); ++i) {
+    const double difference = a.residuals[i] - b.residuals[i];
+    if (std::isnan(difference))
+      continue;
+    sum_a += a.residuals[i];
+    sum_b += b.residuals[i];
+    sum_of_squares += difference * difference;
+  }
   return std::abs(sum_a - sum_b) > clear_deviations * std::sqrt(sum_of_squares)
              ? sum_a / sum_b
              : a.cost / b.cost;
