@@ -191,13 +191,17 @@ requireConnected(std::size_t num_poses, const std::vector<GraphEdge>& edges)
                                   " to scan 0");
 }
 
-std::unique_ptr<ceres::LossFunction>
-lossOf(RobustLoss loss)
+/** Of the part of an edge's error that is not its source's. Where that is \p share of
+ * the variance, the error as a whole is larger by 1 / sqrt(1 - share). The problem owns
+ * the result. */
+ceres::LossFunction*
+lossOf(RobustLoss loss, double share)
 {
+  const double border = border_of_95_percent * std::sqrt(1.0 - share);
   if (loss == RobustLoss::Huber)
-    return std::make_unique<ceres::HuberLoss>(border_of_95_percent);
+    return new ceres::HuberLoss(border);
   if (loss == RobustLoss::Cauchy)
-    return std::make_unique<ceres::CauchyLoss>(border_of_95_percent);
+    return new ceres::CauchyLoss(border);
   return nullptr;
 }
 
@@ -207,7 +211,7 @@ public:
   Solver(const std::vector<Eigen::Matrix4d>& poses,
          const std::vector<GraphEdge>& edges,
          RobustLoss loss)
-  : loss_(lossOf(loss))
+  : loss_(loss)
   , noises_(poses.size())
   , problem_(borrowing())
   {
@@ -264,7 +268,7 @@ private:
     edges_.push_back({error, target_pose, source_pose});
     problem_.AddResidualBlock(
         new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6>(new EdgeError(error)),
-        loss_.get(),
+        lossOf(loss_, edge.share),
         target_pose,
         source_pose,
         noises_[source].data());
@@ -285,7 +289,6 @@ private:
   {
     ceres::Problem::Options options;
     options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     return options;
   }
 
@@ -309,7 +312,7 @@ private:
   }
 
   ceres::AutoDiffManifold<RightTwists, 7, 6> twists_;
-  std::unique_ptr<ceres::LossFunction> loss_;
+  RobustLoss loss_;
   std::vector<Parameters> parameters_;
   /** Of each scan as a source, in units of the deviations of its edges. */
   std::vector<std::array<double, 6>> noises_;

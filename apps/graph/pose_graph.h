@@ -24,6 +24,10 @@ struct GaussianPose {
  * registrations with the same target have less in common. */
 constexpr double source_share = 0.6;
 
+/** \brief Factor of the variances of a registration with status Doubtful: its standard
+ * deviations become three times as large. */
+constexpr double doubt_factor = 9.0;
+
 /** \brief The pose of one vertex as seen from another. */
 struct GraphEdge {
   int target = 0;

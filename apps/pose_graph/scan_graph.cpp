@@ -138,8 +138,10 @@ ScanGraph::take(const BatchResult& result, ScanEdge& edge) const
     edge.is_in_graph = complaint.empty();
   }
   if (edge.is_in_graph) {
-    if (result.status != toString(Status::Ok)) // also with the flag of a wrong basin
+    if (result.status != toString(Status::Ok)) {
       edge.complaint = result.status + ": " + result.message;
+      edge.edge.covariance *= doubt_factor;
+    }
     if (is_found || edge.kind == EdgeKind::Named)
       closeLoop(edge);
     if ((is_found || edge.kind == EdgeKind::Span) && !edge.complaint.empty()) {
@@ -152,6 +154,7 @@ ScanGraph::take(const BatchResult& result, ScanEdge& edge) const
   edge.is_in_graph = edge.kind == EdgeKind::Chain && request_.has_weak_edges &&
                      result.run != nullptr &&
                      setEdge(estimateOf(priorOf(*result.run)), edge.edge).empty();
+  edge.edge.share = 0.0; // a prior has no noise of a scan
   edge.complaint = (edge.is_in_graph ? "the prior only, " : left_out) + reason;
 }
 
@@ -235,7 +238,7 @@ ScanGraph::moreEdges() const
   std::vector<ScanEdge> edges;
   std::set<std::pair<int, int>> known;
   const auto add = [&](EdgeKind kind, int target, int source) {
-    if (!known.insert(std::minmax(target, source)).second && kind != EdgeKind::Named)
+    if (!known.insert(std::minmax(target, source)).second)
       return;
     edges.emplace_back();
     edges.back().kind = kind;

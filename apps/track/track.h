@@ -32,10 +32,6 @@ toString(StepKind kind);
 StepKind
 readStepKind(const std::string& name);
 
-/** \brief Factor of the variances of a registration with status Doubtful: its standard
- * deviations become three times as large. */
-constexpr double doubt_factor = 9.0;
-
 /** \brief If so many scans in a row could not be registered, the last one that can be
  * read is the new target. */
 constexpr int max_failures = 3;

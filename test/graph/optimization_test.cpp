@@ -241,6 +241,28 @@ TEST(OptimizedPosesOf, AGraphWithAWrongEdgeHardlyMoveWithARobustLoss)
   EXPECT_LT(by_cauchy, 0.2 * deviation);
 }
 
+TEST(OptimizedPosesOf, AnEdgePullsNoHarderThanAtItsBorder)
+{
+  // Two edges, one wrong, join two poses: one of 1 m and one of 11 m, both with
+  // deviations of 0.1 m. Huber's loss lets the wrong one pull as one would that is as
+  // far off as the border of its 95 % region, 3.548 deviations.
+  for (const double share : {0.0, app::source_share}) {
+    GraphEdge right;
+    right.source = 1;
+    right.T_target_source(0, 3) = 1.0;
+    right.covariance = 0.01 * Matrix6d::Identity();
+    right.share = 0.0;
+    GraphEdge wrong = right;
+    wrong.T_target_source(0, 3) = 11.0;
+    wrong.share = share;
+    const std::vector<GraphEdge> edges = {right, wrong};
+    const OptimizedPoses found =
+        optimizedPoses(chained({right}, 2), edges, RobustLoss::Huber);
+    EXPECT_EQ(found.complaint, "");
+    EXPECT_NEAR(found.poses[1].mean[0], 1.0 + 0.1 * 3.548, 0.001) << share;
+  }
+}
+
 TEST(OptimizedPosesOf, GraphsThatAreNoneAreRefused)
 {
   Random random(5, 0);
