@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <sstream>
 
 namespace bayesian_icp::app {
@@ -84,6 +85,9 @@ check(const po::variables_map& given, const GraphCommand& command)
   const GraphRequest& request = command.request;
   if (command.output_file.empty() && command.optimized_folder.empty())
     throw io::UsageError("--output or --optimize is needed");
+  if (std::filesystem::is_directory(command.output_file))
+    throw io::UsageError("--output: " + io::quoted(command.output_file) +
+                         " is a folder; --optimize takes one");
   if (given.count("robust-loss") > 0 && command.optimized_folder.empty())
     throw io::UsageError("--robust-loss needs --optimize");
   if (request.span < 1 || request.span > max_span)
@@ -133,7 +137,8 @@ For more, see docs/pose_graph_and_filter.md.
 Exit codes:
   0    all registrations are ok, but for those of --loops
   1    some are not, a loop that you named or an optimized edge contradicts the
-       others, or the poses cannot be optimized; the graph has been written
+       others, none of an edge's cycles closes, or the poses cannot be
+       optimized; the graph has been written
   2    wrong usage
   3    a file cannot be used or written
   130  interrupted (Ctrl-C or SIGTERM); nothing has been written

@@ -67,8 +67,8 @@ std::string
 verdictHtml(const ScanGraph& graph, const OptimizedPoses& optimum)
 {
   const Counts counts = countsOf(graph);
-  const auto num_contradictions = std::count_if(
-      optimum.squared_errors.begin(), optimum.squared_errors.end(), isContradiction);
+  const std::size_t num_contradictions =
+      disagreementsOf(edgesOf(graph.taken()), optimum).size();
   const bool is_good = num_contradictions == 0 && counts.num_complaints == 0;
   std::string sentence = "Edges in the graph";
   for (std::size_t k = 0; k < counts.num_taken.size(); ++k)
@@ -169,9 +169,7 @@ cyclesHtml(const std::vector<ClosedCycle>& cycles)
 }
 
 std::string
-contradictionsHtml(const std::vector<ScanEdge>& edges,
-                   const std::vector<ClosedCycle>& cycles,
-                   const OptimizedPoses& optimum)
+contradictionsHtml(const std::vector<ScanEdge>& edges, const OptimizedPoses& optimum)
 {
   html::Table table;
   table.caption = "Edges that contradict the others: squared error above the 99.9 % "
@@ -183,13 +181,8 @@ contradictionsHtml(const std::vector<ScanEdge>& edges,
                   "cycles of which none closes",
                   "kind"};
   table.first_column_of_words = 5;
-  std::vector<std::size_t> num_open(edges.size(), 0);
-  for (const Suspect& suspect : suspectsOf(cycles))
-    num_open[suspect.edge] = suspect.num_cycles;
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    if (!isContradiction(optimum.squared_errors[k]) && num_open[k] == 0)
-      continue;
-    const GraphEdge& edge = edges[k].edge;
+  for (const Disagreement& found : disagreementsOf(edgesOf(edges), optimum)) {
+    const GraphEdge& edge = edges[found.edge].edge;
     const auto poseOfVertex = [&optimum](int vertex) {
       return matrixOf(optimum.poses[static_cast<std::size_t>(vertex)].mean);
     };
@@ -199,9 +192,9 @@ contradictionsHtml(const std::vector<ScanEdge>& edges,
     table.rows.push_back({nameOf(edge),
                           shortText(twist.head<3>().norm()),
                           shortText(degrees * twist.tail<3>().norm()),
-                          io::fixedTextOf(optimum.squared_errors[k], 1),
-                          io::textOf(num_open[k]),
-                          toString(edges[k].kind)});
+                          io::fixedTextOf(found.squared_error, 1),
+                          io::textOf(found.num_open_cycles),
+                          toString(edges[found.edge].kind)});
   }
   return limitedTableHtml(table);
 }
@@ -261,11 +254,24 @@ agreementSection(const std::vector<ScanEdge>& edges, const OptimizedPoses& optim
                 "freedom is 1 on average if the covariances are right; larger ones "
                 "mean that they are too small, or that an edge is wrong.") +
                 cyclesHtml(cycles);
-  section.below_html = contradictionsHtml(edges, cycles, optimum);
+  section.below_html = contradictionsHtml(edges, optimum);
   return section;
 }
 
 } // namespace
+
+std::vector<Disagreement>
+disagreementsOf(const std::vector<GraphEdge>& edges, const OptimizedPoses& optimum)
+{
+  std::vector<std::size_t> num_open(edges.size(), 0);
+  for (const Suspect& suspect : suspectsOf(closedCycles(edges, edges.size() + 1)))
+    num_open[suspect.edge] = suspect.num_cycles;
+  std::vector<Disagreement> found;
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    if (isContradiction(optimum.squared_errors[k]) || num_open[k] > 0)
+      found.push_back({k, optimum.squared_errors[k], num_open[k]});
+  return found;
+}
 
 std::string
 graphReportHtml(const GraphCommand& command,

@@ -56,18 +56,17 @@ optimized(const GraphCommand& command, const ScanGraph& graph)
 
 /** \return whether there are none */
 bool
-tellContradictions(const ScanGraph& graph, const OptimizedPoses& optimum)
+tellDisagreements(const ScanGraph& graph, const OptimizedPoses& optimum)
 {
-  const std::vector<ScanEdge> edges = graph.taken();
-  bool are_none = true;
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    if (!isContradiction(optimum.squared_errors[k]))
-      continue;
-    tell("edge " + nameOf(edges[k].edge) + " contradicts the others: squared error " +
-         io::fixedTextOf(optimum.squared_errors[k], 1) + " for 6 degrees of freedom");
-    are_none = false;
-  }
-  return are_none;
+  const std::vector<GraphEdge> edges = edgesOf(graph.taken());
+  const std::vector<Disagreement> all = disagreementsOf(edges, optimum);
+  for (const Disagreement& found : all)
+    tell("edge " + nameOf(edges[found.edge]) + " contradicts the others: " +
+         (isContradiction(found.squared_error)
+              ? "squared error " + io::fixedTextOf(found.squared_error, 1) +
+                    " for 6 degrees of freedom"
+              : "none of its " + io::textOf(found.num_open_cycles) + " cycles closes"));
+  return all.empty();
 }
 
 /** Files of --optimize. */
@@ -89,10 +88,13 @@ addOptimum(const GraphCommand& command,
   add("trajectory_tum.txt", [&] { return tumText(numbers, optimum->poses); });
   add("trajectory_covariance.txt",
       [&] { return tumCovarianceText(numbers, optimum->poses); });
-  if (plot::hasGnuplot())
-    add("report.html", [&] { return graphReportHtml(command, graph, *optimum); });
-  else {
-    tell("gnuplot is not installed: report.html is left out");
+  try {
+    const std::string report =
+        optimum != nullptr ? graphReportHtml(command, graph, *optimum) : std::string();
+    add("report.html", [&] { return report; });
+  }
+  catch (const plot::GnuplotError& error) {
+    tell(std::string(error.what()) + "; report.html is left out");
     folder.leaveOut("report.html");
   }
 }
@@ -121,7 +123,7 @@ makeGraph(const GraphCommand& command)
     return Interrupted;
   const std::optional<OptimizedPoses> optimum = optimized(command, graph);
   if (!command.optimized_folder.empty()) {
-    is_good = optimum && tellContradictions(graph, *optimum) && is_good;
+    is_good = optimum && tellDisagreements(graph, *optimum) && is_good;
     addOptimum(command, graph, optimum ? &*optimum : nullptr, *folders.back());
   }
   const std::string text =
