@@ -69,10 +69,11 @@ writeFiles(const TrackCommand& command, const Track& track, io::OutputFolder& fo
   write("trajectory_tum.txt", tumText(track.times(), track.poses()));
   write("trajectory_covariance.txt", tumCovarianceText(track.times(), track.poses()));
   write("graph.g2o", g2oText(track.poses(), track.edges()));
-  if (plot::hasGnuplot())
+  try {
     write("report.html", trackReportHtml(command, track));
-  else {
-    tell("gnuplot is not installed: report.html is left out");
+  }
+  catch (const plot::GnuplotError& error) {
+    tell(std::string(error.what()) + "; report.html is left out");
     folder.leaveOut("report.html");
   }
   folder.commit();

@@ -147,6 +147,10 @@ refuseIcp(const Settings& settings)
       settings.is_step_size_times_points || settings.is_effective_points_source_size)
     throw io::UsageError("settings of a track must not be in units of a cloud's size "
                          "or number of points");
+  if (settings.options.preset == Preset::Calibrated &&
+      settings.max_distance != standard.max_distance)
+    throw io::UsageError("--max-distance: preset calibrated has no largest distance of "
+                         "correspondences");
 }
 
 void

@@ -66,7 +66,9 @@ textOf(const ordered_json& value)
 std::string
 settingsIdOf(const TrackRequest& request)
 {
-  const ordered_json all = {jsonOf(request.settings),
+  Settings settings = request.settings;
+  settings.options.chains.num_threads = 0; // no result depends on it
+  const ordered_json all = {jsonOf(settings),
                             request.acceleration,
                             request.angular_acceleration,
                             request.span,

@@ -69,7 +69,7 @@ graphEdgeOf(const EdgeRun& run);
 /** \brief `calibrated`: the preset with the default prior about the guess, taken out
  * again; `gicp`: PCL's GICP and the inverse of its Hessian; `closed-form`:
  * point-to-plane ICP with the prior, and Censi's covariance. The last two register at
- * most 20 000 points. */
+ * most 5000 points. */
 const std::vector<std::string>&
 edgeMethods();
 
