@@ -201,8 +201,9 @@ Without FOLDER, the recordings are simulated drives: )";
     help << name << (name == driveNames().back() ? ".\n" : ", ");
   help << R"(FOLDER has recordings with true poses, a folder each, as for
 coverage --real. All methods begin at the true pose with errors of 0.1 m and
-0.03 rad on each axis. No edge contains that guess; but as an odometry it is
-an edge of its own from each scan to the next, the same for all methods.
+0.03 rad on each axis. Edges do not contain that guess (the closed form keeps
+its wide prior); but as an odometry it is an edge of its own from each scan to
+the next, the same for all methods.
 
 The table has the error of positions after alignment (ATE), of relative poses
 of neighbours (RPE), of the last pose (drift), the normalised squared error of
