@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <map>
@@ -45,25 +46,33 @@ shortestPath(const std::vector<GraphEdge>& edges,
              std::size_t direct,
              std::size_t max_edges)
 {
+  /** The last edge of the way to a vertex, and the number of its edges. */
+  struct Way {
+    std::size_t last = 0;
+    std::size_t length = 0;
+  };
   const int begin = edges[direct].target, end = edges[direct].source;
-  std::map<int, std::vector<std::size_t>> ways{{begin, {}}};
+  std::map<int, Way> ways{{begin, {}}};
   std::deque<int> next{begin};
   while (!next.empty() && ways.count(end) == 0) {
     const int vertex = next.front();
     next.pop_front();
-    const std::vector<std::size_t> way = ways[vertex];
-    if (way.size() == max_edges)
+    const std::size_t length = ways[vertex].length;
+    if (length == max_edges)
       continue;
     for (const std::size_t k : at.at(vertex)) {
       const int other = otherEnd(edges[k], vertex);
-      if (k == direct || !ways.emplace(other, way).second)
-        continue;
-      ways[other].push_back(k);
-      next.push_back(other);
+      if (k != direct && ways.emplace(other, Way{k, length + 1}).second)
+        next.push_back(other);
     }
   }
-  const auto found = ways.find(end);
-  return found == ways.end() ? std::vector<std::size_t>() : found->second;
+  std::vector<std::size_t> path;
+  if (ways.count(end) > 0)
+    for (int vertex = end; vertex != begin;
+         vertex = otherEnd(edges[path.back()], vertex))
+      path.push_back(ways[vertex].last);
+  std::reverse(path.begin(), path.end());
+  return path;
 }
 
 /** The edge as seen from its source. */

@@ -1,5 +1,7 @@
 #include "graph/optimization.h"
 
+#include "graph/closed_cycles.h"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -341,6 +343,19 @@ optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
   catch (const std::system_error&) { // Ceres has no memory for a thread
     throw std::bad_alloc();
   }
+}
+
+std::vector<Disagreement>
+disagreementsOf(const std::vector<GraphEdge>& edges, const OptimizedPoses& optimum)
+{
+  std::vector<std::size_t> num_open(edges.size(), 0);
+  for (const Suspect& suspect : suspectsOf(closedCycles(edges, edges.size() + 1)))
+    num_open[suspect.edge] = suspect.num_cycles;
+  std::vector<Disagreement> found;
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    if (isContradiction(optimum.squared_errors[k]) || num_open[k] > 0)
+      found.push_back({k, optimum.squared_errors[k], num_open[k]});
+  return found;
 }
 
 } // namespace bayesian_icp::app

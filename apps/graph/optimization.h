@@ -67,4 +67,20 @@ optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
                const std::vector<GraphEdge>& edges,
                RobustLoss loss);
 
+/** \brief An edge that contradicts the others. */
+struct Disagreement {
+  /** Position in the edges. */
+  std::size_t edge = 0;
+  /** Against the optimized poses. */
+  double squared_error = 0.0;
+  /** Number of its cycles, if none of them closes: suspectsOf(). A wrong edge that
+   * pulls the poses along has a small squared error. */
+  std::size_t num_open_cycles = 0;
+};
+
+/** \brief Edges with isContradiction(), or none of whose cycles closes.
+ * \param[in] optimum of \p edges */
+std::vector<Disagreement>
+disagreementsOf(const std::vector<GraphEdge>& edges, const OptimizedPoses& optimum);
+
 } // namespace bayesian_icp::app

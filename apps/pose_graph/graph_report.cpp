@@ -260,19 +260,6 @@ agreementSection(const std::vector<ScanEdge>& edges, const OptimizedPoses& optim
 
 } // namespace
 
-std::vector<Disagreement>
-disagreementsOf(const std::vector<GraphEdge>& edges, const OptimizedPoses& optimum)
-{
-  std::vector<std::size_t> num_open(edges.size(), 0);
-  for (const Suspect& suspect : suspectsOf(closedCycles(edges, edges.size() + 1)))
-    num_open[suspect.edge] = suspect.num_cycles;
-  std::vector<Disagreement> found;
-  for (std::size_t k = 0; k < edges.size(); ++k)
-    if (isContradiction(optimum.squared_errors[k]) || num_open[k] > 0)
-      found.push_back({k, optimum.squared_errors[k], num_open[k]});
-  return found;
-}
-
 std::string
 graphReportHtml(const GraphCommand& command,
                 const ScanGraph& graph,

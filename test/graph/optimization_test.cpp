@@ -263,6 +263,37 @@ TEST(OptimizedPosesOf, AnEdgePullsNoHarderThanAtItsBorder)
   }
 }
 
+TEST(DisagreementsOf, AnEdgeThatPullsThePosesAlongShowsInItsCycles)
+{
+  // Five poses a metre apart, edges to the first and second before, all with deviations
+  // of 0.1 m and no error but one of 0.85 m. That leaves 0.85^2 / 0.1^2 / 3 = 24 in
+  // each of its two cycles (99 % quantile: 16.8), but only half of the error against
+  // the optimum.
+  std::vector<GraphEdge> edges;
+  for (int source = 1; source < 5; ++source)
+    for (int target = std::max(0, source - 2); target < source; ++target) {
+      edges.emplace_back();
+      edges.back().target = target;
+      edges.back().source = source;
+      edges.back().T_target_source(0, 3) = source - target;
+      edges.back().covariance = 0.01 * Matrix6d::Identity();
+      edges.back().share = 0.0;
+    }
+  const auto disagreements = [&edges] {
+    Poses poses(5, Eigen::Matrix4d::Identity());
+    return disagreementsOf(edges, optimizedPoses(poses, edges, RobustLoss::None));
+  };
+  EXPECT_TRUE(disagreements().empty());
+  const std::size_t wrong = 2; // from 1 to 2
+  ASSERT_EQ(edges[wrong].target, 1);
+  edges[wrong].T_target_source(0, 3) += 0.85;
+  const std::vector<app::Disagreement> found = disagreements();
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].edge, wrong);
+  EXPECT_FALSE(app::isContradiction(found[0].squared_error));
+  EXPECT_EQ(found[0].num_open_cycles, 2U);
+}
+
 TEST(OptimizedPosesOf, GraphsThatAreNoneAreRefused)
 {
   Random random(5, 0);
