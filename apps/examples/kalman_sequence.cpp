@@ -42,7 +42,8 @@ positive(const std::string& text)
 {
   std::istringstream stream(text);
   Number number{};
-  if (!(stream >> number) || !stream.eof() || !(number > Number()))
+  const bool is_negative = text.find('-') == 0; // which unsigned numbers would take
+  if (is_negative || !(stream >> number) || !stream.eof() || !(number > Number()))
     throw std::invalid_argument("'" + text + "' is not a positive number");
   return number;
 }

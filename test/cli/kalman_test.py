@@ -153,6 +153,7 @@ class KalmanSequence(TrajectoryTest):
             ([self.folder, "0.02", "-1"], "'-1' is not a positive number"),
             ([self.folder, "0.02", "2cm"], "'2cm' is not a positive number"),
             ([self.folder, "0.02", "0.02", "x"], "'x' is not a positive number"),
+            ([self.folder, "0.02", "0.02", "-5"], "'-5' is not a positive number"),
             ([self.folder / "none"], "none/poses.txt: fewer than two poses"),
         ):
             with self.subTest(words=words):

@@ -94,9 +94,9 @@ class PoseGraphOfSimulatedScans(PoseGraphTest):
     def test_files_in_their_order(self):
         scans, _ = self.trajectory(["0,-1.2,0.7", "0.06,-1.19,0.72"])
         files = [scans / "scan_1.pcd", scans / "scan_0.pcd"]
-        self.assertIn(call(POSE_GRAPH, scans, "-o", self.graph).returncode, (0, 1))
+        self.assertEqual(call(POSE_GRAPH, scans, "-o", self.graph).returncode, 0)
         forward, _ = read_graph(self.graph)[1][0, 1]
-        self.assertIn(call(POSE_GRAPH, *files, "-o", self.graph).returncode, (0, 1))
+        self.assertEqual(call(POSE_GRAPH, *files, "-o", self.graph).returncode, 0)
         backward, information = read_graph(self.graph)[1][0, 1]
         error = g2o_error(backward, inverted(forward))
         # Twice the variance, for two estimates of one motion.
