@@ -3,11 +3,14 @@
 # bayesian_icp_configure(<target>): C++17, warnings on, baseline instruction set.
 # Never add -march or -m<isa> here: PCL and Eigen types cross the library's border.
 function(bayesian_icp_configure target)
+  # In a unity build names in a file's unnamed namespace look as if they were in a header.
+  set(in_unity_build $<CXX_COMPILER_ID:GNU>:-Wshadow=local;-Wno-subobject-linkage)
+  set(shadow $<IF:$<BOOL:${CMAKE_UNITY_BUILD}>,$<${in_unity_build}>,-Wshadow>)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(
-    ${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic -Wshadow
-                      -Wconversion>
+    ${target} PRIVATE $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra -Wpedantic -Wconversion>
+                      ${shadow}
                       $<$<BOOL:${BAYESIAN_ICP_WARNINGS_AS_ERRORS}>:-Werror>
                       # Clang counts signs among the conversions, GCC does not.
                       $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>

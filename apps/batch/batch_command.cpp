@@ -103,7 +103,7 @@ parseBatchCommand(int argc, const char* const* argv)
     throw io::UsageError("expected a manifest");
   if (manifests.size() > 1)
     throw io::UsageError("expected one manifest, but got a second file: " +
-                         io::quoted(manifests[1]));
+                         io::inQuotes(manifests[1]));
   request.manifest_file = manifests[0];
   io::takeOptions(given, options);
   if (request.use_suggested_prior)

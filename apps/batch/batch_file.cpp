@@ -61,12 +61,12 @@ BatchFile::note(const std::string& line)
     finished = readBatchLine(line);
   }
   catch (const std::exception&) {
-    throw io::FileError(name_, "has a line that is no result: " + io::quoted(line));
+    throw io::FileError(name_, "has a line that is no result: " + io::inQuotes(line));
   }
   const auto found = settings_ids_.find(finished.name);
   if (found != settings_ids_.end() && found->second != finished.settings_id)
     throw io::FileError(name_,
-                        "has a result of pair " + io::quoted(finished.name) +
+                        "has a result of pair " + io::inQuotes(finished.name) +
                             " with other settings, files or program version; take "
                             "another file, or remove its line");
   return statuses_.emplace(finished.name, finished.status).second;

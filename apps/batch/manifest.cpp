@@ -35,7 +35,7 @@ textAt(const json& object, const char* key)
     refuse(std::string("the key '") + key + "' is missing");
   const json& value = object[key];
   if (!value.is_string() || value.get_ref<const std::string&>().empty())
-    refuse(std::string(key) + " is " + io::quoted(value.dump()) +
+    refuse(std::string(key) + " is " + io::inQuotes(value.dump()) +
            ", but must be a text");
   return value;
 }
@@ -49,7 +49,7 @@ nameOf(const json& entry)
   for (const char character : name)
     is_good &= character != '/' && static_cast<unsigned char>(character) >= 0x20;
   if (!is_good)
-    refuse("name is " + io::quoted(name) +
+    refuse("name is " + io::inQuotes(name) +
            ", but must be usable as the name of a folder: no '/', no leading '.'");
   return name;
 }
@@ -93,7 +93,7 @@ takeGuess(const json& guess, BatchPair& pair)
       pose[static_cast<Eigen::Index>(k)] = guess[k].get<double>();
   }
   if (!is_good)
-    refuse("guess is " + io::quoted(guess.dump()) +
+    refuse("guess is " + io::inQuotes(guess.dump()) +
            ", but must be the six numbers [x, y, z, roll, pitch, yaw] [m, rad] or the "
            "name of a file with a 4x4 matrix");
   pair.settings.guess = matrixOf(pose);
@@ -116,7 +116,7 @@ takePlainEntry(const json& entry, BatchPair& pair)
       "name", "source", "target", "guess", "settings", "suggested_prior_sigma"};
   for (const auto& [key, value] : entry.items())
     if (known.count(key) == 0)
-      refuse("unknown key " + io::quoted(key));
+      refuse("unknown key " + io::inQuotes(key));
   pair.source_file = textAt(entry, "source");
   pair.target_file = textAt(entry, "target");
   if (entry.contains("settings"))
@@ -190,7 +190,7 @@ readManifest(const std::string& file,
       if (!entry.is_object())
         refuse("is not a JSON object");
       if (entry.contains("name"))
-        what += " (" + io::quoted(entry["name"].dump()) + ")";
+        what += " (" + io::inQuotes(entry["name"].dump()) + ")";
       BatchPair pair = pairOf(entry, settings, use_suggested_prior);
       if (!names.insert(pair.name).second)
         refuse("another pair has this name, too");

@@ -144,7 +144,7 @@ parametersOf(const Eigen::Matrix4d& pose)
 }
 
 Eigen::Matrix4d
-matrixOf(const Parameters& parameters)
+transformOf(const Parameters& parameters)
 {
   const PoseView<double> view(parameters.data());
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -246,7 +246,7 @@ public:
     if (summary.termination_type != ceres::CONVERGENCE)
       result.complaint = "the poses have not converged: " + summary.message;
     for (const Parameters& parameters : parameters_)
-      result.poses.push_back({poseOf(matrixOf(parameters)), Matrix6d::Zero()});
+      result.poses.push_back({poseOf(transformOf(parameters)), Matrix6d::Zero()});
     for (const PlacedEdge& edge : edges_)
       result.squared_errors.push_back(squaredErrorOf(edge));
     addCovariances(result);

@@ -85,7 +85,7 @@ printHelpOrVersion(const po::variables_map& given,
 void
 refuseValue(const std::string& text, const std::string& expected)
 {
-  throw BadValue(": " + quoted(text) + " is not " + expected);
+  throw BadValue(": " + inQuotes(text) + " is not " + expected);
 }
 
 po::typed_value<std::string>*
@@ -135,7 +135,7 @@ takeClouds(const po::variables_map& given,
   if (clouds.size() > 2)
     throw UsageError(
         "expected one source and one target cloud, but got a third file: " +
-        quoted(clouds[2]));
+        inQuotes(clouds[2]));
   source_file = clouds[0];
   target_file = clouds[1];
 }

@@ -25,7 +25,7 @@ struct FileError : std::runtime_error {
 /** \brief A piece of a file or of the command line in quotes, fit for a terminal: not
  * too long, and without control characters. */
 inline std::string
-quoted(std::string_view text)
+inQuotes(std::string_view text)
 {
   constexpr std::size_t max_length = 60;
   std::string shown(text.substr(0, max_length));

@@ -33,7 +33,7 @@ readMatrixFile(const std::string& file)
                         " numbers in place of the 16 of a 4x4 matrix");
   for (std::size_t i = 0; i < 16; ++i)
     if (!readNumber(items[i], matrix.data()[i]))
-      throw FileError(file, io::quoted(items[i]) + " is not a number");
+      throw FileError(file, io::inQuotes(items[i]) + " is not a number");
   const std::string complaint = complaintAboutMotion(matrix);
   if (!complaint.empty())
     throw FileError(file, complaint);
@@ -65,7 +65,7 @@ readMotion(const std::string& option, const std::string& text)
     return matrixOf(pose);
   std::error_code ignored;
   if (items.size() > 1 && !std::filesystem::exists(text, ignored))
-    throw UsageError("--" + option + ": " + io::quoted(text) +
+    throw UsageError("--" + option + ": " + io::inQuotes(text) +
                      " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad] nor "
                      "a file");
   return readMatrixFile(text);

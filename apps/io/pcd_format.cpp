@@ -70,10 +70,10 @@ complaintAboutPoint(const std::vector<std::string_view>& values,
     for (std::uint32_t i = 0; i < field.count; ++i, ++value) {
       double number = 0.0;
       if (!readNumber(*value, number))
-        return ": " + quoted(*value) + " is not a number";
+        return ": " + inQuotes(*value) + " is not a number";
       if (!fits(number, field))
-        return ": " + quoted(*value) + " does not fit into the integer " +
-               quoted(field.name);
+        return ": " + inQuotes(*value) + " does not fit into the integer " +
+               inQuotes(field.name);
     }
   return "";
 }

@@ -57,7 +57,7 @@ private:
   [[noreturn]] void
   failInLine() const
   {
-    fail("bad line in the header: " + quoted(line_));
+    fail("bad line in the header: " + inQuotes(line_));
   }
 
   void
@@ -68,7 +68,7 @@ private:
     const int key = static_cast<int>(found - keys.begin());
     if (found == keys.end())
       fail(last_key_ < 0 ? "has no PCD header"
-                         : "unknown line in the header: " + quoted(line_));
+                         : "unknown line in the header: " + inQuotes(line_));
     if (key <= last_key_)
       fail(std::string("the header's line ") + *found + " is out of order");
     last_key_ = key;
@@ -146,7 +146,7 @@ private:
   takeEncoding(std::string_view encoding)
   {
     if (encoding != "ascii" && encoding != "binary" && encoding != "binary_compressed")
-      fail("unknown encoding " + quoted(encoding));
+      fail("unknown encoding " + inQuotes(encoding));
     header_.encoding = encoding;
   }
 
@@ -178,7 +178,7 @@ private:
         (is_integer && (size == 1 || size == 2)) ||
         ((is_integer || field.type == 'F') && (size == 4 || size == 8));
     if (!is_good || field.count == 0)
-      fail("the header's field " + quoted(field.name) +
+      fail("the header's field " + inQuotes(field.name) +
            " has a bad SIZE, TYPE or COUNT");
     if (field.name == "_" && header_.encoding == "binary_compressed")
       fail("padding fields ('_') in compressed data are not supported");

@@ -19,10 +19,10 @@ checkAsciiLine(const InputFile& file, const PlyElement& element, const Words& va
   double number;
   for (const auto value : values)
     if (!readNumber(value, number))
-      throw FileError(file.name, quoted(value) + " is not a number");
+      throw FileError(file.name, inQuotes(value) + " is not a number");
   if (!element.has_list && values.size() != element.properties.size())
     throw FileError(file.name,
-                    "an element " + quoted(element.name) + " has " +
+                    "an element " + inQuotes(element.name) + " has " +
                         std::to_string(values.size()) + " values in place of " +
                         std::to_string(element.properties.size()));
 }
@@ -55,7 +55,7 @@ checkBinaryBody(InputFile& file, const PlyHeader& header)
       throw FileError(file.name,
                       "is cut off, or its header is wrong: it says " +
                           std::to_string(element.count) + " elements " +
-                          quoted(element.name) + ", but there is room for " +
+                          inQuotes(element.name) + ", but there is room for " +
                           std::to_string(num_left / element.min_bytes));
     num_left -= element.count * element.min_bytes;
   }

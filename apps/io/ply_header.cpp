@@ -111,7 +111,7 @@ private:
     else if (items[0] == "obj_info" && items[0].data() == line_.data())
       is_good = takeInfo(items);
     if (!is_good)
-      fail("bad line in the header: " + quoted(line_));
+      fail("bad line in the header: " + inQuotes(line_));
     if (items[0] != "obj_info" && ++num_definitions_ > max_num_definitions)
       fail("has more than " + std::to_string(max_num_definitions) + " properties");
   }
@@ -151,7 +151,7 @@ private:
       return false;
     for (const PlyProperty& other : element.properties)
       if (other.name == items.back())
-        fail("two properties are called " + quoted(items.back()));
+        fail("two properties are called " + inQuotes(items.back()));
     element.min_bytes += ply_type_sizes.at(items[type]);
     element.has_list |= is_list;
     element.properties.push_back(
@@ -184,7 +184,7 @@ private:
   {
     for (const PlyElement& element : header_.elements) {
       if (element.count > 0 && element.properties.empty())
-        fail("an element " + quoted(element.name) + " has no properties");
+        fail("an element " + inQuotes(element.name) + " has no properties");
       if (element.name != "vertex")
         continue;
       if (header_.num_points > 0)

@@ -1,5 +1,6 @@
 #include "io/posterior_file.h"
 
+#include "io/coordinates.h"
 #include "io/errors.h"
 #include "io/input_file.h"
 #include "io/json_file.h"
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace bayesian_icp::io {
@@ -27,7 +29,7 @@ public:
   Node(const std::string& file, const json& value) : file_(file), value_(value) {}
 
   Node
-  operator[](const char* key) const
+  operator[](const std::string& key) const
   {
     const std::string path = path_ + (path_.empty() ? "" : ".") + key;
     if (!value_.is_object())
@@ -120,10 +122,9 @@ checkSchema(const std::string& name, const json& document)
 Vector6d
 meanOf(const Node& mean)
 {
-  const char* const keys[] = {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"};
   Vector6d pose;
-  for (Eigen::Index k = 0; k < 6; ++k)
-    pose[k] = mean[keys[k]].number();
+  for (std::size_t k = 0; k < 6; ++k)
+    pose[static_cast<Eigen::Index>(k)] = mean[app::coordinateKey(k)].number();
   return pose;
 }
 

@@ -35,8 +35,8 @@ requireFrame(const std::string& what,
              const std::string& expected)
 {
   if (withoutSlash(frame) != withoutSlash(expected))
-    throw Refusal("the " + what + "'s frame_id is " + io::quoted(frame) +
-                  ", but must be " + io::quoted(expected));
+    throw Refusal("the " + what + "'s frame_id is " + io::inQuotes(frame) +
+                  ", but must be " + io::inQuotes(expected));
 }
 
 /** \param[in] what the cloud's name in complaints */

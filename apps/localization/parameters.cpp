@@ -33,13 +33,13 @@ argumentOf(const std::string& parameter,
   });
   if (option == known.end() || parameter.find('-') != std::string::npos ||
       std::find(excluded.begin(), excluded.end(), name) != excluded.end())
-    throw io::UsageError("there is no parameter " + io::quoted(parameter));
+    throw io::UsageError("there is no parameter " + io::inQuotes(parameter));
   if (text.empty())
     throw io::UsageError("the parameter " + parameter + " is empty");
   if ((*option)->semantic()->max_tokens() > 0)
     return "--" + name + "=" + text;
   if (text != "true" && text != "false")
-    throw io::UsageError("the parameter " + parameter + " is " + io::quoted(text) +
+    throw io::UsageError("the parameter " + parameter + " is " + io::inQuotes(text) +
                          ", but must be true or false");
   return text == "true" ? "--" + name : "";
 }

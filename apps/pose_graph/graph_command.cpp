@@ -73,7 +73,7 @@ loopOf(const std::string& text, std::size_t num_scans)
                        target != source &&
                        static_cast<std::size_t>(std::max(target, source)) < num_scans;
   if (!is_good)
-    throw io::UsageError("--loop: " + io::quoted(text) +
+    throw io::UsageError("--loop: " + io::inQuotes(text) +
                          " is not two different scans I,J from 0 to " +
                          io::textOf(num_scans - 1));
   return {target, source};
@@ -86,7 +86,7 @@ check(const po::variables_map& given, const GraphCommand& command)
   if (command.output_file.empty() && command.optimized_folder.empty())
     throw io::UsageError("--output or --optimize is needed");
   if (std::filesystem::is_directory(command.output_file))
-    throw io::UsageError("--output: " + io::quoted(command.output_file) +
+    throw io::UsageError("--output: " + io::inQuotes(command.output_file) +
                          " is a folder; --optimize takes one");
   if (given.count("robust-loss") > 0 && command.optimized_folder.empty())
     throw io::UsageError("--robust-loss needs --optimize");

@@ -63,7 +63,7 @@ checkGroup(const std::string& name,
   for (const auto& [key, value] : group.items()) {
     const std::string path = keyPath(name, key);
     if (keys.count(key) == 0)
-      throw io::UsageError("unknown key " + io::quoted(path));
+      throw io::UsageError("unknown key " + io::inQuotes(path));
     if (path != "icp.filter" && !value.is_number())
       refuse(path, value, "a number");
   }
@@ -75,7 +75,7 @@ checkKeys(const json& document)
   for (const auto& [name, value] : document.items()) {
     const auto found = keys_of_groups.find(name);
     if (found == keys_of_groups.end())
-      throw io::UsageError("unknown key " + io::quoted(name));
+      throw io::UsageError("unknown key " + io::inQuotes(name));
     if (!found->second.empty())
       checkGroup(name, found->second, value);
   }
@@ -123,7 +123,7 @@ refuseWhatIsMissing(const json& document)
     refuse("method", method, "the name of a method");
   const std::string name = method.get<std::string>();
   if (keys_of_groups.count(name) == 0 || name == "prior" || name == "icp")
-    throw io::UsageError("unknown method " + io::quoted(name));
+    throw io::UsageError("unknown method " + io::inQuotes(name));
   if (name != "preconditioned_sgld")
     throw io::UsageError("the method '" + name +
                          "' is not available in this version; preconditioned_sgld is");

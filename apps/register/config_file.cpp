@@ -33,8 +33,8 @@ settingsOfPosterior(const std::optional<Preset>& preset, const json& document)
   const json version = document.value("schema_version", json());
   if (document["schema"] != io::posterior_schema_name ||
       version != io::posterior_schema_version)
-    throw io::UsageError("unknown schema " + io::quoted(document["schema"].dump()) +
-                         " version " + io::quoted(version.dump()));
+    throw io::UsageError("unknown schema " + io::inQuotes(document["schema"].dump()) +
+                         " version " + io::inQuotes(version.dump()));
   if (!document.contains("options"))
     throw io::UsageError("the key 'options' is missing");
   return settingsWith(preset, document["options"]);

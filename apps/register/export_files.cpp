@@ -65,7 +65,7 @@ readExportFormats(const std::string& list)
   for (const auto name : io::splitAt(',', list)) {
     ExportFormat format{};
     if (!readChoice(std::string(name), format))
-      throw io::UsageError("--export: " + io::quoted(name) + " is not " +
+      throw io::UsageError("--export: " + io::inQuotes(name) + " is not " +
                            namesOfChoices(format));
     if (std::find(formats.begin(), formats.end(), format) == formats.end())
       formats.push_back(format);
@@ -90,7 +90,7 @@ readTimestamp(const std::string& seconds)
   options.timestamp_ns = nanoseconds;
   if (!is_good || !options.validate().empty())
     throw io::UsageError(
-        "--timestamp: " + io::quoted(seconds) +
+        "--timestamp: " + io::inQuotes(seconds) +
         " is not a number of seconds from 0 to below 2^31 with at most "
         "nine decimals");
   return nanoseconds;

@@ -31,7 +31,7 @@ refuse(const std::string& path,
        const nlohmann::json& value,
        const std::string& expected)
 {
-  throw io::UsageError(path + " is " + io::quoted(value.dump()) + ", but must be " +
+  throw io::UsageError(path + " is " + io::inQuotes(value.dump()) + ", but must be " +
                        expected);
 }
 

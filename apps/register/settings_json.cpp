@@ -167,7 +167,7 @@ private:
   std::string path_;
 };
 
-struct SettingsReader {
+struct JsonReader {
   const json& document;
   std::set<std::string> known;
 
@@ -204,7 +204,7 @@ struct SettingsReader {
     refuseOfOtherPresets(path, preset, [&](const Field& field) {
       return path == field.group || path == keyPath(field.group, field.key);
     });
-    throw io::UsageError("unknown key " + io::quoted(path));
+    throw io::UsageError("unknown key " + io::inQuotes(path));
   }
 };
 
@@ -227,7 +227,7 @@ settingsOf(const json& document, const Settings& defaults)
     throw io::UsageError("has settings of several presets, as former versions wrote "
                          "them: keep those of one");
   Settings settings = defaults;
-  SettingsReader reader{document, {}};
+  JsonReader reader{document, {}};
   visitSettings(settings, reader);
   reader.refuseUnknownKeys(settings.options.preset);
   if (document.contains(json::json_pointer("/sgld/step_size")))

@@ -124,7 +124,7 @@ convert(const std::string& option, const std::string& text, Automatic<T>& value)
 }
 
 /** Reads the settings that the command line has. */
-struct SettingsReader {
+struct OptionReader {
   const po::variables_map& given;
 
   template <typename T>
@@ -196,7 +196,7 @@ settingsFrom(const po::variables_map& given,
   io::takeOptions(given, first);
   if (!config.empty())
     settings = readConfigFile(config, preset, note);
-  SettingsReader reader{given};
+  OptionReader reader{given};
   visitSettings(settings, reader);
   if (settings.are_lengths_scaled)
     refuseLengths(given, config);

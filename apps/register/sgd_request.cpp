@@ -176,7 +176,7 @@ isSgdIcpAskedFor(int argc, const char* const* argv)
                                  ? given["method"].as<std::string>()
                                  : std::string("bayesian-icp");
   if (method != "bayesian-icp" && method != "sgd-icp")
-    throw io::UsageError("--method: " + io::quoted(method) +
+    throw io::UsageError("--method: " + io::inQuotes(method) +
                          " is not bayesian-icp or sgd-icp");
   if (method == "sgd-icp")
     return true;

@@ -10,7 +10,7 @@ namespace bayesian_icp::app {
 namespace {
 
 /** Where the errors of the parts are. */
-constexpr Eigen::Index target = 0, scan = 6, velocity = 12;
+constexpr Eigen::Index of_target = 0, of_scan = 6, of_velocity = 12;
 
 /** J with exp(xi + d) = exp(xi) exp(J d) to first order in d: the sum of
  * (-ad(xi))^k / (k + 1)! (Barfoot 2017, eq. 7.77). */
@@ -43,13 +43,13 @@ MotionFilter::MotionFilter(const MotionModel& model)
 : model_(model)
 , velocity_(model.velocity)
 {
-  covariance_.block<6, 6>(velocity, velocity) = model.velocity_covariance;
+  covariance_.block<6, 6>(of_velocity, of_velocity) = model.velocity_covariance;
 }
 
 void
 MotionFilter::doubtVelocity()
 {
-  covariance_.block<6, 6>(velocity, velocity) += model_.velocity_covariance;
+  covariance_.block<6, 6>(of_velocity, of_velocity) += model_.velocity_covariance;
 }
 
 void
@@ -60,13 +60,13 @@ MotionFilter::predict(double seconds)
     noise << Eigen::Vector3d::Constant(model_.acceleration * seconds),
         Eigen::Vector3d::Constant(model_.angular_acceleration * seconds);
   has_moved_ = true;
-  covariance_.block<6, 6>(velocity, velocity).diagonal() += noise.cwiseAbs2();
+  covariance_.block<6, 6>(of_velocity, of_velocity).diagonal() += noise.cwiseAbs2();
   const Vector6d motion = velocity_ * seconds;
   const Eigen::Matrix4d step = expSE3(motion);
   scan_in_target_ = scan_in_target_ * step;
   State F = State::Identity();
-  F.block<6, 6>(scan, scan) = adjointOf(step.inverse());
-  F.block<6, 6>(scan, velocity) = seconds * rightJacobian(motion);
+  F.block<6, 6>(of_scan, of_scan) = adjointOf(step.inverse());
+  F.block<6, 6>(of_scan, of_velocity) = seconds * rightJacobian(motion);
   covariance_ = symmetric(State(F * covariance_ * F.transpose()));
 }
 
@@ -75,17 +75,17 @@ MotionFilter::update(const GaussianPose& measured)
 {
   const Vector6d innovation =
       logSE3(scan_in_target_.inverse() * matrixOf(measured.mean));
-  const Eigen::LDLT<Matrix6d> S(covariance_.block<6, 6>(scan, scan) +
+  const Eigen::LDLT<Matrix6d> S(covariance_.block<6, 6>(of_scan, of_scan) +
                                 measured.covariance);
-  const Eigen::Matrix<double, 18, 6> cross = covariance_.middleCols<6>(scan);
+  const Eigen::Matrix<double, 18, 6> cross = covariance_.middleCols<6>(of_scan);
   const Eigen::Matrix<double, 18, 6> gain = S.solve(cross.transpose()).transpose();
   const Eigen::Matrix<double, 18, 1> correction = gain * innovation;
-  target_ = target_ * expSE3(correction.segment<6>(target));
-  scan_in_target_ = scan_in_target_ * expSE3(correction.segment<6>(scan));
-  velocity_ += correction.segment<6>(velocity);
+  target_ = target_ * expSE3(correction.segment<6>(of_target));
+  scan_in_target_ = scan_in_target_ * expSE3(correction.segment<6>(of_scan));
+  velocity_ += correction.segment<6>(of_velocity);
   // Joseph's form stays positive semi-definite.
   State rest = State::Identity();
-  rest.middleCols<6>(scan) -= gain;
+  rest.middleCols<6>(of_scan) -= gain;
   covariance_ = symmetric(State(rest * covariance_ * rest.transpose() +
                                 gain * measured.covariance * gain.transpose()));
   return innovation.dot(S.solve(innovation));
@@ -95,9 +95,9 @@ void
 MotionFilter::makeScanTheTarget()
 {
   State F = State::Identity();
-  F.block<6, 6>(target, target) = adjointOf(scan_in_target_.inverse());
-  F.block<6, 6>(target, scan).setIdentity();
-  F.block<6, 6>(scan, scan).setZero();
+  F.block<6, 6>(of_target, of_target) = adjointOf(scan_in_target_.inverse());
+  F.block<6, 6>(of_target, of_scan).setIdentity();
+  F.block<6, 6>(of_scan, of_scan).setZero();
   covariance_ = symmetric(State(F * covariance_ * F.transpose()));
   target_ = target_ * scan_in_target_;
   scan_in_target_.setIdentity();
@@ -106,7 +106,7 @@ MotionFilter::makeScanTheTarget()
 GaussianPose
 MotionFilter::poseInTarget() const
 {
-  return {poseOf(scan_in_target_), covariance_.block<6, 6>(scan, scan)};
+  return {poseOf(scan_in_target_), covariance_.block<6, 6>(of_scan, of_scan)};
 }
 
 GaussianPose
@@ -114,7 +114,7 @@ MotionFilter::pose() const
 {
   MotionFilter moved = *this;
   moved.makeScanTheTarget();
-  return {poseOf(moved.target_), moved.covariance_.block<6, 6>(target, target)};
+  return {poseOf(moved.target_), moved.covariance_.block<6, 6>(of_target, of_target)};
 }
 
 } // namespace bayesian_icp::app

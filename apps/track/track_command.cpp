@@ -79,7 +79,7 @@ timeOf(std::string_view text, const std::string& where)
 {
   double time = 0.0;
   if (!io::readNumber(text, time))
-    throw io::FileError(where, io::quoted(text) + " is not a number (s)");
+    throw io::FileError(where, io::inQuotes(text) + " is not a number (s)");
   return time;
 }
 

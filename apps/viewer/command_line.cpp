@@ -265,7 +265,7 @@ takeFiles(const po::variables_map& given, Request& request)
       request.posterior_file = file;
     else
       throw io::UsageError("expected one posterior, but got a second: " +
-                           io::quoted(file));
+                           io::inQuotes(file));
   }
   if (clouds.empty() && !request.posterior_file.empty())
     return;

@@ -21,7 +21,7 @@ requireDisplay()
   const char* name = std::getenv("DISPLAY");
   const bool is_named = name != nullptr && *name != '\0';
   throw std::runtime_error(
-      (is_named ? "the X display " + io::quoted(name) + " does not answer"
+      (is_named ? "the X display " + io::inQuotes(name) + " does not answer"
                 : std::string("there is no X display (DISPLAY is not set)")) +
       "; without a screen run it by xvfb-run -a, with --screenshot");
 }

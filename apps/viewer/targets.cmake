@@ -37,6 +37,8 @@ if(BAYESIAN_ICP_BUILD_VIEWER)
     viewer/main.cpp
     viewer/scene_files.cpp
     viewer/window.cpp)
+  # X11's macros would change what is compiled with it.
+  set_source_files_properties(viewer/display.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   bayesian_icp_configure(pcl_bayesian_icp_viewer)
   target_link_libraries(
     pcl_bayesian_icp_viewer PRIVATE bayesian_icp_app_register bayesian_icp_viewer_scene

@@ -54,7 +54,7 @@ Window::Window(const ViewOptions& options, const std::vector<std::string>& cloud
 {
   has_users_camera_ = visualizer_->cameraParamsSet() || visualizer_->cameraFileLoaded();
   if (!options.camera.empty() && !has_users_camera_)
-    throw io::UsageError("-cam: " + io::quoted(options.camera) +
+    throw io::UsageError("-cam: " + io::inQuotes(options.camera) +
                          " is neither a camera as key c prints it nor a .cam file");
   if (!has_users_camera_ || options.is_size_given)
     visualizer_->getRenderWindow()->SetSize(options.width, options.height);

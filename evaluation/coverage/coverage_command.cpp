@@ -121,7 +121,7 @@ chosen(const Names& asked, const Names& known, const std::string& option)
         return std::count(known.begin(), known.end(), name) == 0;
       });
   if (unknown != asked.end())
-    throw io::UsageError("--" + option + ": there is no " + io::quoted(*unknown) +
+    throw io::UsageError("--" + option + ": there is no " + io::inQuotes(*unknown) +
                          ", but " + boost::algorithm::join(known, " "));
   return asked.empty() ? known : asked;
 }
@@ -189,7 +189,7 @@ conditionsOf(const CoverageOptions& options,
       if (std::count(known.begin(), known.end(), name) > 0)
         conditions.push_back(name);
     if (conditions.empty())
-      throw io::UsageError("--conditions: " + io::quoted(scene) + " has only " +
+      throw io::UsageError("--conditions: " + io::inQuotes(scene) + " has only " +
                            boost::algorithm::join(known, " "));
   }
   else if (options.is_quick)

@@ -19,7 +19,7 @@ deviationOf(const std::string& text)
   if (items.size() != 2 || !io::readNumber(items[0], sd.translation) ||
       !io::readNumber(items[1], sd.rotation) || !(sd.translation >= 0.0) ||
       !(sd.rotation >= 0.0) || std::isinf(sd.translation + sd.rotation))
-    throw io::BadValue(" is " + io::quoted(text) +
+    throw io::BadValue(" is " + io::inQuotes(text) +
                        ", but must be two numbers [m, rad], not negative, separated by "
                        "a comma");
   return sd;
@@ -103,7 +103,7 @@ refuseMisplaced(const po::variables_map& given, const CoverageOptions& options)
 }
 
 std::string
-helpText(const po::options_description& options)
+coverageHelp(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_evaluate coverage [options]
@@ -140,7 +140,7 @@ parseCoverageOptions(int argc, const char* const* argv)
   const po::variables_map given =
       io::splitCommandLine(argc, argv, description, nullptr);
   if (io::printHelpOrVersion(
-          given, "", [&description] { return helpText(description); }))
+          given, "", [&description] { return coverageHelp(description); }))
     return std::nullopt;
   io::takeOptions(given, description);
   options.sequences.seed = options.first_seed;

@@ -4,16 +4,11 @@
 #include "io/cloud_file.h"
 #include "io/errors.h"
 #include "io/text_hash.h"
+#include "methods/baseline_problem.h"
 
 #include <bayesian_icp/random.h>
 
 namespace bayesian_icp::evaluate {
-
-namespace {
-
-constexpr Eigen::Index max_source_points = 2000;
-
-} // namespace
 
 RealPairs::RealPairs(const std::string& folder)
 : folder_(folder + "/")
@@ -22,7 +17,8 @@ RealPairs::RealPairs(const std::string& folder)
   for (const ManifestEntry& entry : entries_)
     if (!entry.prior_sd)
       throw io::FileError(folder_ + manifest_name,
-                          "has no suggested_prior_sigma of " + io::quoted(entry.name));
+                          "has no suggested_prior_sigma of " +
+                              io::inQuotes(entry.name));
 }
 
 std::vector<std::string>
@@ -40,7 +36,7 @@ RealPairs::entryOf(const std::string& name) const
   for (const ManifestEntry& entry : entries_)
     if (entry.name == name)
       return entry;
-  throw io::FileError(folder_, "has no pair " + io::quoted(name));
+  throw io::FileError(folder_, "has no pair " + io::inQuotes(name));
 }
 
 std::shared_ptr<const RealPairs::Clouds>

@@ -105,7 +105,7 @@ SequencePairs::sequenceOf(const std::string& name) const
   for (const ScanSequence& sequence : sequences_)
     if (sequence.name == name)
       return sequence;
-  throw std::runtime_error("there is no set " + io::quoted(name));
+  throw std::runtime_error("there is no set " + io::inQuotes(name));
 }
 
 std::size_t

@@ -110,7 +110,7 @@ failuresText(const std::vector<ClosedCycle>& cycles)
 }
 
 std::string
-helpText(const po::options_description& options)
+cyclesHelp(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_evaluate cycles GRAPH.g2o [options]
@@ -164,7 +164,7 @@ runCyclesCommand(int argc, const char* const* argv)
   const po::variables_map given =
       io::splitCommandLine(argc, argv, description, "graph");
   if (io::printHelpOrVersion(
-          given, "", [&description] { return helpText(description); }))
+          given, "", [&description] { return cyclesHelp(description); }))
     return 0;
   io::takeOptions(given, description);
   const std::vector<std::string> files = io::optionTexts(given, "graph");

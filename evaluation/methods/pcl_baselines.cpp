@@ -20,7 +20,7 @@ using Cloud = pcl::PointCloud<Point>;
 
 /** Steps below which a registration has converged [m, rad], and how many it may take:
  * enough that where it stops is no part of its error. */
-constexpr double min_step = 1e-5;
+constexpr double transformation_epsilon = 1e-5;
 constexpr int max_steps = 200;
 
 /** Gradient at which GICP's inner solver stops; PCL's 1e-2 leaves 0.1 mm. */
@@ -152,7 +152,8 @@ fitPclIcp(const PclProblem& problem)
   pcl::IterativeClosestPoint<Point, Point> icp;
   icp.setInputSource(clouds.source);
   icp.setInputTarget(clouds.target);
-  icp.setTransformationEpsilon(min_step * min_step); // PCL's is a squared length
+  icp.setTransformationEpsilon(transformation_epsilon *
+                               transformation_epsilon); // PCL's is a squared length
   return align(icp, clouds, problem.guess);
 }
 
@@ -184,8 +185,8 @@ fitPclGicp(const PclProblem& problem)
   gicp.setInputTarget(clouds.target);
   gicp.setSourceCovariances(source_planes);
   gicp.setTargetCovariances(target_planes);
-  gicp.setTransformationEpsilon(min_step);
-  gicp.setRotationEpsilon(min_step);
+  gicp.setTransformationEpsilon(transformation_epsilon);
+  gicp.setRotationEpsilon(transformation_epsilon);
   gicp.setTranslationGradientTolerance(gicp_gradient_tolerance);
   gicp.setRotationGradientTolerance(gicp_gradient_tolerance);
   result.fit = align(gicp, clouds, problem.guess);

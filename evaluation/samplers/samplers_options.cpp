@@ -54,7 +54,7 @@ takeSamplers(const std::string& text, SamplersOptions& options)
   options.samplers = split(text, ',');
   for (const std::string& sampler : options.samplers)
     if (std::count(known.begin(), known.end(), sampler) == 0)
-      throw io::BadValue(": there is no " + io::quoted(sampler));
+      throw io::BadValue(": there is no " + io::inQuotes(sampler));
 }
 
 po::options_description
@@ -114,7 +114,7 @@ makeQuick(const po::variables_map& given, SamplersOptions& options)
 }
 
 std::string
-helpText(const po::options_description& options)
+samplersHelp(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_evaluate samplers [options]
@@ -151,7 +151,7 @@ parseSamplersOptions(int argc, const char* const* argv)
   const po::variables_map given =
       io::splitCommandLine(argc, argv, description, nullptr);
   if (io::printHelpOrVersion(
-          given, "", [&description] { return helpText(description); }))
+          given, "", [&description] { return samplersHelp(description); }))
     return std::nullopt;
   io::takeOptions(given, description);
   if (options.is_quick)

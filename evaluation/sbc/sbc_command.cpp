@@ -31,7 +31,7 @@ chosenSamplers(const std::vector<std::string>& names)
           return sampler.name == name;
         });
     if (found == all.end())
-      throw io::UsageError("--sampler: there is no " + io::quoted(name));
+      throw io::UsageError("--sampler: there is no " + io::inQuotes(name));
     chosen.push_back(*found);
   }
   return chosen;
@@ -82,7 +82,7 @@ describeOptions(SbcOptions& options, RankStudy& study)
 }
 
 std::string
-helpText(const po::options_description& options)
+sbcHelp(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_evaluate sbc [options]
@@ -112,7 +112,7 @@ runSbcCommand(int argc, const char* const* argv)
   const po::variables_map given =
       io::splitCommandLine(argc, argv, description, nullptr);
   if (io::printHelpOrVersion(
-          given, "", [&description] { return helpText(description); }))
+          given, "", [&description] { return sbcHelp(description); }))
     return 0;
   io::takeOptions(given, description);
   study.samplers = chosenSamplers(options.samplers);

@@ -93,7 +93,8 @@ readScanPair(const std::string& folder, const std::string& name)
                  : readTransform(folder + "/" + entry.initial_guess));
       return pair;
     }
-  throw io::FileError(folder + "/" + manifest_name, "has no pair " + io::quoted(name));
+  throw io::FileError(folder + "/" + manifest_name,
+                      "has no pair " + io::inQuotes(name));
 }
 
 void

@@ -71,7 +71,7 @@ motionOf(const std::string& line)
   std::vector<double> numbers;
   for (const std::string_view word : io::words(line))
     if (!io::readNumber(word, numbers.emplace_back()))
-      throw std::runtime_error(io::quoted(word) + " is not a number");
+      throw std::runtime_error(io::inQuotes(word) + " is not a number");
   return motionOf(numbers);
 }
 
@@ -112,7 +112,7 @@ readSequence(const fs::path& folder)
   try {
     sequence.quality = set.at("quality");
     if (sequence.quality != "A" && sequence.quality != "B" && sequence.quality != "C")
-      throw std::runtime_error("quality is " + io::quoted(sequence.quality) +
+      throw std::runtime_error("quality is " + io::inQuotes(sequence.quality) +
                                ", but must be A, B or C");
     sequence.truth_sd = {lengthAt(set, "accuracy_translation_m"),
                          lengthAt(set, "accuracy_rotation_rad")};

@@ -60,7 +60,7 @@ recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
                  std::back_inserter(chosen),
                  [&](const auto& one) { return one.recording.name == name; });
     if (chosen.size() == before)
-      throw io::UsageError("--recordings: there is no " + io::quoted(name));
+      throw io::UsageError("--recordings: there is no " + io::inQuotes(name));
   }
   return chosen;
 }
@@ -183,7 +183,7 @@ tableOf(const std::vector<TrajectoryRun>& runs)
 }
 
 std::string
-helpText(const po::options_description& options)
+trajectoriesHelp(const po::options_description& options)
 {
   std::ostringstream help;
   help << R"(Usage: pcl_bayesian_icp_evaluate trajectories [FOLDER] [options]
@@ -265,7 +265,7 @@ runTrajectoriesCommand(int argc, const char* const* argv)
   const po::variables_map given =
       io::splitCommandLine(argc, argv, description, "folder");
   if (io::printHelpOrVersion(
-          given, "", [&description] { return helpText(description); }))
+          given, "", [&description] { return trajectoriesHelp(description); }))
     return 0;
   io::takeOptions(given, description);
   const std::vector<std::string> folders = io::optionTexts(given, "folder");

@@ -16,7 +16,7 @@
 namespace bayesian_icp {
 namespace {
 
-const Eigen::Vector3d centre(1.0, 2.0, 3.0);
+const Eigen::Vector3d body_centre(1.0, 2.0, 3.0);
 
 /** A flat sheet with noise. */
 const SurfaceModel&
@@ -38,7 +38,7 @@ CalibratedEstimate
 diagonalEstimate()
 {
   CalibratedEstimate estimate;
-  estimate.centre = centre;
+  estimate.centre = body_centre;
   estimate.residual_scale = 1.5;
   estimate.scores.num_active = 90;
   estimate.keep << 1.0, 0.9, 0.4, 0.0, 1.0, 0.5;
@@ -71,7 +71,7 @@ TEST(Report, ClosedFormOfADiagonalEstimate)
   // Variance 1 / 400 m^2 of the posterior, and half the noise.
   EXPECT_NEAR(
       report.basin_distance, 0.1 / std::hypot(0.05, 0.5 * report.noise_scale), 1e-12);
-  EXPECT_EQ(report.centre, centre);
+  EXPECT_EQ(report.centre, body_centre);
 
   // Sorted by 1 / sqrt(4 (1 + relative information)).
   const double information[] = {399.0, 99.0, 24.0, 8.0, 3.0, 0.0};
@@ -91,7 +91,7 @@ TEST(Report, ClosedFormOfADiagonalEstimate)
     EXPECT_NEAR(direction.prior_standard_deviation, 0.5, 1e-12);
     EXPECT_NEAR(direction.relative_information, information[i], 1e-10);
     EXPECT_EQ(direction.observability, observability[i]) << i;
-    EXPECT_EQ(direction.description, describeTwist(direction.twist, centre));
+    EXPECT_EQ(direction.description, describeTwist(direction.twist, body_centre));
   }
 }
 

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /** Noise of residuals on known surfaces [m]; 1 in the scores' units. */
-constexpr double sigma = 0.001;
+constexpr double residual_noise = 0.001;
 constexpr Index num_points = 1000;
 
 struct NamedSheet {
@@ -51,7 +51,7 @@ fittedScores(const test::Sheet& sheet, const VectorXd& u, const Matrix6d& precis
 {
   PointScores points;
   points.positions = sheet.points;
-  points.jacobians = test::distanceJacobians(sheet) / sigma;
+  points.jacobians = test::distanceJacobians(sheet) / residual_noise;
   const Matrix6d information =
       points.jacobians * points.jacobians.transpose() + 5.0 * precision;
   const Vector6d xi = information.ldlt().solve(points.jacobians * u);
@@ -133,7 +133,7 @@ TEST(ScoreClusters, CorrelatedNoiseHasTheCovarianceOfManyScans)
     SCOPED_TRACE(surface.name);
     Random random(83, 0);
     const MatrixXd K = smoothing(surface.sheet.points, 0.004);
-    const Matrix6Xd jacobians = test::distanceJacobians(surface.sheet) / sigma;
+    const Matrix6Xd jacobians = test::distanceJacobians(surface.sheet) / residual_noise;
     const Matrix6d truth = simulatedCovariance(jacobians, K, random);
     Matrix6d mean = Matrix6d::Zero();
     for (int k = 0; k < num_scans; ++k) {
@@ -223,7 +223,7 @@ TEST(ScoreClusters, ADirectionThatFewClustersHoldIsUnbiased)
     sheet.points(0, i + num_far) -= 20.0;
   }
   const Matrix6d precision = 1e-6 * Matrix6d::Identity();
-  const Matrix6Xd jacobians = test::distanceJacobians(sheet) / sigma;
+  const Matrix6Xd jacobians = test::distanceJacobians(sheet) / residual_noise;
   const Matrix6d truth = jacobians * jacobians.transpose();
   const Matrix6d working_information = truth + 5.0 * precision;
   Vector6d tilt = Vector6d::Zero();

@@ -319,8 +319,8 @@ TEST_P(DropInClouds, WithTreesThatSearchByThemselves)
 }
 
 /** Distances along z count ten times. */
-struct Stretched : PointRepresentation<PointXYZ> {
-  Stretched() { nr_dimensions_ = 3; }
+struct TenfoldHeights : PointRepresentation<PointXYZ> {
+  TenfoldHeights() { nr_dimensions_ = 3; }
   void
   copyToFloatArray(const PointXYZ& point, float* out) const override
   {
@@ -333,10 +333,10 @@ struct Stretched : PointRepresentation<PointXYZ> {
 TEST_P(DropInClouds, WithPointRepresentations)
 {
   expectSameWith(
-      [](Icp& icp) { icp.setPointRepresentation(pcl::make_shared<Stretched>()); });
+      [](Icp& icp) { icp.setPointRepresentation(pcl::make_shared<TenfoldHeights>()); });
   expectSameWith([](Icp& icp) {
     const auto estimation = pcl::make_shared<Estimation>();
-    estimation->setPointRepresentation(pcl::make_shared<Stretched>());
+    estimation->setPointRepresentation(pcl::make_shared<TenfoldHeights>());
     icp.setCorrespondenceEstimation(estimation);
   });
 }
@@ -534,22 +534,23 @@ TEST_P(DropInTrees, ARepresentationThatTheTreeCannotBeToldOfIsRefused)
   const auto own_search = pcl::make_shared<OwnSearch>();
   expectSame(alignedWith([&](auto& icp) {
                icp.setSearchMethodTarget(own_search);
-               icp.setPointRepresentation(pcl::make_shared<Stretched>());
+               icp.setPointRepresentation(pcl::make_shared<TenfoldHeights>());
              }),
              expected);
-  const auto stretched = alignedWith(
-      [](auto& icp) { icp.setPointRepresentation(pcl::make_shared<Stretched>()); });
+  const auto stretched = alignedWith([](auto& icp) {
+    icp.setPointRepresentation(pcl::make_shared<TenfoldHeights>());
+  });
   ASSERT_NE(stretched.final_transformation, expected.final_transformation);
   own_search->num_queries = 0;
   expectSame(alignedWith([&](auto& icp) {
-               icp.setPointRepresentation(pcl::make_shared<Stretched>());
+               icp.setPointRepresentation(pcl::make_shared<TenfoldHeights>());
                icp.setSearchMethodTarget(own_search);
              }),
              stretched);
   EXPECT_EQ(own_search->num_queries, 0);
   // Once it is not wanted any more, the tree is welcome.
   expectSame(alignedWith([&](auto& icp) {
-               icp.setPointRepresentation(pcl::make_shared<Stretched>());
+               icp.setPointRepresentation(pcl::make_shared<TenfoldHeights>());
                icp.setPointRepresentation(nullptr);
                icp.setSearchMethodTarget(own_search);
              }),

@@ -18,12 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void
-write(const std::string& file, const std::string& text)
-{
-  std::ofstream(file, std::ios::binary) << text;
-}
-
 class RealPairsTest : public FolderTest {};
 
 /** A pair of 40 points with the source a half turn about z from the target. */
@@ -39,12 +33,12 @@ writePair(const fs::path& folder)
   const std::string header =
       "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\n"
       "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 40\nDATA ascii\n";
-  write((folder / "pair/source.pcd").string(), header + points);
-  write((folder / "pair/target.pcd").string(), header + points);
-  write((folder / "pair/truth.txt").string(),
-        "-1 0 0 0.5\n0 -1 0 0\n0 0 1 0\n0 0 0 1\n");
-  write((folder / "manifest.json").string(),
-        R"([{"name": "pair",
+  writeFile((folder / "pair/source.pcd").string(), header + points);
+  writeFile((folder / "pair/target.pcd").string(), header + points);
+  writeFile((folder / "pair/truth.txt").string(),
+            "-1 0 0 0.5\n0 -1 0 0\n0 0 1 0\n0 0 0 1\n");
+  writeFile((folder / "manifest.json").string(),
+            R"([{"name": "pair",
             "files": {"source": "pair/source.pcd", "target": "pair/target.pcd",
                       "ground_truth": "pair/truth.txt"},
             "ground_truth_accuracy": {"translation_m": 0.3, "rotation_deg": 9.0},
@@ -86,9 +80,9 @@ TEST_F(RealPairsTest, RealPosesAreDrawnFromThePrior)
 TEST_F(RealPairsTest, BadFoldersOfPairsAreNamed)
 {
   EXPECT_THROW(RealPairs((folder_ / "none").string()), io::FileError);
-  write((folder_ / "manifest.json").string(), R"([{"name": "pair"}])");
+  writeFile((folder_ / "manifest.json").string(), R"([{"name": "pair"}])");
   EXPECT_THROW(RealPairs(folder_.string()), io::FileError);
   writePair(folder_);
-  write((folder_ / "pair/truth.txt").string(), "1 0 0 0\n0 1 0 0\n");
+  writeFile((folder_ / "pair/truth.txt").string(), "1 0 0 0\n0 1 0 0\n");
   EXPECT_THROW(RealPairs(folder_.string()).makeCase("pair", 1), io::FileError);
 }

@@ -31,12 +31,6 @@ constexpr char set_text[] =
     R"({"name": "hall", "quality": "B", "accuracy_translation_m": 0.003,
         "accuracy_rotation_rad": 0.002, "lost_displacement_m": 0.1})";
 
-void
-write(const fs::path& file, const std::string& text)
-{
-  std::ofstream(file, std::ios::binary) << text;
-}
-
 /** The 12 numbers of a 3 x 4 matrix, row by row, in the frame of JSON or as they are.
  */
 std::string
@@ -71,7 +65,7 @@ protected:
     FolderTest::SetUp();
     set_ = folder_ / "hall";
     fs::create_directories(set_);
-    write(set_ / "set.json", set_text);
+    writeFile(set_ / "set.json", set_text);
     auto sensor = simulator::defaultOptions("room").sensor;
     sensor.lidar.azimuth_step = 2.0;
     std::string poses;
@@ -85,7 +79,7 @@ protected:
       writeCloud(set_ / ("scan_000" + std::to_string(scan) + ".pcd"), scans_.back());
       poses += textOf(poseOfScan(scan)) + '\n';
     }
-    write(set_ / "poses.txt", poses);
+    writeFile(set_ / "poses.txt", poses);
   }
 
   SequencePairs
@@ -117,9 +111,9 @@ protected:
   SequenceOptions
   withRow(const Isometry3d& guess, const Isometry3d& truth) const
   {
-    write(folder_ / "rows.jsonl",
-          R"({"set": "hall", "pair": 1, "nees": 3, "guess": )" + textOf(guess, true) +
-              ", \"truth\": " + textOf(truth, true) + "}\n");
+    writeFile(folder_ / "rows.jsonl",
+              R"({"set": "hall", "pair": 1, "nees": 3, "guess": )" +
+                  textOf(guess, true) + ", \"truth\": " + textOf(truth, true) + "}\n");
     SequenceOptions options;
     options.rows_file = (folder_ / "rows.jsonl").string();
     return options;
@@ -229,23 +223,23 @@ TEST_F(SequencesTest, WhatIsWrongIsNamed)
     EXPECT_NE(complaint(options).find(piece), std::string::npos)
         << piece << " is not in: " << complaint(options);
   };
-  write(set_ / "poses.txt", poses.substr(0, poses.rfind(' ')) + '\n');
+  writeFile(set_ / "poses.txt", poses.substr(0, poses.rfind(' ')) + '\n');
   expect("poses.txt: line 4: has 11 numbers");
-  write(set_ / "poses.txt", "1 0 0 0 0 x\n");
+  writeFile(set_ / "poses.txt", "1 0 0 0 0 x\n");
   expect("poses.txt: line 1: 'x' is not a number");
-  write(set_ / "poses.txt", "1 0 0 0 0 1 0 0 0 0 2 0\n");
+  writeFile(set_ / "poses.txt", "1 0 0 0 0 1 0 0 0 0 2 0\n");
   expect("poses.txt: line 1: the upper left of the matrix is not a rotation");
   fs::remove(set_ / "poses.txt");
   expect("poses.txt: no such file");
-  write(set_ / "poses.txt", poses);
+  writeFile(set_ / "poses.txt", poses);
 
-  write(set_ / "set.json", R"({"quality": "A")");
+  writeFile(set_ / "set.json", R"({"quality": "A")");
   expect("set.json: broken JSON");
-  write(set_ / "set.json", R"({"quality": "A"})");
+  writeFile(set_ / "set.json", R"({"quality": "A"})");
   expect("accuracy_translation_m");
-  write(set_ / "set.json", R"({"quality": "D"})");
+  writeFile(set_ / "set.json", R"({"quality": "D"})");
   expect("set.json: quality is 'D'");
-  write(set_ / "set.json", set_text);
+  writeFile(set_ / "set.json", set_text);
 
   SequenceOptions options = withRow(Isometry3d::Identity(), Isometry3d::Identity());
   const std::string row = contentOf(options.rows_file);
@@ -255,11 +249,11 @@ TEST_F(SequencesTest, WhatIsWrongIsNamed)
         {R"({"set": "x"})", "line 1: "},
         {R"({"set": "hall", "pair": 1, "guess": [[1]]})",
          "line 1: guess: has 1 numbers"}}) {
-    write(options.rows_file, text);
+    writeFile(options.rows_file, text);
     expect("rows.jsonl: " + piece, options);
   }
   options.step = 3;
-  write(options.rows_file, row);
+  writeFile(options.rows_file, row);
   expect("rows.jsonl: line 1: there is no pair 1 of hall", options);
   fs::resize_file(set_ / "scan_0002.pcd", 300);
   expect("scan_0002.pcd: ");

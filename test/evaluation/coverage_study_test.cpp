@@ -3,12 +3,11 @@
 #include "coverage/coverage_table.h"
 #include "evaluation/coverage_test_support.h"
 #include "io/errors.h"
+#include "support/command_helpers.h"
 
 #include <bayesian_icp/pipeline.h>
 
 #include <gtest/gtest.h>
-
-#include <unistd.h>
 
 #include <atomic>
 #include <filesystem>
@@ -32,30 +31,13 @@ linesOf(const std::string& file)
   return lines;
 }
 
-void
-write(const std::string& file, const std::string& text)
-{
-  std::ofstream(file, std::ios::binary) << text;
-}
-
-/** Runs the test in an empty folder of its own. */
-class CoverageStudyTest : public testing::Test {
+class CoverageStudyTest : public FolderTest {
 protected:
   void
   SetUp() override
   {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("coverage_" + std::string(test->name()) + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+    FolderTest::SetUp();
     file_ = (folder_ / "coverage.csv").string();
-  }
-
-  void
-  TearDown() override
-  {
-    fs::remove_all(folder_);
   }
 
   /** Two methods on \p num_cases cases; counts what is run. */
@@ -81,7 +63,6 @@ protected:
     return study;
   }
 
-  fs::path folder_;
   std::string file_;
   std::atomic<int> num_runs_ = 0;
 };
@@ -213,17 +194,17 @@ TEST_F(CoverageStudyTest, BrokenRowsAreRefused)
   }
   const auto lines = linesOf(file_);
   const std::string good = lines[0] + '\n' + lines[1] + '\n';
-  write(file_, good);
+  writeFile(file_, good);
   EXPECT_NO_THROW(CoverageFile{file_});
   std::string wrong_number = lines[1];
   wrong_number.replace(wrong_number.find(",1,"), 3, ",x,");
   for (const std::string& bad :
        {wrong_number, lines[1] + ",more", std::string("a,b")}) {
-    write(file_, good + bad + '\n');
+    writeFile(file_, good + bad + '\n');
     EXPECT_THROW(CoverageFile{file_}, io::FileError) << bad;
     EXPECT_EQ(linesOf(file_).size(), 3u) << "the file is left as it was";
   }
-  write(file_, "x,y\n");
+  writeFile(file_, "x,y\n");
   EXPECT_THROW(CoverageFile{file_}, io::FileError);
 }
 

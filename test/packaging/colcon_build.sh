@@ -1,7 +1,8 @@
 # Builds the tree by colcon, as a ROS user would, uses the result, and fails if the tree is
-# not as it was. Arguments: the tree, cmake, compiler, compiler launcher (may be absent).
+# not as it was. Arguments: the tree, cmake, generator, ON for a unity build, compiler, compiler
+# launcher (may be absent).
 set -euo pipefail
-tree=$1 cmake=$2 compiler=$3 launcher=${4-}
+tree=$1 cmake=$2 generator=$3 unity=$4 compiler=$5 launcher=${6-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -13,12 +14,14 @@ names_in_tree >"$work/before"
 
 # Otherwise Python sets LC_CTYPE where the locale is C, and the compiler cache finds nothing.
 export PYTHONCOERCECLOCALE=0
+export CCACHE_BASEDIR=$work
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2} MAKEFLAGS=-j2
 cd "$work"
-# With the flags of the tests' build, of which the compiler cache has everything.
+# As the tests' build, of which the compiler cache has everything.
 colcon --log-base "$work/log" build --base-paths "$tree" \
   --build-base "$work/build" --install-base "$work/install" \
-  --cmake-args -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
+  --cmake-args -G "$generator" -DCMAKE_UNITY_BUILD="$unity" \
+  -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
   -DBAYESIAN_ICP_BUILD_TESTS=OFF -DBAYESIAN_ICP_WARNINGS_AS_ERRORS=ON
 names_in_tree | diff "$work/before" -
 

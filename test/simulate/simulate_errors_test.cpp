@@ -17,9 +17,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** Standard normal quantile at 1 - 5e-7. */
-constexpr double bound_in_sigmas = 4.9;
-
 /** \brief Calls f(point of a, point of b) for each ray that both scans have. */
 void
 forCommonRays(const Scan& a,

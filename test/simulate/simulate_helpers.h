@@ -11,6 +11,9 @@
 /** \brief One degree [rad]. */
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
+/** Standard normal quantile at 1 - 5e-7. */
+constexpr double bound_in_sigmas = 4.9;
+
 /** \brief Default options of a scene, without noise or offsets and with few rays. */
 inline bayesian_icp::simulator::SimulationOptions
 cleanOptions(const std::string& scene)

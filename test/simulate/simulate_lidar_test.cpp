@@ -19,9 +19,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** Standard normal quantile at 1 - 5e-7. */
-constexpr double bound_in_sigmas = 4.9;
-
 /** \brief Few rays, no incidence factor, no random phase. */
 SensorOptions
 coarseLidar(int rings)

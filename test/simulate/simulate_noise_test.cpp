@@ -19,9 +19,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** Standard normal quantile at 1 - 5e-7. */
-constexpr double bound_in_sigmas = 4.9;
-
 constexpr double shared_part = 0.7;
 constexpr double smoothing = 2.5;
 

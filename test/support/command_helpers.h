@@ -46,6 +46,12 @@ contentOf(const std::filesystem::path& path)
   return content.str();
 }
 
+inline void
+writeFile(const std::filesystem::path& path, const std::string& content)
+{
+  std::ofstream(path, std::ios::binary) << content;
+}
+
 /** \brief Runs each test in an empty folder of its own. */
 class FolderTest : public testing::Test {
 protected:

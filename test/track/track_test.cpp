@@ -27,7 +27,7 @@ requestOf(int num_scans)
 }
 
 app::MotionModel
-model()
+uncertainModel()
 {
   app::MotionModel model;
   model.velocity_covariance = 10.0 * Matrix6d::Identity();
@@ -71,7 +71,7 @@ constexpr auto predicted = StepKind::Predicted;
 
 TEST(Track, RegistersEachScanToTheOneBefore)
 {
-  Track track(model(), requestOf(4).times, 1);
+  Track track(uncertainModel(), requestOf(4).times, 1);
   EXPECT_EQ(track.target(), 0);
   take({registered, StepKind::Widened, registered}, track);
   EXPECT_EQ(track.target(), 3);
@@ -83,7 +83,7 @@ TEST(Track, RegistersEachScanToTheOneBefore)
 
 TEST(Track, KeepsTheTargetWhereAScanCannotBeRegistered)
 {
-  Track track(model(), requestOf(5).times, 1);
+  Track track(uncertainModel(), requestOf(5).times, 1);
   take({registered, predicted, predicted}, track);
   EXPECT_EQ(track.target(), 1);
   EXPECT_EQ(track.numFailures(), 2);
@@ -96,7 +96,7 @@ TEST(Track, KeepsTheTargetWhereAScanCannotBeRegistered)
 
 TEST(Track, BeginsAnewWithTheScanOfASplit)
 {
-  Track track(model(), requestOf(5).times, 1);
+  Track track(uncertainModel(), requestOf(5).times, 1);
   take({registered, predicted, predicted, StepKind::Split}, track);
   EXPECT_EQ(track.target(), 4);
   EXPECT_EQ(track.numFailures(), 0);
@@ -105,7 +105,7 @@ TEST(Track, BeginsAnewWithTheScanOfASplit)
 
 TEST(Track, MakesAMapOfTheLastScans)
 {
-  Track track(model(), requestOf(9).times, 3);
+  Track track(uncertainModel(), requestOf(9).times, 3);
   take({registered, registered}, track);
   EXPECT_EQ(track.target(), 0);
   take({registered}, track);
@@ -126,7 +126,8 @@ TEST(Track, MakesAMapOfTheLastScans)
 TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
 {
   const TrackRequest request = requestOf(8);
-  Track track(model(), request.times, 2), again(model(), request.times, 2);
+  Track track(uncertainModel(), request.times, 2),
+      again(uncertainModel(), request.times, 2);
   for (const StepKind kind : {registered,
                               StepKind::Widened,
                               predicted,
@@ -152,7 +153,7 @@ TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
 TEST(Track, RefusesLinesOfAnotherOne)
 {
   const TrackRequest request = requestOf(3);
-  Track track(model(), request.times, 1);
+  Track track(uncertainModel(), request.times, 1);
   take({registered}, track);
   const std::string line = trackLine(request, track);
   EXPECT_NO_THROW(readTrackLine(line, request, 1));

@@ -1,5 +1,6 @@
 #include "viewer/geometry/color_map.h"
 
+#include "io/coordinates.h"
 #include "io/numbers.h"
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 namespace bayesian_icp::viewer {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 /** viridis at multiples of 1/8. */
 constexpr std::array<Color, 9> viridis = {{{68, 1, 84},
@@ -86,7 +85,7 @@ textOfLengths(const Eigen::Vector3d& lengths)
 std::string
 textOfAngles(const Eigen::Vector3d& angles)
 {
-  return textOf(angles * 180.0 / pi) + " deg";
+  return textOf(app::degrees_per_radian * angles) + " deg";
 }
 
 } // namespace bayesian_icp::viewer
