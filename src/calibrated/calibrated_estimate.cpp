@@ -27,6 +27,11 @@ namespace {
 /** Stream of the random order of source points; those of chains count from 0. */
 constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
+/** Of a source with more than min_even_points, at most this part is used: a choice of
+ * nearly all points would be as uneven as they are. */
+constexpr Index min_even_points = 2000;
+constexpr double max_part_of_source = 0.4;
+
 /** Starts and the mode have converged at this part of the target's noise. */
 constexpr double start_tolerance = 0.03;
 constexpr double mode_tolerance = 0.01;
@@ -88,10 +93,8 @@ followStarts(const SurfaceScorer& scorer,
              const EstimateOptions& options,
              const Isometry3d* start)
 {
-  const Index num_points =
-      std::min<Index>(options.num_mode_points, scorer.sourcePoints().cols());
-  const SurfaceScorer subset(scorer.sourcePoints().leftCols(num_points),
-                             scorer.model());
+  const SurfaceScorer subset = scorer.ofFirst(options.num_mode_points);
+  const Index num_points = subset.sourcePoints().cols();
   RobustFitOptions fit;
   fit.tolerance = start_tolerance * scorer.model().medianSigma();
   Ends ends;
@@ -127,7 +130,7 @@ fitOnAllPoints(const SurfaceScorer& scorer, const Prior& prior, const Isometry3d
   return fitRobustly(scorer, prior, start, fit);
 }
 
-/** Follow the ends on all points. What is one place, to within the target's noise, is
+/** Follow the ends on more points. What is one place, to within the target's noise, is
  * followed once. */
 void
 followEnds(const SurfaceScorer& scorer, const Prior& prior, Ends& ends)
@@ -188,14 +191,28 @@ withUnheldNoise(const Matrix6d& score_covariance,
   return J;
 }
 
+/** The secants of the last round, and what their noise leaves of the information. */
+struct Curvature {
+  Secants secants;
+  DebitedInformation debited;
+  /** Evaluations of all points. */
+  int num_evaluations = 0;
+};
+
+/** Set what follows from J and from the curvature.
+ * \param[in] num_ratio points of the score per point of the curvature */
 void
-finish(const Secants& secants, const DebitedInformation& debited, CalibratedEstimate& e)
+finish(const Curvature& curvature, double num_ratio, CalibratedEstimate& e)
 {
+  const DebitedInformation& debited = curvature.debited;
   const Eigen::LDLT<Matrix6d> J(e.score_covariance);
-  e.curvature = secants.curvature;
+  e.curvature = num_ratio * curvature.secants.curvature;
   e.transfer = debited.transfer;
-  e.information = debited.information;
   e.keep = debited.keep;
+  const Matrix6d HT = e.curvature * e.transfer;
+  const Matrix6d weights = HT.transpose() * J.solve(Matrix6d::Identity());
+  e.information = weights * HT;
+  e.information = (0.5 * (e.information + e.information.transpose())).eval();
   for (int k = 0; k < 6; ++k) {
     const Vector6d step = debited.steps.col(k);
     e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
@@ -203,9 +220,7 @@ finish(const Secants& secants, const DebitedInformation& debited, CalibratedEsti
   e.covariance = (e.information + e.prior.precision).inverse();
   e.covariance = (0.5 * (e.covariance + e.covariance.transpose())).eval();
   e.degrees_of_freedom = information_degrees_of_freedom;
-  e.mean =
-      -e.covariance * (e.transfer.transpose() * e.curvature * J.solve(e.scores.total) +
-                       e.prior.gradient);
+  e.mean = -e.covariance * (weights * e.scores.total + e.prior.gradient);
 }
 
 /** The mode with all that is evaluated at it. */
@@ -240,9 +255,19 @@ debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
   return debited;
 }
 
-/** Rounds of secants, each along the axes that the round before has found.
- * \return evaluations of all points */
-int
+/** J of the points of an estimate. */
+ScoreCovariance
+scoreCovarianceAt(const CalibratedEstimate& e,
+                  const SurfaceScorer& scorer,
+                  int num_threads)
+{
+  return scoreCovariance(activeScores(e.scores, scorer.sourcePoints()),
+                         e.residual_scale * e.residual_scale * e.prior.precision,
+                         num_threads);
+}
+
+/** Rounds of secants, each along the axes that the round before has found. */
+Curvature
 measureCurvature(const SurfaceScorer& scorer,
                  const Matrix6d& J,
                  const EstimateOptions& options,
@@ -250,21 +275,19 @@ measureCurvature(const SurfaceScorer& scorer,
 {
   const double noise = scorer.model().medianSigma(), tau = e.residual_scale;
   e.covariance = firstCovariance(e, noise);
-  int num_evaluations = 0;
-  Secants secants;
-  DebitedInformation debited;
+  Curvature curvature;
   for (int round = 0; round < options.num_rounds; ++round) {
     const SecantPlan plan = {e.covariance,
                              e.displacement_metric,
                              e.prior.precision,
                              min_step_to_noise * noise,
                              options.num_threads};
-    secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
-    num_evaluations += secants.num_evaluations;
-    debited = debit(secants, J, e);
+    curvature.secants =
+        measureSecants(scorer, e.mode, e.scores, tau, plan, curvature.secants);
+    curvature.num_evaluations += curvature.secants.num_evaluations;
+    curvature.debited = debit(curvature.secants, J, e);
   }
-  finish(secants, debited, e);
-  return num_evaluations;
+  return curvature;
 }
 
 /** The estimate about one mode. */
@@ -276,16 +299,25 @@ estimateAt(const SurfaceScorer& scorer,
 {
   CalibratedEstimate e = atMode(scorer, prior, mode);
   // 4: J.
-  const double tau = e.residual_scale;
-  const ScoreCovariance J =
-      scoreCovariance(activeScores(e.scores, scorer.sourcePoints()),
-                      tau * tau * e.prior.precision,
-                      options.num_threads);
+  const ScoreCovariance J = scoreCovarianceAt(e, scorer, options.num_threads);
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
   // 5: H; 6: what noise explains of it; 7: mean and covariance.
-  const int num_evaluations = measureCurvature(scorer, J.covariance, options, e);
-  e.num_queries = scorer.sourcePoints().cols() * (1 + num_evaluations);
+  const SurfaceScorer first = scorer.ofFirst(options.num_curvature_points);
+  CalibratedEstimate of_first = atMode(first, prior, mode);
+  const ScoreCovariance J_first =
+      scoreCovarianceAt(of_first, first, options.num_threads);
+  const Curvature curvature =
+      measureCurvature(first, J_first.covariance, options, of_first);
+  const double num_ratio =
+      double(e.scores.num_active) / std::max(1, of_first.scores.num_active);
+  e.score_covariance = J.covariance +
+                       num_ratio * J.kappa_inf / J_first.kappa_inf *
+                           (of_first.score_covariance - J_first.covariance);
+  finish(curvature, num_ratio, e);
+  e.num_queries =
+      scorer.sourcePoints().cols() +
+      first.sourcePoints().cols() * (1 + curvature.num_evaluations);
   return e;
 }
 
@@ -326,6 +358,8 @@ moveToMean(const SurfaceScorer& scorer,
 Eigen::Matrix3Xd
 evenSource(const Eigen::Matrix3Xd& points, Index max_points, std::uint64_t seed)
 {
+  const auto part = static_cast<Index>(max_part_of_source * double(points.cols()));
+  max_points = std::min(max_points, std::max(min_even_points, part));
   const Eigen::Vector3d centroid = points.rowwise().mean();
   std::vector<Index> columns =
       evenChoice((points.colwise() - centroid).cast<float>(), max_points);
@@ -342,9 +376,11 @@ estimateCalibrated(const SurfaceScorer& scorer,
 {
   // Numbers are those of the sections of docs/calibration.md. 3: the mode.
   Ends ends = followStarts(scorer, prior, options, start);
-  followEnds(scorer, prior, ends);
-  CalibratedEstimate e = estimateAt(scorer, prior, options, ends.best);
-  e.num_queries += ends.num_queries;
+  followEnds(scorer.ofFirst(options.num_curvature_points), prior, ends);
+  const RobustFit mode = fitOnAllPoints(scorer, prior, ends.best.pose);
+  CalibratedEstimate e = estimateAt(scorer, prior, options, mode);
+  e.num_queries +=
+      ends.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
   for (int move = 0; move < max_moves && isFarFromMean(e); ++move)
     if (!moveToMean(scorer, prior, options, e))
       break;

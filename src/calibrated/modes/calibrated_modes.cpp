@@ -156,8 +156,7 @@ followStarts(const SurfaceScorer& subset,
   const double radius = radiusOf(displacementMetric(subset, Isometry3d::Identity()));
   const auto num_icp_points =
       static_cast<Index>(icp_part * static_cast<double>(subset.sourcePoints().cols()));
-  const SurfaceScorer icp_points(subset.sourcePoints().leftCols(num_icp_points),
-                                 subset.model());
+  const SurfaceScorer icp_points = subset.ofFirst(num_icp_points);
   RobustFitOptions fit;
   fit.start_scale =
       std::min(sight * radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
@@ -195,10 +194,8 @@ findModes(const SurfaceScorer& scorer,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options)
 {
-  const Index num_points =
-      std::min<Index>(options.num_points, scorer.sourcePoints().cols());
-  const SurfaceScorer subset(scorer.sourcePoints().leftCols(num_points),
-                             scorer.model());
+  const SurfaceScorer subset = scorer.ofFirst(options.num_points);
+  const Index num_points = subset.sourcePoints().cols();
   const std::vector<RobustFit> ends =
       followStarts(subset, prior, wideCoordinates(scorer, prior), options);
   ModeSearch search;

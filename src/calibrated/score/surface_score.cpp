@@ -133,6 +133,15 @@ SurfaceScorer::SurfaceScorer(const Eigen::Matrix3Xd& source_points,
 , model_(model)
 {}
 
+SurfaceScorer
+SurfaceScorer::ofFirst(Eigen::Index num_points) const
+{
+  SurfaceScorer first(
+      source_points_.leftCols(std::min(num_points, source_points_.cols())), model_);
+  first.centroid_ = centroid_;
+  return first;
+}
+
 void
 SurfaceScorer::evaluate(const Isometry3d& T_target_source,
                         const Vector3d& centre,

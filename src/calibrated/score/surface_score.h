@@ -72,6 +72,11 @@ public:
    * \param[in] model must outlive this object */
   SurfaceScorer(const Eigen::Matrix3Xd& source_points, const SurfaceModel& model);
 
+  /** \brief A scorer of the first points, of all if there are fewer. Its centroid is
+   * that of all points, so that twists are the same. */
+  SurfaceScorer
+  ofFirst(Eigen::Index num_points) const;
+
   /** \brief Evaluate all points.
    * \param[in] T_target_source where
    * \param[in] tau scale of the residuals in Tukey's weight; infinite: least squares
