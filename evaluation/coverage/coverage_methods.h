@@ -68,7 +68,8 @@ priorOf(const CoverageCase& problem);
 std::vector<CoverageMethod>
 baselineMethods();
 
-/** \brief The estimate behind both methods below, from at most 2000 source points.
+/** \brief The estimate behind both methods below, with as many source points as the
+ * preset takes.
  */
 CalibratedEstimate
 calibratedEstimateOf(const CoverageCase& problem);

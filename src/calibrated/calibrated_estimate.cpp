@@ -311,13 +311,12 @@ estimateAt(const SurfaceScorer& scorer,
       measureCurvature(first, J_first.covariance, options, of_first);
   const double num_ratio =
       double(e.scores.num_active) / std::max(1, of_first.scores.num_active);
-  e.score_covariance = J.covariance +
-                       num_ratio * J.kappa_inf / J_first.kappa_inf *
-                           (of_first.score_covariance - J_first.covariance);
+  e.score_covariance =
+      J.covariance + num_ratio * J.kappa_inf / J_first.kappa_inf *
+                         (of_first.score_covariance - J_first.covariance);
   finish(curvature, num_ratio, e);
-  e.num_queries =
-      scorer.sourcePoints().cols() +
-      first.sourcePoints().cols() * (1 + curvature.num_evaluations);
+  e.num_queries = scorer.sourcePoints().cols() +
+                  first.sourcePoints().cols() * (1 + curvature.num_evaluations);
   return e;
 }
 

@@ -8,7 +8,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <cmath>
 #include <memory>
+#include <utility>
 
 namespace bayesian_icp {
 namespace {
@@ -44,12 +46,13 @@ ballAndBox(Random& random, Index num_points)
 
 /** Two scans, and a true pose from the prior. */
 struct Case {
-  explicit Case(std::uint64_t stream)
+  explicit Case(std::uint64_t stream, Index num_source_points = 500)
   {
     Random random(101, stream);
     model = std::make_unique<SurfaceModel>(
         test::noisy(ballAndBox(random, 2000), sigma, random));
-    const Matrix3Xd seen = test::noisy(ballAndBox(random, 500), sigma, random);
+    const Matrix3Xd seen =
+        test::noisy(ballAndBox(random, num_source_points), sigma, random);
     truth = isometryOf(random.normal6().cwiseProduct(priorDeviations()));
     const Vector3d centre = seen.rowwise().mean();
     truth = Eigen::Translation3d(centre) * truth * Eigen::Translation3d(-centre);
@@ -90,6 +93,44 @@ TEST(CalibratedEstimate, ErrorsAreAsLargeAsItSays)
   EXPECT_LT(sum, quantile(all, 0.9995));
   // At least 53 of 60 are within, were it 95 %, with a probability of 99.6 %.
   EXPECT_GE(num_within, 53);
+}
+
+TEST(CalibratedEstimate, MorePointsThanThoseOfTheCurvatureMakeItSharper)
+{
+  constexpr int num_cases = 40;
+  double sum = 0.0, log_ratio = 0.0;
+  EstimateOptions options;
+  options.num_curvature_points = 500;
+  for (int k = 0; k < num_cases; ++k) {
+    const Case c(200 + static_cast<std::uint64_t>(k), 2000);
+    const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior, options);
+    const CalibratedEstimate of_first =
+        estimateCalibrated(c.scorer->ofFirst(500), *c.prior, options);
+    const Vector6d error = c.error(e);
+    sum += error.dot(e.covariance.ldlt().solve(error));
+    log_ratio +=
+        std::log(e.covariance.determinant() / of_first.covariance.determinant());
+  }
+  const boost::math::chi_squared all(6.0 * num_cases);
+  EXPECT_GT(sum, quantile(all, 0.0005));
+  EXPECT_LT(sum, quantile(all, 0.9995));
+  // Four times as many points halve the deviations, less what the target's noise adds:
+  // if it counted as much as the noise of its 2000 points in the source, by (2 /
+  // 5)^1/2.
+  const double ratio = std::exp(log_ratio / (12.0 * num_cases));
+  EXPECT_GT(ratio, 0.5);
+  EXPECT_LT(ratio, 0.7);
+}
+
+TEST(CalibratedEstimate, NeverUsesNearlyAllOfALargeSource)
+{
+  Random random(101, 300);
+  for (const auto& [num_points, num_used] : {std::pair<Index, Index>(1500, 1500),
+                                             {4000, 2000},
+                                             {10000, 4000},
+                                             {30000, 6000}})
+    EXPECT_EQ(evenSource(ballAndBox(random, num_points).points, 6000, 1).cols(),
+              num_used);
 }
 
 TEST(CalibratedEstimate, PutsItsPartsTogether)

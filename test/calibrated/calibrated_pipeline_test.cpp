@@ -266,7 +266,7 @@ TEST(Calibrated, PointsBesideTheSurfaceMakeItDoubtful)
   EXPECT_TRUE(summary.data.flags.low_support);
   EXPECT_NE(summary.message.find("of the source points"), std::string::npos);
   EXPECT_TRUE(hasUsableMean(summary.status));
-  // The 2000 points cover all of the source's surface alike.
+  // The points cover all of the source's surface alike.
   EXPECT_NEAR(summary.data.active_fraction, 0.25, 0.04);
 }
 
