@@ -27,9 +27,8 @@ namespace {
 /** Stream of the random order of source points; those of chains count from 0. */
 constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
-/** Of a source with more than min_even_points, at most this part is used: a choice of
+/** At most this part of a source is used, if that leaves enough points: a choice of
  * nearly all points would be as uneven as they are. */
-constexpr Index min_even_points = 2000;
 constexpr double max_part_of_source = 0.4;
 
 /** Starts and the mode have converged at this part of the target's noise. */
@@ -357,13 +356,25 @@ moveToMean(const SurfaceScorer& scorer,
 Eigen::Matrix3Xd
 evenSource(const Eigen::Matrix3Xd& points, Index max_points, std::uint64_t seed)
 {
+  const Index num_first = EstimateOptions().num_curvature_points;
   const auto part = static_cast<Index>(max_part_of_source * double(points.cols()));
-  max_points = std::min(max_points, std::max(min_even_points, part));
+  max_points = std::min(max_points, std::max(num_first, part));
   const Eigen::Vector3d centroid = points.rowwise().mean();
-  std::vector<Index> columns =
-      evenChoice((points.colwise() - centroid).cast<float>(), max_points);
+  const Eigen::Matrix3Xf centred = (points.colwise() - centroid).cast<float>();
   Random random(seed, order_stream);
+  std::vector<Index> columns = evenChoice(centred, std::min(max_points, num_first));
   shuffle(columns, random);
+  std::vector<bool> is_chosen(static_cast<std::size_t>(points.cols()));
+  for (const Index column : columns)
+    is_chosen[static_cast<std::size_t>(column)] = true;
+  std::vector<Index> others;
+  if (max_points > num_first)
+    others = evenChoice(centred, max_points);
+  shuffle(others, random);
+  for (const Index column : others)
+    if (!is_chosen[static_cast<std::size_t>(column)] &&
+        static_cast<Index>(columns.size()) < max_points)
+      columns.push_back(column);
   return points(Eigen::all, columns);
 }
 

@@ -76,12 +76,13 @@ struct EstimateOptions {
 };
 
 /** \brief The source points that the estimate uses. They cover the source evenly: near
- * the sensor most points repeat each other, but the far points hold rotations.
+ * the sensor most points repeat each other, but the far points hold rotations. So do
+ * the first EstimateOptions::num_curvature_points by themselves.
  * \param[in] points 3 x n, finite [m]
- * \param[in] max_points how many, at most; of more than 5000 points never more than
- *            40 %, because nearly all points cannot be even
- * \param[in] seed of their order. The order is random, so that the first points, which
- *            the search of the mode uses, are a random choice. */
+ * \param[in] max_points how many, at most. Beyond num_curvature_points it is no more
+ *            than 40 % of the points, because nearly all points cannot be even.
+ * \param[in] seed of their order. The order of the first is random, so that the search
+ *            of the mode, which uses the first of these, gets a random choice. */
 Eigen::Matrix3Xd
 evenSource(const Eigen::Matrix3Xd& points, Eigen::Index max_points, std::uint64_t seed);
 

@@ -30,31 +30,53 @@ constexpr double lost_degrees_of_freedom = 13.0;
 /** Upper limit of one cluster's share of the information. */
 constexpr double max_share = 0.9;
 
-/** Leaves of one randomised kd-split. */
-class Partition {
+/** Which group each point belongs to. */
+struct Groups {
+  std::vector<Index> of_point;
+  Index count = 0;
+};
+
+/** Shells of equal numbers of points about the origin of the source's frame, where its
+ * sensor usually is: a ring of a LiDAR has an error of its own, all around the sensor,
+ * that no cluster of neighbours contains. About another place they are groups like any
+ * other. */
+Groups
+shellsOf(const Matrix3Xd& positions, Index num_shells)
+{
+  const Eigen::VectorXd distances = positions.colwise().squaredNorm();
+  std::vector<Index> order(static_cast<std::size_t>(positions.cols()));
+  std::iota(order.begin(), order.end(), Index(0));
+  std::sort(order.begin(), order.end(), [&distances](Index a, Index b) {
+    return distances[a] < distances[b] || (distances[a] == distances[b] && a < b);
+  });
+  Groups shells;
+  shells.count = num_shells;
+  shells.of_point.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    shells.of_point[static_cast<std::size_t>(order[i])] =
+        static_cast<Index>(i) * num_shells / positions.cols();
+  return shells;
+}
+
+/** Makes groups by one randomised kd-split. */
+class KdSplit {
 public:
-  Partition(const Matrix3Xd& positions, Index max_points, Random& random)
+  KdSplit(const Matrix3Xd& positions, Index max_points, Random& random)
   : rotated_(randomRotation(random) * positions)
   , max_points_(max_points)
   , random_(random)
   , order_(static_cast<std::size_t>(positions.cols()))
   , keys_(order_.size())
-  , labels_(order_.size())
   {
+    leaves_.of_point.resize(order_.size());
     std::iota(order_.begin(), order_.end(), Index(0));
     split(0, positions.cols());
   }
 
-  Index
-  numLeaves() const
+  const Groups&
+  leaves() const
   {
-    return num_leaves_;
-  }
-
-  Index
-  leafOf(Index point) const
-  {
-    return labels_[static_cast<std::size_t>(point)];
+    return leaves_;
   }
 
 private:
@@ -71,9 +93,10 @@ private:
   {
     if (end - begin <= max_points_) {
       for (Index i = begin; i < end; ++i)
-        labels_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])] =
-            num_leaves_;
-      ++num_leaves_;
+        leaves_
+            .of_point[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])] =
+            leaves_.count;
+      ++leaves_.count;
       return;
     }
     const Index axis = widestAxis(begin, end);
@@ -113,37 +136,37 @@ private:
   std::vector<Index> order_;
   /** Coordinate and index of the points that are being split. */
   std::vector<std::pair<double, Index>> keys_;
-  std::vector<Index> labels_;
-  Index num_leaves_ = 0;
+  Groups leaves_;
 };
 
-/** Sums of the clusters' scores, less their share of the total. */
+/** Sums of the groups' scores, less their share of the total. */
 Matrix6Xd
-clusterSums(const Matrix6Xd& scores, const Partition& partition)
+groupSums(const Matrix6Xd& scores, const Groups& groups)
 {
-  Matrix6Xd sums = Matrix6Xd::Zero(6, partition.numLeaves());
-  Eigen::RowVectorXd counts = Eigen::RowVectorXd::Zero(partition.numLeaves());
+  Matrix6Xd sums = Matrix6Xd::Zero(6, groups.count);
+  Eigen::RowVectorXd counts = Eigen::RowVectorXd::Zero(groups.count);
   for (Index i = 0; i < scores.cols(); ++i) {
-    sums.col(partition.leafOf(i)) += scores.col(i);
-    counts[partition.leafOf(i)] += 1.0;
+    const Index group = groups.of_point[static_cast<std::size_t>(i)];
+    sums.col(group) += scores.col(i);
+    counts[group] += 1.0;
   }
   const Vector6d mean = scores.rowwise().mean();
   return sums - mean * counts;
 }
 
-/** Give back to the clusters what fitting six parameters took from them, so that their
+/** Give back to the groups what fitting six parameters took from them, so that their
  * outer products are right on average for independent points: CR2 of Bell and McCaffrey
- * (2002), (I - H_b)^-1/2 s_b, H_b being the cluster's share of the information. A
- * direction that a few clusters hold loses nearly all of their scores.
+ * (2002), (I - H_b)^-1/2 s_b, H_b being the group's share of the information. A
+ * direction that a few groups hold loses nearly all of their scores.
  * \param[in] whitened L^-1 j of each point, working information L L^T
- * \param[in,out] sums L^-1 s_b of each cluster */
+ * \param[in,out] sums L^-1 s_b of each group */
 void
-undoFit(const Matrix6Xd& whitened, const Partition& partition, Matrix6Xd& sums)
+undoFit(const Matrix6Xd& whitened, const Groups& groups, Matrix6Xd& sums)
 {
-  std::vector<Matrix6d> shares(static_cast<std::size_t>(partition.numLeaves()),
+  std::vector<Matrix6d> shares(static_cast<std::size_t>(groups.count),
                                Matrix6d::Zero());
   for (Index i = 0; i < whitened.cols(); ++i)
-    shares[static_cast<std::size_t>(partition.leafOf(i))]
+    shares[static_cast<std::size_t>(groups.of_point[static_cast<std::size_t>(i)])]
         .selfadjointView<Eigen::Lower>()
         .rankUpdate(whitened.col(i));
   for (Index b = 0; b < sums.cols(); ++b) {
@@ -195,14 +218,16 @@ clusteredCovariance(const PointScores& points,
   Random random(partition_seed, options.stream);
   Matrix6d sum = Matrix6d::Zero();
   for (int k = 0; k < options.num_partitions; ++k) {
-    const Partition partition(points.positions, max_points, random);
+    const Groups groups = options.are_shells
+                              ? shellsOf(points.positions, options.num_clusters)
+                              : KdSplit(points.positions, max_points, random).leaves();
     Matrix6Xd sums =
-        L.triangularView<Eigen::Lower>().solve(clusterSums(points.scores, partition));
-    const auto num_leaves = static_cast<double>(partition.numLeaves());
+        L.triangularView<Eigen::Lower>().solve(groupSums(points.scores, groups));
+    const auto num_groups = static_cast<double>(groups.count);
     if (is_fitted)
-      undoFit(whitened, partition, sums);
+      undoFit(whitened, groups, sums);
     else
-      sums *= std::sqrt(num_leaves / std::max(1.0, num_leaves - 1.0));
+      sums *= std::sqrt(num_groups / std::max(1.0, num_groups - 1.0));
     sum += sums * sums.transpose();
   }
   return L * sum * L.transpose() / options.num_partitions;
@@ -223,15 +248,16 @@ scoreCovariance(const PointScores& points,
   const auto kappa = [&](const Matrix6d& covariance) {
     return metric.solve(covariance).trace() / size;
   };
-  constexpr int num_sizes = 4;
-  constexpr int num_clusters[num_sizes] = {12, 24, 48, 96};
-  constexpr int num_partitions[num_sizes] = {16, 12, 8, 8};
+  constexpr int num_sizes = 5, shells = 4;
+  constexpr int num_clusters[num_sizes] = {12, 24, 48, 96, 12};
+  constexpr int num_partitions[num_sizes] = {16, 12, 8, 8, 1};
   Matrix6d clustered[num_sizes];
   forEachPiece(num_sizes, num_threads, [&](std::ptrdiff_t i) {
     ClusterOptions options;
     options.num_clusters = num_clusters[i];
     options.num_partitions = num_partitions[i];
     options.stream = static_cast<std::uint64_t>(num_clusters[i]);
+    options.are_shells = i == shells;
     clustered[i] = clusteredCovariance(points, working_information, options);
   });
   const double kappa_12 = kappa(clustered[0]), kappa_24 = kappa(clustered[1]);
@@ -245,11 +271,12 @@ scoreCovariance(const PointScores& points,
   const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
                       0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
   result.kappa_inf = std::max({1.0, kappa_24, root * root});
+  const double correlation = std::max(result.kappa_inf, kappa(clustered[shells]));
   // Number of independent points to which the correlated ones are equivalent.
-  const double nu = static_cast<double>(points.scores.cols()) / result.kappa_inf;
+  const double nu = static_cast<double>(points.scores.cols()) / correlation;
   const double correction = nu / std::max(1.0, nu - lost_degrees_of_freedom);
   result.covariance =
-      0.5 * correction * result.kappa_inf * (J_48 / result.kappa_48 + independent);
+      0.5 * correction * correlation * (J_48 / result.kappa_48 + independent);
   return result;
 }
 

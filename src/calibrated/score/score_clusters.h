@@ -15,6 +15,8 @@ struct ClusterOptions {
   int num_partitions = 8;
   /** Stream of the random partitions. */
   std::uint64_t stream = 0;
+  /** Clusters are shells about the origin of the source's frame. */
+  bool are_shells = false;
 };
 
 /** \brief Scores of points and where the points are. */
@@ -35,7 +37,8 @@ activeScores(const SurfaceScores& scores, const Eigen::Matrix3Xd& source_points)
 /** \brief Covariance of the total score if clusters of neighbouring points are
  * independent of each other: the sum of outer products of the clusters' total scores.
  *
- * Clusters are the leaves of randomised kd-splits, with about equal numbers of points.
+ * Clusters are the leaves of randomised kd-splits, or shells, with about equal numbers
+ * of points.
  * Scores at a fitted pose are too small. Therefore the score of cluster b, whose
  * Gauss-Newton information is H_b, is multiplied by (I - H_b H_w^-1)^-1/2, the whitened
  * form of CR2 (Bell and McCaffrey 2002). Without jacobians, the sum over L clusters is
@@ -61,11 +64,11 @@ struct ScoreCovariance {
 /** \brief Estimate J.
  *
  * Half of it has the shape of the covariance of 48 clusters, half that of independent
- * points. Both are scaled to the size that independent clusters have. The factor
- * nu / (nu - 13) allows for the number nu = n / kappa_inf of independent points from
- * which J is estimated.
- * \param[in] points their scores and positions
- * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
+ * points. Both are scaled to the size that independent clusters have, or shells, if
+ * that is larger: kappa. The factor nu / (nu - 13) allows for the number nu = n / kappa
+ * of independent points from which J is estimated. \param[in] points their scores and
+ * positions \param[in] fit_precision tau^2 P, precision of the prior in units of the
+ * scores */
 ScoreCovariance
 scoreCovariance(const PointScores& points,
                 const Matrix6d& fit_precision,
