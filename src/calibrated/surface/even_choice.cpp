@@ -97,13 +97,16 @@ public:
   {
     const Eigen::Array3f low = points.rowwise().minCoeff();
     cube_of_.reserve(static_cast<std::size_t>(points.cols()));
+    auto found = indices_.end();
     for (const auto& point : points.colwise()) {
       const Eigen::Array3f place = (point.array() - low) / cube;
       // Beyond the last cube there is a margin for neighbours.
       const auto number =
           numberOf(place.min(float(num_places - 3)).cast<std::int64_t>() + 1);
-      const auto [found, is_new] = indices_.emplace(number, counts_.size());
-      if (is_new) {
+      // The points of a scan are near the ones before them.
+      if (found == indices_.end() || found->first != number)
+        found = indices_.emplace(number, counts_.size()).first;
+      if (found->second == counts_.size()) {
         numbers_.push_back(number);
         counts_.push_back(0);
       }
