@@ -16,6 +16,9 @@ namespace {
  * with one so far away that a float cannot hold it. */
 constexpr float no_limit = std::numeric_limits<float>::max();
 
+/** Radius of the ball that is searched first, in that of the last one. */
+constexpr float usual_growth = 1.15f;
+
 /** Sort the \p count nearest of the keys to the front: into buckets of equal width in
  * the squared distance, over which points of a surface are spread evenly, and then
  * those. */
@@ -118,11 +121,14 @@ PointNeighbors::find(const Vector3f& query, std::size_t count, NeighborList& lis
       balls.begin(), balls.end(), [&](const auto& b) { return b.count == count; });
   if (ball == balls.end())
     ball = balls.insert(balls.end(), {count, query, std::sqrt(no_limit)});
-  // The points in the last ball are in this one, too; a little more for rounding.
-  const float radius = 1.0001f * (ball->radius + (query - ball->query).norm());
-  const float limit = std::min(radius * radius, no_limit);
-  if (gather(query, count, limit, list.found_) < count)
-    count = std::min(count, gather(query, count, no_limit, list.found_));
+  // A ball a little larger than the last one mostly has enough points. This one has the
+  // points of the last ball, too; a little more for rounding.
+  const float sure_radius = 1.0001f * (ball->radius + (query - ball->query).norm());
+  const float radius = std::min(usual_growth * ball->radius, sure_radius);
+  for (const float limit : {radius * radius, sure_radius * sure_radius, no_limit})
+    if (gather(query, count, std::min(limit, no_limit), list.found_) >= count)
+      break;
+  count = std::min(count, list.found_.size());
   sortNearest(list.found_, count, list.sorted_, list.buckets_);
   list.indices.resize(count);
   list.squared_distances.resize(count);

@@ -1,6 +1,7 @@
 #include "calibrated/surface/even_choice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -71,15 +72,24 @@ firstOfEachCube(const Eigen::Matrix3Xf& points,
 {
   columns.clear();
   seen.forget();
-  for (Index i = 0; i < points.cols(); ++i) {
-    std::uint64_t number = 0;
-    for (int k = 0; k < 3; ++k)
-      number = number << num_bits | static_cast<std::uint64_t>(points(k, i) / cube);
-    if (!seen.add(number))
-      continue;
-    columns.push_back(i);
-    if (static_cast<Index>(columns.size()) > most)
-      return;
+  constexpr Index block_size = 256; // A loop without branches is vectorised.
+  std::array<std::int32_t, 3 * block_size> places;
+  for (Index begin = 0; begin < points.cols(); begin += block_size) {
+    const Index size = std::min(block_size, points.cols() - begin);
+    for (Index k = 0; k < 3 * size; ++k)
+      places[static_cast<std::size_t>(k)] =
+          static_cast<std::int32_t>(points.data()[3 * begin + k] / cube);
+    for (Index i = 0; i < size; ++i) {
+      std::uint64_t number = 0;
+      for (int k = 0; k < 3; ++k)
+        number = number << num_bits | static_cast<std::uint32_t>(
+                                          places[static_cast<std::size_t>(3 * i + k)]);
+      if (!seen.add(number))
+        continue;
+      columns.push_back(begin + i);
+      if (static_cast<Index>(columns.size()) > most)
+        return;
+    }
   }
 }
 
@@ -97,13 +107,16 @@ public:
   {
     const Eigen::Array3f low = points.rowwise().minCoeff();
     cube_of_.reserve(static_cast<std::size_t>(points.cols()));
+    auto found = indices_.end();
     for (const auto& point : points.colwise()) {
       const Eigen::Array3f place = (point.array() - low) / cube;
       // Beyond the last cube there is a margin for neighbours.
       const auto number =
           numberOf(place.min(float(num_places - 3)).cast<std::int64_t>() + 1);
-      const auto [found, is_new] = indices_.emplace(number, counts_.size());
-      if (is_new) {
+      // The points of a scan are near the ones before them.
+      if (found == indices_.end() || found->first != number)
+        found = indices_.emplace(number, counts_.size()).first;
+      if (found->second == counts_.size()) {
         numbers_.push_back(number);
         counts_.push_back(0);
       }

@@ -92,8 +92,8 @@ aspectOf(const PointRows& local)
   Eigen::ArrayXd bend = x.square() - x.square().mean();
   bend -= x * ((bend * x).sum() / spread);
   const double size = bend.square().sum();
-  const double explained =
-      size > 0.0 ? (bend * y).sum() * (bend * y).sum() / size : 0.0;
+  const double along_bend = (bend * y).sum();
+  const double explained = size > 0.0 ? along_bend * along_bend / size : 0.0;
   return std::sqrt(std::max(0.0, y.square().sum() - explained) / spread);
 }
 
@@ -104,7 +104,7 @@ double
 evennessOf(const PointRows& local)
 {
   const Eigen::Index num_points = local.rows();
-  const Eigen::ArrayXd x = local.col(0), y = local.col(1);
+  const auto x = local.col(0).array(), y = local.col(1).array();
   // Of an ellipse that is filled evenly.
   constexpr double pi = 3.14159265358979323846;
   const double area =
@@ -114,9 +114,13 @@ evennessOf(const PointRows& local)
   double sum = 0.0;
   int count = 0;
   for (Eigen::Index i = 0; i < num_points; i += step, ++count) {
-    Eigen::ArrayXd squared_distances = (x - x[i]).square() + (y - y[i]).square();
-    squared_distances[i] = std::numeric_limits<double>::infinity();
-    sum += std::sqrt(squared_distances.minCoeff());
+    const auto nearestIn = [&](Eigen::Index begin, Eigen::Index size) {
+      return size > 0 ? ((x.segment(begin, size) - x[i]).square() +
+                         (y.segment(begin, size) - y[i]).square())
+                            .minCoeff()
+                      : std::numeric_limits<double>::infinity();
+    };
+    sum += std::sqrt(std::min(nearestIn(0, i), nearestIn(i + 1, num_points - i - 1)));
   }
   return sum / count / (0.5 * std::sqrt(area / static_cast<double>(num_points)));
 }
@@ -138,8 +142,7 @@ struct Regression {
 
   Regression(const PointRows& local, double radius)
   {
-    const ProductTerms terms =
-        productTerms(local.col(0) / radius, local.col(1) / radius);
+    const ProductTerms terms = productTerms(local, radius);
     moments = terms.template leftCols<num_terms>().transpose() * local.col(2);
     fillNormalMatrix(terms.colwise().sum());
   }
@@ -151,11 +154,13 @@ private:
 
   /** Products of two terms: those up to twice the degree. */
   static ProductTerms
-  productTerms(const Eigen::VectorXd& x, const Eigen::VectorXd& y)
+  productTerms(const PointRows& local, double radius)
   {
-    ProductTerms terms(x.size(), num_product_terms);
+    ProductTerms terms(local.rows(), num_product_terms);
     terms.col(0).setOnes();
-    for (int d = 1; d <= 2 * degree; ++d) {
+    terms.template middleCols<2>(1) = local.leftCols<2>() / radius;
+    const auto x = terms.col(1), y = terms.col(2);
+    for (int d = 2; d <= 2 * degree; ++d) {
       const int place = placeOfTerm(d, 0), lower = placeOfTerm(d - 1, 0);
       for (int k = 0; k < d; ++k)
         terms.col(place + k) = x.cwiseProduct(terms.col(lower + k));

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace bayesian_icp {
@@ -25,20 +26,29 @@ constexpr double min_width_to_noise = 3.0;
 
 /** The \p columns of different points, each the first of its kind, in their order. */
 std::vector<Index>
-distinctColumns(const Matrix3Xd& points, std::vector<Index> columns)
+distinctColumns(const Matrix3Xd& points, const std::vector<Index>& columns)
 {
-  const auto isSame = [&points](Index a, Index b) {
-    return points.col(a) == points.col(b);
-  };
-  std::sort(columns.begin(), columns.end(), [&points](Index a, Index b) {
+  const auto hashOf = [&points](Index column) {
+    std::size_t hash = 0; // Zeros of both signs are equal, and so are their hashes.
     for (int k = 0; k < 3; ++k)
-      if (points(k, a) != points(k, b))
-        return points(k, a) < points(k, b);
-    return a < b;
-  });
-  columns.erase(std::unique(columns.begin(), columns.end(), isSame), columns.end());
-  std::sort(columns.begin(), columns.end());
-  return columns;
+      hash = (hash ^ std::hash<double>()(points(k, column))) * 0x9e3779b97f4a7c15;
+    return hash ^ hash >> 32;
+  };
+  std::size_t size = 1;
+  while (size < 2 * columns.size())
+    size *= 2;
+  constexpr Index none = -1;
+  std::vector<Index> slots(size, none), distinct;
+  for (const Index column : columns) {
+    std::size_t slot = hashOf(column) & (size - 1);
+    while (slots[slot] != none && points.col(slots[slot]) != points.col(column))
+      slot = (slot + 1) & (size - 1);
+    if (slots[slot] != none)
+      continue;
+    slots[slot] = column;
+    distinct.push_back(column);
+  }
+  return distinct;
 }
 
 /** Standard deviation of the points across the line that fits them best, where they are
