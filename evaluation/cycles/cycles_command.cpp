@@ -1,4 +1,4 @@
-#include "cycles/cycles_command.h"
+#include "commands.h"
 
 #include "graph/closed_cycles.h"
 #include "graph/graph_file.h"

@@ -1,4 +1,4 @@
-#include "trajectories/trajectories_command.h"
+#include "commands.h"
 
 #include "io/folders.h"
 #include "io/output_folder.h"
