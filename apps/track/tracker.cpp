@@ -179,12 +179,7 @@ Tracker::registerNext(const ProgressCallback& progress)
   step->status = "error";
   bool is_of_use = false;
   try {
-    const Eigen::Matrix3Xd& points = pointsOf(scan);
-    step = registerToTarget(points, progress, is_of_use);
-    if (!step)
-      return std::nullopt;
-    if (is_of_use && !registerToMore(points, progress, *step))
-      return std::nullopt;
+    step = registerToTarget(pointsOf(scan), progress, is_of_use);
   }
   catch (const io::FileError& error) {
     step->message = error.what();
@@ -192,6 +187,8 @@ Tracker::registerNext(const ProgressCallback& progress)
   catch (const Refusal& refusal) {
     step->message = refusal.what();
   }
+  if (!step || (is_of_use && !registerToMore(pointsOf(scan), progress, *step)))
+    return std::nullopt;
   step->scan = scan;
   if (!is_of_use) {
     const bool is_last = track_.numFailures() + 1 >= max_failures;
