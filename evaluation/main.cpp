@@ -2,14 +2,10 @@
  * \brief pcl_bayesian_icp_evaluate: studies of the samplers and the posteriors, one
  * sub-command each.
  */
-#include "coverage/coverage_command.h"
-#include "cycles/cycles_command.h"
+#include "commands.h"
 #include "io/program.h"
 #include "paper/paper_command.h"
-#include "samplers/samplers_command.h"
-#include "sbc/sbc_command.h"
 #include "study/report_program.h"
-#include "trajectories/trajectories_command.h"
 
 #include <functional>
 #include <iomanip>

@@ -58,6 +58,18 @@ innovation(const State& state, const State& measured)
 }
 // [/kalman]
 
+/** The prior of a registration near \p predicted: its variances are of the parameters
+ * (x, y, z, roll, pitch, yaw) in the target's axes, and five times as wide. */
+inline Prior
+priorAbout(const State& predicted)
+{
+  const Vector6d mean = poseOf(predicted.T);
+  const PoseEstimate estimate =
+      estimateOf(mean, predicted.P, CovarianceConvention::RightSE3);
+  const Matrix6d& P = estimate.covariance(CovarianceConvention::Parameters);
+  return Prior(mean, 25.0 * P.diagonal());
+}
+
 /** What the clouds alone say about a pose. */
 struct Registration {
   bool is_usable = false;
@@ -66,19 +78,18 @@ struct Registration {
   int num_unmeasured = 6; ///< directions that the clouds do not see
 };
 
-/** Register \p source to \p target near \p predicted. The prior about it is five times
- * as wide, and is taken out again, because the filter knows the prediction already. */
+/** Register \p source to \p target near \p predicted. The prior is taken out again,
+ * because the filter knows the prediction already. */
 inline Registration
 registerNear(const State& predicted,
              const Cloud::ConstPtr& source,
              const Cloud::ConstPtr& target)
 {
   pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
-  const Vector6d mean = poseOf(predicted.T);
-  const Vector6d variance = 25.0 * predicted.P.diagonal();
+  const Prior prior = priorAbout(predicted);
   icp.setPreset(Preset::Calibrated);
-  icp.setPrior(mean, variance);
-  icp.setPriorFrame(PriorFrame::Origin); // that of the Prior below
+  icp.setPrior(prior.mean(), prior.variance());
+  icp.setPriorFrame(PriorFrame::Origin); // that of priorAbout()
   icp.setInputSource(source);
   icp.setInputTarget(target);
   Cloud aligned;
@@ -89,8 +100,7 @@ registerNear(const State& predicted,
   result.message = summary.message;
   if (summary.status != Status::Ok && summary.status != Status::Doubtful)
     return result;
-  const PoseMeasurement measurement =
-      withoutPrior(PoseEstimate(summary), Prior(mean, variance));
+  const PoseMeasurement measurement = withoutPrior(PoseEstimate(summary), prior);
   const PoseEstimate& estimate = measurement.estimate;
   result.measured = {matrixOf(estimate.mean),
                      estimate.covariance(CovarianceConvention::RightSE3)};

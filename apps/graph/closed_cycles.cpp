@@ -4,7 +4,13 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
 
 namespace bayesian_icp::app {
@@ -22,6 +28,88 @@ verticesOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
   }
   return text;
 }
+
+/** Positions of the cycle's edges, in ascending order. */
+std::vector<std::size_t>
+membersOf(const Cycle& cycle)
+{
+  std::vector<std::size_t> members = cycle.path;
+  members.push_back(cycle.direct);
+  std::sort(members.begin(), members.end());
+  return members;
+}
+
+/** Cycles none of which is a sum (of edges, modulo 2) of shorter ones. */
+std::vector<const ClosedCycle*>
+independentOf(const std::vector<ClosedCycle>& cycles)
+{
+  std::vector<const ClosedCycle*> by_length;
+  for (const ClosedCycle& closed : cycles)
+    by_length.push_back(&closed);
+  std::stable_sort(
+      by_length.begin(), by_length.end(), [](const auto* a, const auto* b) {
+        return a->length() < b->length();
+      });
+  std::map<std::size_t, std::vector<std::size_t>> basis; // by the first edge
+  std::vector<const ClosedCycle*> independent;
+  for (const ClosedCycle* closed : by_length)
+    for (std::vector<std::size_t> rest = membersOf(closed->cycle); !rest.empty();) {
+      const auto [found, is_new] = basis.emplace(rest.front(), rest);
+      if (is_new) {
+        independent.push_back(closed);
+        break;
+      }
+      std::vector<std::size_t> sum;
+      std::set_symmetric_difference(rest.begin(),
+                                    rest.end(),
+                                    found->second.begin(),
+                                    found->second.end(),
+                                    std::back_inserter(sum));
+      rest = std::move(sum);
+    }
+  return independent;
+}
+
+/** Errors along single directions, each of them a row of factors of noises. */
+class ErrorRows {
+public:
+  void
+  add(double error, const Vector6d& direction, const ErrorTerms& terms)
+  {
+    const auto row = static_cast<int>(errors_.size());
+    errors_.push_back(error);
+    for (const auto& [noise, factor] : terms) {
+      const int column =
+          6 *
+          columns_.try_emplace(noise, static_cast<int>(columns_.size())).first->second;
+      for (int k = 0; k < 6; ++k)
+        factors_.emplace_back(row, column + k, direction.dot(factor.col(k)));
+    }
+  }
+
+  int
+  size() const
+  {
+    return static_cast<int>(errors_.size());
+  }
+
+  /** In units of their covariance. */
+  double
+  squaredError() const
+  {
+    Eigen::SparseMatrix<double> factors(size(), 6 * static_cast<int>(columns_.size()));
+    factors.setFromTriplets(factors_.begin(), factors_.end());
+    const Eigen::SparseMatrix<double> covariance = factors * factors.transpose();
+    const Eigen::Map<const Eigen::VectorXd> errors(errors_.data(), size());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(covariance);
+    return errors.dot(solver.solve(errors));
+  }
+
+private:
+  std::vector<double> errors_;
+  std::map<Noise, int> columns_;
+  std::vector<Eigen::Triplet<double>> factors_;
+};
 
 CycleStatistics
 statisticsOf(const std::string& name, const std::vector<const ClosedCycle*>& cycles)
@@ -92,14 +180,11 @@ std::vector<Suspect>
 suspectsOf(const std::vector<ClosedCycle>& cycles)
 {
   std::map<std::size_t, std::pair<std::size_t, std::size_t>> counts; // open, all
-  for (const ClosedCycle& closed : cycles) {
-    std::vector<std::size_t> members = closed.cycle.path;
-    members.push_back(closed.cycle.direct);
-    for (const std::size_t k : members) {
+  for (const ClosedCycle& closed : cycles)
+    for (const std::size_t k : membersOf(closed.cycle)) {
       counts[k].first += closed.closes() ? 0 : 1;
       ++counts[k].second;
     }
-  }
   std::vector<Suspect> suspects;
   for (const auto& [k, count] : counts)
     if (count.first == count.second && count.second > 1)
@@ -107,18 +192,30 @@ suspectsOf(const std::vector<ClosedCycle>& cycles)
   return suspects;
 }
 
-double
-probabilityOf(const std::vector<ClosedCycle>& cycles)
+JointClosure
+jointClosureOf(const std::vector<GraphEdge>& edges,
+               const std::vector<ClosedCycle>& cycles)
 {
-  if (cycles.empty())
-    return 1.0;
-  double squared_error = 0.0, num_degrees = 0.0;
-  for (const ClosedCycle& closed : cycles) {
-    squared_error += closed.closure.squared_error;
-    num_degrees += closed.closure.num_degrees;
+  JointClosure joint;
+  ErrorRows rows;
+  for (const ClosedCycle* closed : independentOf(cycles)) {
+    const ErrorTerms terms = errorTermsOf(edges, closed->cycle);
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(covarianceOf(terms));
+    for (int k = 0; k < 6; ++k) {
+      const double deviation = std::sqrt(solver.eigenvalues()[k]);
+      const Vector6d direction = solver.eigenvectors().col(k) / deviation;
+      if (deviation < max_deviation)
+        rows.add(direction.dot(closed->closure.error), direction, terms);
+    }
+    ++joint.num_cycles;
   }
-  return boost::math::cdf(
-      boost::math::complement(boost::math::chi_squared(num_degrees), squared_error));
+  joint.num_degrees = rows.size();
+  if (joint.num_degrees > 0) {
+    joint.squared_error = rows.squaredError();
+    joint.probability = boost::math::cdf(boost::math::complement(
+        boost::math::chi_squared(joint.num_degrees), joint.squared_error));
+  }
+  return joint;
 }
 
 } // namespace bayesian_icp::app

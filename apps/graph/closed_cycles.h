@@ -72,9 +72,23 @@ struct Suspect {
 std::vector<Suspect>
 suspectsOf(const std::vector<ClosedCycle>& cycles);
 
-/** \brief That the errors of all cycles together come of chance, if cycles that have
- * edges in common are counted as independent; 1 for none. */
-double
-probabilityOf(const std::vector<ClosedCycle>& cycles);
+/** \brief What independent cycles say together. */
+struct JointClosure {
+  std::size_t num_cycles = 0;
+  /** z^T C^-1 z: z are the errors of the closures along the directions that count, C is
+   * their covariance with all that they have in common. */
+  double squared_error = 0.0;
+  int num_degrees = 0;
+  /** That a larger squared_error would come of chance: chi-square with num_degrees, to
+   * first order; 1 without degrees. */
+  double probability = 1.0;
+};
+
+/** \brief Test all cycles at once, but for those that are sums of shorter ones.
+ * \param[in] edges with shares below 1
+ * \param[in] cycles closedCycles() of them */
+JointClosure
+jointClosureOf(const std::vector<GraphEdge>& edges,
+               const std::vector<ClosedCycle>& cycles);
 
 } // namespace bayesian_icp::app

@@ -85,34 +85,18 @@ inverted(const GraphEdge& edge)
   return {edge.source, edge.target, back, carry * edge.covariance * carry.transpose()};
 }
 
-/** Errors of edges, linear in theirs, of which those with the same source have a share
- * in common. */
-class SumOfErrors {
-public:
-  /** \param[in] carry from twists at the edge's source */
-  void
-  add(const GraphEdge& edge, const Matrix6d& carry)
-  {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
-    const Matrix6d root = carry * solver.operatorSqrt();
-    alone_ += (1.0 - edge.share) * root * root.transpose();
-    of_sources_.try_emplace(edge.source, Matrix6d::Zero()).first->second +=
-        std::sqrt(edge.share) * root;
-  }
-
-  Matrix6d
-  covariance() const
-  {
-    Matrix6d sum = alone_;
-    for (const auto& [source, root] : of_sources_)
-      sum += root * root.transpose();
-    return sum;
-  }
-
-private:
-  Matrix6d alone_ = Matrix6d::Zero();
-  std::map<int, Matrix6d> of_sources_;
-};
+/** \param[in] carry of twists at the edge's source to the frame of the errors */
+void
+addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms& terms)
+{
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
+  const Matrix6d root = carry * solver.operatorSqrt();
+  const auto add = [&terms](const Noise& noise, const Matrix6d& factor) {
+    terms.try_emplace(noise, Matrix6d::Zero()).first->second += factor;
+  };
+  add({Noise::Of::Edge, static_cast<long>(k)}, std::sqrt(1.0 - edge.share) * root);
+  add({Noise::Of::Source, edge.source}, std::sqrt(edge.share) * root);
+}
 
 /** \param[in] S covariance of the difference */
 Closure
@@ -172,13 +156,12 @@ closureOf(const GraphEdge& direct, const GraphEdge& way)
   return closureWith(direct, way, way.covariance + direct.covariance);
 }
 
-Closure
-closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
+ErrorTerms
+errorTermsOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
 {
   const GraphEdge& direct = edges[cycle.direct];
-  const GraphEdge way = wayAlong(edges, direct.target, cycle.path);
-  SumOfErrors sum;
-  sum.add(direct, Matrix6d::Identity());
+  ErrorTerms terms;
+  addError(cycle.direct, direct, Matrix6d::Identity(), terms);
   GraphEdge rest;
   rest.target = direct.source;
   for (auto k = cycle.path.rbegin(); k != cycle.path.rend(); ++k) {
@@ -188,12 +171,33 @@ closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
     // The closure's error is that of the direct edge less those of the path; backwards,
     // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi).
     const Matrix6d carry = adjointOf(rest.T_target_source.inverse());
-    sum.add(edge, is_forward ? Matrix6d(-carry) : Matrix6d(carry * adjointOf(T)));
+    addError(*k,
+             edge,
+             is_forward ? Matrix6d(-carry) : Matrix6d(carry * adjointOf(T)),
+             terms);
     rest.T_target_source =
         (is_forward ? T : Eigen::Matrix4d(T.inverse())) * rest.T_target_source;
     rest.target = is_forward ? edge.target : edge.source;
   }
-  return closureWith(direct, way, sum.covariance());
+  return terms;
+}
+
+Matrix6d
+covarianceOf(const ErrorTerms& terms)
+{
+  Matrix6d sum = Matrix6d::Zero();
+  for (const auto& [noise, factor] : terms)
+    sum += factor * factor.transpose();
+  return sum;
+}
+
+Closure
+closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
+{
+  const GraphEdge& direct = edges[cycle.direct];
+  return closureWith(direct,
+                     wayAlong(edges, direct.target, cycle.path),
+                     covarianceOf(errorTermsOf(edges, cycle)));
 }
 
 } // namespace bayesian_icp::app

@@ -5,6 +5,8 @@
 
 #include "graph/pose_graph.h"
 
+#include <map>
+#include <tuple>
 #include <vector>
 
 namespace bayesian_icp::app {
@@ -54,6 +56,32 @@ constexpr double max_deviation = 3.0;
  * their errors were independent. */
 Closure
 closureOf(const GraphEdge& direct, const GraphEdge& way);
+
+/** \brief Six independent standard normal numbers: the noise of an edge alone, or that
+ * of all edges with one source. */
+struct Noise {
+  enum class Of { Edge, Source };
+  Of of;
+  /** Position of the edge, or vertex. */
+  long number;
+
+  bool
+  operator<(const Noise& other) const
+  {
+    return std::tie(of, number) < std::tie(other.of, other.number);
+  }
+};
+
+/** \brief An error as a sum over noises, each times its factor. */
+using ErrorTerms = std::map<Noise, Matrix6d>;
+
+/** \brief The error of a cycle's closure, to first order. */
+ErrorTerms
+errorTermsOf(const std::vector<GraphEdge>& edges, const Cycle& cycle);
+
+/** \brief Of an error. */
+Matrix6d
+covarianceOf(const ErrorTerms& terms);
 
 /** \brief Close a cycle, to first order. Errors are independent but for those of edges
  * with the same source: GraphEdge::share. */

@@ -17,43 +17,23 @@ namespace {
 constexpr std::size_t label_width = 12;
 constexpr std::size_t column_width = 12;
 constexpr std::size_t diagnostic_width = 10;
-const char* const coordinate_labels[] = {
-    "x [m]", "y [m]", "z [m]", "roll [rad]", "pitch [rad]", "yaw [rad]"};
-
-/** Mean, deviation and interval, each times \p factor. */
-std::string
-estimateCells(const CoordinateSummary& coordinate, double factor, int num_decimals)
-{
-  std::string cells;
-  for (const double value : {coordinate.mean,
-                             coordinate.standard_deviation,
-                             coordinate.quantile_2_5,
-                             coordinate.quantile_97_5})
-    cells += cell(factor * value, num_decimals, column_width);
-  return cells;
-}
 
 std::string
 coordinateTable(const Summary& summary)
 {
-  std::string table = std::string(label_width, ' ');
-  for (const char* title : {"mean", "std. dev.", "2.5 %", "97.5 %"})
-    table += rightAligned(title, column_width);
-  for (const char* title : {"R-hat", "bulk ESS", "tail ESS"})
-    table += rightAligned(title, diagnostic_width);
-  table += '\n';
-  for (std::size_t k = 0; k < 6; ++k) {
-    const CoordinateSummary& coordinate = summary.coordinates[k];
-    table += leftAligned(coordinate_labels[k], label_width) +
-             estimateCells(coordinate, 1.0, 6) +
-             cell(coordinate.rhat, 3, diagnostic_width) +
-             cell(coordinate.bulk_ess, 0, diagnostic_width) +
-             cell(coordinate.tail_ess, 0, diagnostic_width) + '\n';
+  constexpr std::size_t num_wide_columns = 4;
+  std::vector<std::vector<std::string>> rows = coordinateCells(summary, "deg", "-");
+  rows.insert(
+      rows.begin(),
+      {"", "mean", "std. dev.", "2.5 %", "97.5 %", "R-hat", "bulk ESS", "tail ESS"});
+  std::string table;
+  for (const auto& row : rows) {
+    table += leftAligned(row[0], label_width);
+    for (std::size_t i = 1; i < row.size(); ++i)
+      table +=
+          rightAligned(row[i], i <= num_wide_columns ? column_width : diagnostic_width);
+    table += '\n';
   }
-  const char* names_in_degrees[] = {"roll [deg]", "pitch [deg]", "yaw [deg]"};
-  for (std::size_t k = 0; k < 3; ++k)
-    table += leftAligned(names_in_degrees[k], label_width) +
-             estimateCells(summary.coordinates[k + 3], degrees_per_radian, 4) + '\n';
   return table;
 }
 
@@ -68,10 +48,11 @@ modeText(const Mode& mode, std::size_t number)
   text += '\n';
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (const Eigen::Index k : {row, row + 3})
-      text += leftAligned(std::string(k < 3 ? "  " : "   ") + coordinate_labels[k],
-                          label_width + 2) +
-              cell(mode.mean[k], 6, column_width) + " +-" +
-              cell(std::sqrt(mode.covariance(k, k)), 6, column_width);
+      text +=
+          leftAligned((k < 3 ? "  " : "   ") + nameWithUnit(static_cast<int>(k), "rad"),
+                      label_width + 2) +
+          cell(mode.mean[k], 6, column_width) + " +-" +
+          cell(std::sqrt(mode.covariance(k, k)), 6, column_width);
     text += '\n';
   }
   return text;
@@ -111,18 +92,49 @@ cloudLine(const char* role, const io::CloudFile& cloud)
   return line + '\n';
 }
 
-std::string
-icpLine(const RegistrationResult& result)
+} // namespace
+
+std::vector<std::vector<std::string>>
+coordinateCells(const Summary& summary,
+                const std::string& degree,
+                const std::string& unknown)
 {
-  std::string line = "ICP:    ";
-  line += result.icp_has_converged ? "converged" : "did not converge";
-  if (result.icp_fitness < std::numeric_limits<double>::max())
-    line += ", root mean square distance of the source to the target " +
-            io::textOf(std::sqrt(result.icp_fitness), 4) + " m";
-  return line + '\n';
+  std::vector<std::vector<std::string>> rows;
+  const auto addRow = [&](int k, const std::string& unit, double factor, int decimals) {
+    const CoordinateSummary& c = summary.coordinates[static_cast<std::size_t>(k)];
+    rows.push_back({nameWithUnit(k, unit)});
+    for (const double value :
+         {c.mean, c.standard_deviation, c.quantile_2_5, c.quantile_97_5})
+      rows.back().push_back(numberText(factor * value, decimals, unknown));
+  };
+  for (int k = 0; k < 6; ++k) {
+    addRow(k, "rad", 1.0, 6);
+    const CoordinateSummary& c = summary.coordinates[static_cast<std::size_t>(k)];
+    rows.back().push_back(numberText(c.rhat, 3, unknown));
+    rows.back().push_back(numberText(c.bulk_ess, 0, unknown));
+    rows.back().push_back(numberText(c.tail_ess, 0, unknown));
+  }
+  for (int k = 3; k < 6; ++k)
+    addRow(k, degree, degrees_per_radian, 4);
+  return rows;
 }
 
-} // namespace
+std::string
+nameWithUnit(int coordinate, const std::string& unit_of_angles)
+{
+  return coordinate_names[static_cast<std::size_t>(coordinate)] +
+         (isAngle(coordinate) ? " [" + unit_of_angles + ']' : " [m]");
+}
+
+std::string
+icpText(const RegistrationResult& result)
+{
+  std::string text = result.icp_has_converged ? "converged" : "did not converge";
+  if (result.icp_fitness < std::numeric_limits<double>::max())
+    text += ", root mean square distance of the source to the target " +
+            io::textOf(std::sqrt(result.icp_fitness), 4) + " m";
+  return text;
+}
 
 std::string
 statusText(const Summary& summary)
@@ -147,7 +159,8 @@ reportText(const Run& run)
             std::to_string(summary.num_chains - summary.num_diverged_chains) +
             " chains:\n" + coordinateTable(summary) + modesText(summary.modes) +
             dataText(summary.data);
-  text += "\n" + wrapped("Status: " + statusText(summary)) + icpLine(result);
+  text += "\n" + wrapped("Status: " + statusText(summary)) +
+          "ICP:    " + icpText(result) + '\n';
   text += "\nMatrices row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
           "...\n";
   if (summary.num_draws > 0)

@@ -6,6 +6,7 @@
 #include "register/run.h"
 
 #include <string>
+#include <vector>
 
 namespace bayesian_icp::app {
 
@@ -13,6 +14,23 @@ namespace bayesian_icp::app {
  * and matrices in the form that pcl_transform_point_cloud takes. */
 std::string
 reportText(const Run& run);
+
+/** \brief The table of the coordinates: mean, deviation, interval and diagnostics of
+ * each [m, rad], then the first four of the angles in degrees. The first cell of a row
+ * is the coordinate's name with its unit. \param[in] degree name of that unit
+ * \param[in] unknown stands for numbers that are not finite */
+std::vector<std::vector<std::string>>
+coordinateCells(const Summary& summary,
+                const std::string& degree,
+                const std::string& unknown);
+
+/** \brief A coordinate's name, and its unit: [m], or for angles \p unit_of_angles. */
+std::string
+nameWithUnit(int coordinate, const std::string& unit_of_angles);
+
+/** \brief Whether ICP has converged, and the distance that it leaves. */
+std::string
+icpText(const RegistrationResult& result);
 
 /** \brief "not mixed: the chains ..." */
 std::string

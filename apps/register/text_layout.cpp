@@ -21,13 +21,18 @@ rightAligned(const std::string& text, std::size_t width)
 }
 
 std::string
+numberText(double value, int num_decimals, const std::string& unknown)
+{
+  if (!std::isfinite(value))
+    return unknown;
+  return std::abs(value) < 1e9 ? io::fixedTextOf(value, num_decimals)
+                               : io::textOf(value, 5);
+}
+
+std::string
 cell(double value, int num_decimals, std::size_t width)
 {
-  const bool is_short = std::abs(value) < 1e9;
-  return rightAligned(!std::isfinite(value) ? "-"
-                      : is_short            ? io::fixedTextOf(value, num_decimals)
-                                            : io::textOf(value, 5),
-                      width);
+  return rightAligned(numberText(value, num_decimals, "-"), width);
 }
 
 std::string

@@ -15,6 +15,11 @@ leftAligned(std::string text, std::size_t width);
 std::string
 rightAligned(const std::string& text, std::size_t width);
 
+/** \brief A number in full if it is below 1e9.
+ * \param[in] unknown stands for numbers that are not finite */
+std::string
+numberText(double value, int num_decimals, const std::string& unknown);
+
 /** \brief A number, right aligned; "-" if it is not finite. */
 std::string
 cell(double value, int num_decimals, std::size_t width);

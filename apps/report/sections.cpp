@@ -1,17 +1,126 @@
 #include "report/sections.h"
 
+#include "io/coordinates.h"
 #include "io/numbers.h"
+#include "register/data_text.h"
+#include "register/report_text.h"
 #include "register/settings_json.h"
+#include "register/text_layout.h"
 #include "report/charts.h"
-#include "report/tables.h"
+
+#include <pcl/pcl_config.h>
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <filesystem>
 
 namespace bayesian_icp::app {
 
 namespace {
+
+constexpr double per_thousand = 1e3;
+/** For numbers that are not finite. */
+constexpr const char* unknown = "–";
+
+using Cells = std::vector<std::string>;
+
+std::string
+cloudText(const io::CloudFile& cloud)
+{
+  return cloud.file + ", " + io::textOf(cloud.points.cols()) + " points, " +
+         io::textOf(cloud.num_finite) + " of them finite";
+}
+
+/** Mean, deviation, interval and diagnostics of each coordinate [m, rad], and
+ * angles in degrees. */
+html::Table
+poseTable(const Summary& summary)
+{
+  html::Table table;
+  table.caption = "Pose that maps source points into the target frame; R = Rz(yaw) "
+                  "Ry(pitch) Rx(roll)";
+  table.header = {
+      "", "mean", "std. dev.", "2.5 %", "97.5 %", "R-hat", "bulk ESS", "tail ESS"};
+  table.rows = coordinateCells(summary, "°", unknown);
+  for (Cells& cells : table.rows)
+    cells.resize(table.header.size());
+  return table;
+}
+
+/** Mean and deviation in each mode. */
+html::Table
+modesTable(const std::vector<Mode>& modes)
+{
+  html::Table table;
+  table.caption = "Modes between which no chain travels: mean ± standard deviation in "
+                  "each; weights are estimates, good to a factor of a few";
+  table.header = {"mode", "weight", "chains"};
+  for (int k = 0; k < 6; ++k)
+    table.header.push_back(nameWithUnit(k, "°"));
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    std::string chains;
+    for (const int chain : modes[i].chains)
+      chains += (chains.empty() ? "" : ", ") + io::textOf(chain);
+    Cells cells = {io::textOf(i + 1), io::fixedTextOf(modes[i].weight, 3), chains};
+    for (int k = 0; k < 6; ++k) {
+      const double factor = isAngle(k) ? degrees_per_radian : 1.0;
+      cells.push_back(
+          numberText(factor * modes[i].mean[k], 4, unknown) + " ± " +
+          numberText(factor * std::sqrt(modes[i].covariance(k, k)), 4, unknown));
+    }
+    table.rows.push_back(cells);
+  }
+  return table;
+}
+
+/** How well the clouds hold each motion. */
+html::Table
+directionsTable(const std::vector<DataDirection>& directions)
+{
+  html::Table table;
+  table.caption = "Six independent motions, best known first; standard deviations as "
+                  "root mean square displacement of the source's points, and as angle";
+  table.header = {"", "std. dev. [mm]", "[mrad]", "prior [mm]", "held by", "motion"};
+  table.first_column_of_words = 4;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const DataDirection& direction = directions[i];
+    table.rows.push_back(
+        {io::textOf(i + 1),
+         numberText(per_thousand * direction.standard_deviation, 3, unknown),
+         numberText(per_thousand * angularDeviation(direction), 3, unknown),
+         numberText(per_thousand * direction.prior_standard_deviation, 1, unknown),
+         holderOf(direction.observability),
+         direction.description});
+  }
+  return table;
+}
+
+/** Files, sizes, times, versions. */
+html::Table
+runTable(const Run& run)
+{
+  const RegistrationResult& result = run.result;
+  html::Table table;
+  table.caption = "The run";
+  table.header = {"", ""};
+  table.first_column_of_words = 1;
+  const std::string icp_time =
+      result.has_icp ? "ICP " + io::fixedTextOf(result.icp_seconds, 2) + " s, " : "";
+  table.rows = {
+      {"source", cloudText(run.source)},
+      {"target", cloudText(run.target)},
+      {"ICP", result.has_icp ? icpText(result) : "was not run"},
+      {"final transformation",
+       result.is_final_the_mean ? "the posterior mean" : "ICP's result"},
+      {"time",
+       icp_time + "sampling " + io::fixedTextOf(result.sampling_seconds, 2) + " s"},
+      {"versions",
+       "pcl_bayesian_icp " BAYESIAN_ICP_VERSION ", PCL " PCL_VERSION_PRETTY ", Eigen " +
+           io::textOf(EIGEN_WORLD_VERSION) + '.' + io::textOf(EIGEN_MAJOR_VERSION) +
+           '.' + io::textOf(EIGEN_MINOR_VERSION)}};
+  return table;
+}
 
 /** More chains than this have no legend. */
 constexpr std::size_t max_chains_in_legend = 12;

@@ -3,9 +3,7 @@
 #include "io/cloud_file.h"
 #include "io/errors.h"
 #include "localization/stated_pose.h"
-
-#include <bayesian_icp/measurement.h>
-#include <bayesian_icp/pipeline.h>
+#include "track/registration.h"
 
 #include <algorithm>
 #include <array>
@@ -36,69 +34,6 @@ thinned(const Eigen::Matrix3Xd& points, double voxel_size)
       kept.push_back(voxels[i].second);
   std::sort(kept.begin(), kept.end());
   return points(Eigen::all, kept);
-}
-
-/** What came of a registration; the better, the later. */
-enum class Quality { Cancelled, Useless, Contradiction, Doubtful, Good };
-
-struct Registration {
-  Quality quality = Quality::Useless;
-  std::string status;
-  /** Also why it is useless. */
-  std::string message;
-  /** Of the clouds alone, widened if that is doubtful. */
-  TrackEdge edge;
-};
-
-/** \param[in] options with a prior about the sensor */
-Registration
-registered(const Eigen::Matrix3Xd& points,
-           const PreparedTarget& target,
-           const Options& options,
-           const ProgressCallback& progress)
-{
-  bool is_cancelled = false;
-  const auto watch = [&](const Progress& done) {
-    is_cancelled = is_cancelled || !progress(done);
-    return !is_cancelled;
-  };
-  PosteriorEstimate estimate =
-      estimatePosterior(points, target, options.prior.mean, options, watch);
-  Summary& summary = estimate.summary;
-  doubtRounding(std::max(usualCoordinate(points), usualCoordinate(target.points())),
-                options,
-                summary);
-  Registration result;
-  result.status = toString(summary.status);
-  result.message = summary.message;
-  if (is_cancelled) {
-    result.quality = Quality::Cancelled;
-    return result;
-  }
-  const PoseEstimate posterior(summary);
-  std::string complaint = complaintAboutExport(posterior, false);
-  if (complaint.empty() && summary.data.flags.wrong_basin)
-    complaint = "the pose may be in another basin";
-  if (complaint.empty()) {
-    const PoseMeasurement measurement =
-        withoutPrior(posterior, Prior(options.prior.mean, options.prior.variance));
-    complaint = complaintAboutExport(measurement.estimate, false);
-    result.edge.num_unmeasured = measurement.num_unmeasured;
-    result.edge.pose = {
-        measurement.estimate.mean,
-        measurement.estimate.covariance(CovarianceConvention::RightSE3)};
-  }
-  if (!complaint.empty()) {
-    result.message += "; not used: " + complaint;
-    return result;
-  }
-  result.quality = Quality::Good;
-  if (summary.status == Status::Doubtful) {
-    result.quality =
-        summary.data.flags.prior_conflict ? Quality::Contradiction : Quality::Doubtful;
-    result.edge.pose.covariance *= doubt_factor;
-  }
-  return result;
 }
 
 } // namespace
@@ -244,12 +179,7 @@ Tracker::registerNext(const ProgressCallback& progress)
   step->status = "error";
   bool is_of_use = false;
   try {
-    const Eigen::Matrix3Xd& points = pointsOf(scan);
-    step = registerToTarget(points, progress, is_of_use);
-    if (!step)
-      return std::nullopt;
-    if (is_of_use && !registerToMore(points, progress, *step))
-      return std::nullopt;
+    step = registerToTarget(pointsOf(scan), progress, is_of_use);
   }
   catch (const io::FileError& error) {
     step->message = error.what();
@@ -257,6 +187,8 @@ Tracker::registerNext(const ProgressCallback& progress)
   catch (const Refusal& refusal) {
     step->message = refusal.what();
   }
+  if (!step || (is_of_use && !registerToMore(pointsOf(scan), progress, *step)))
+    return std::nullopt;
   step->scan = scan;
   if (!is_of_use) {
     const bool is_last = track_.numFailures() + 1 >= max_failures;

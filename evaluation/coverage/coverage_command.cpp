@@ -1,5 +1,4 @@
-#include "coverage/coverage_command.h"
-
+#include "commands.h"
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_options.h"
 #include "coverage/coverage_real.h"

@@ -1,5 +1,4 @@
-#include "cycles/cycles_command.h"
-
+#include "commands.h"
 #include "graph/closed_cycles.h"
 #include "graph/graph_file.h"
 #include "io/coordinates.h"
@@ -26,7 +25,7 @@ using app::GraphEdge;
 
 namespace {
 
-/** Probability below which the errors of all cycles are said not to be chance. */
+/** Probability below which the errors of all cycles together are not chance. */
 constexpr double min_chance = 0.001;
 constexpr std::size_t max_lines = 20;
 
@@ -77,6 +76,17 @@ tableOf(const std::vector<ClosedCycle>& cycles)
 }
 
 std::string
+jointText(const app::JointClosure& joint)
+{
+  return format("%zu independent cycles together: squared error %.1f for %d degrees of "
+                "freedom, probability %.2g\n",
+                joint.num_cycles,
+                joint.squared_error,
+                joint.num_degrees,
+                joint.probability);
+}
+
+std::string
 suspectsText(const std::vector<GraphEdge>& edges,
              const std::vector<ClosedCycle>& cycles)
 {
@@ -120,9 +130,10 @@ cycle of edges the product of the poses should be the identity, within the
 sum of the covariances. The normalised squared error of closures (NEES) is
 then 1 per degree of freedom on average, and 50 % and 95 % of the closures
 are in their regions. Edges with the same source (the second vertex) share its
-noise: --source-share says how much of their variance. Larger errors mean that covariances are too small, or
-that an edge is wrong. Directions in which a closure is less certain than
-3 m or 3 rad are not counted: no cloud has seen them.
+noise: --source-share says how much of their variance. Larger errors mean
+that covariances are too small, or that an edge is wrong. Directions in which
+a closure is less certain than 3 m or 3 rad are not counted: no cloud has
+seen them.
 
 Make the graph with pcl_bayesian_icp_track --span 3; edges that contain a
 prior close too well.
@@ -131,8 +142,11 @@ It cannot see errors that all edges share: if each registration is drawn
 towards no motion in the same proportion, every cycle still closes.
 
 A table goes to the standard output; every cycle is a row of a CSV file.
-Exit codes: 0 good, 1 the errors of all cycles together are larger than chance
-allows (0.1 %), 2 usage, 3 cannot read or write a file.
+Below the table, one chi-square test takes all cycles together, and knows
+which edges they have in common. If all covariances are right, it fails for
+one graph in a thousand.
+Exit codes: 0 good, 1 that test has failed, 2 usage, 3 cannot read or write a
+file.
 
 )" << options;
   return help.str();
@@ -150,8 +164,8 @@ runCyclesCommand(int argc, const char* const* argv)
     ("max-length", integer(options.max_length, 3, 100), "most edges of a cycle")
     ("source-share", po::value<double>()->default_value(options.share)->notifier(
        [&options](double share) {
-         if (!(share >= 0.0 && share <= 1.0))
-           io::refuseValue(io::textOf(share), "from 0 to 1");
+         if (!(share >= 0.0 && share < 1.0))
+           io::refuseValue(io::textOf(share), "from 0 to below 1");
          options.share = share;
        }),
      "part of the variance that edges with the same source have in common, its noise; 0 "
@@ -183,10 +197,12 @@ runCyclesCommand(int argc, const char* const* argv)
   folder.add(std::filesystem::path(options.result_file).filename().string(),
              [&](std::ostream& stream) { stream << csvOf(cycles); });
   folder.commit();
-  io::print(tableOf(cycles) + failuresText(cycles) + suspectsText(edges, cycles));
+  const app::JointClosure joint = app::jointClosureOf(edges, cycles);
+  io::print(tableOf(cycles) + jointText(joint) + failuresText(cycles) +
+            suspectsText(edges, cycles));
   const int report_code =
       options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
-  return app::probabilityOf(cycles) >= min_chance ? report_code : 1;
+  return joint.probability >= min_chance ? report_code : 1;
 }
 
 } // namespace bayesian_icp::evaluate

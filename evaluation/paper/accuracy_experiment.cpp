@@ -4,7 +4,6 @@
 #include "paper/accuracy_methods.h"
 #include "paper/median_table.h"
 #include "paper/study_record.h"
-#include "study/input_hash.h"
 
 #include <cmath>
 #include <iostream>

@@ -1,16 +1,63 @@
 /** \file
  * \brief What an experiment of the paper is: a sub-command by itself, and a part of
- * `paper`.
+ * `paper`. All share their options.
  */
 #pragma once
 
-#include "paper/paper_options.h"
+#include "study/scan_pairs.h"
 
+#include <boost/program_options/options_description.hpp>
+#include <boost/program_options/variables_map.hpp>
+
+#include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
+
+/** \brief Options of an experiment. Defaults are those of the standard report. */
+struct PaperStudyOptions {
+  /** Where the pairs are (see scan_pairs.h), and names as given; none: all there are.
+   */
+  std::string data_folder = "data";
+  std::vector<std::string> pairs;
+  /** Everything goes here, and what is there is not made again. */
+  std::string output_folder = "results/paper";
+  std::uint64_t seed = 1;
+  int num_threads = 1;
+  /** Source points that are used, chosen at random; 0: all. */
+  int num_points = 0;
+  /** Runs of Monte Carlo ICP a pair, and half the range of their starts [m, rad]. */
+  int num_baseline_runs = 1000;
+  double start_translation = 1.0;
+  double start_rotation = 1.0;
+  /** Runs of each method (seeds) behind a mean and its standard deviation. */
+  int num_repeats = 10;
+  /** Fewer of everything, to see that it works. */
+  bool is_quick = false;
+  /** Or CSV files and medians only. */
+  bool has_report = true;
+};
+
+/** \brief Their description. They fill \p options, which has to outlive them. */
+boost::program_options::options_description
+paperOptionsDescription(PaperStudyOptions& options);
+
+/** \brief Take them from a command line.
+ * \throws io::UsageError with a message for the user */
+void
+takePaperOptions(const boost::program_options::variables_map& given,
+                 const boost::program_options::options_description& description,
+                 PaperStudyOptions& options);
+
+/** \brief The pairs asked for. A missing or broken one is named, with the reason, on
+ * \p log and left out.
+ * \param[out] num_skipped how many those were
+ * \throws io::FileError if no pair is left, or the manifest is broken */
+std::vector<ScanPair>
+readPairs(const PaperStudyOptions& options, std::ostream& log, int& num_skipped);
 
 /** \brief On what an experiment is made. */
 struct PaperStudy {

@@ -1,5 +1,4 @@
-#include "paper/paper_options.h"
-
+#include "paper/paper_experiment.h"
 #include "study/option_values.h"
 
 #include <ostream>

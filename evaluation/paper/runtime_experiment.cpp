@@ -2,7 +2,6 @@
 #include "paper/median_table.h"
 #include "paper/paper_methods.h"
 #include "paper/study_record.h"
-#include "study/input_hash.h"
 #include "study/run_file.h"
 
 #include <chrono>

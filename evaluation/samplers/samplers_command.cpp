@@ -1,5 +1,4 @@
-#include "samplers/samplers_command.h"
-
+#include "commands.h"
 #include "io/cloud_file.h"
 #include "io/folders.h"
 #include "samplers/result_table.h"

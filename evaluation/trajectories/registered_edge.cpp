@@ -3,10 +3,8 @@
 #include "graph/adjoint.h"
 #include "io/text_hash.h"
 #include "methods/published_covariances.h"
-#include "track/track.h"
+#include "track/registration.h"
 
-#include <bayesian_icp/measurement.h>
-#include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>
@@ -59,7 +57,7 @@ take(const TwistGaussian& posterior, EdgeRun& run)
   run.covariance = upperTriangleOf(covariance);
 }
 
-/** As pcl_bayesian_icp_track takes it: widened if it is doubtful.
+/** As pcl_bayesian_icp_track does.
  * \throws std::runtime_error if it is of no use */
 void
 registerCalibrated(const CoverageCase& problem, EdgeRun& run)
@@ -68,22 +66,12 @@ registerCalibrated(const CoverageCase& problem, EdgeRun& run)
   options.prior.mean = problem.prior_mean;
   options.prior.frame = PriorFrame::Origin;
   options.chains.num_threads = 1;
-  const Summary summary =
-      estimatePosterior(problem.source, problem.target, problem.prior_mean, options)
-          .summary;
-  if (summary.data.flags.wrong_basin)
-    throw std::runtime_error("another basin");
-  const PoseEstimate edge =
-      withoutPrior(PoseEstimate(summary),
-                   Prior(options.prior.mean, options.prior.variance))
-          .estimate;
-  const std::string complaint = complaintAboutExport(edge, false);
-  if (!complaint.empty())
-    throw std::runtime_error(complaint);
-  run.mean = edge.mean;
-  run.covariance = upperTriangleOf(edge.covariance(CovarianceConvention::RightSE3));
-  if (summary.status == Status::Doubtful)
-    run.covariance *= app::doubt_factor;
+  const app::Registration registration =
+      app::registered(problem.source, problem.target, options, nullptr);
+  if (registration.quality == app::Quality::Useless)
+    throw std::runtime_error(registration.message);
+  run.mean = registration.edge.pose.mean;
+  run.covariance = upperTriangleOf(registration.edge.pose.covariance);
 }
 
 void

@@ -16,22 +16,22 @@ namespace bayesian_icp::evaluate {
 /** \brief Which registration. */
 struct EdgeName {
   std::string recording;
-  /** Of the recording: a drive of another number of scans has other poses. */
-  int num_scans = 0;
   std::uint64_t seed = 0;
   int target = 0, source = 0;
   std::string method;
+  /** Hash of the points, the guess and the version of this program. */
+  std::string inputs;
 
   template <typename Name, typename Column>
   static void
   columns(Name& name, const Column& column)
   {
     column("recording", name.recording);
-    column("num_scans", name.num_scans);
     column("seed", name.seed);
     column("target", name.target);
     column("source", name.source);
     column("method", name.method);
+    column("inputs", name.inputs);
   }
 };
 

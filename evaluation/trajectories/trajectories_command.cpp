@@ -1,10 +1,11 @@
-#include "trajectories/trajectories_command.h"
-
+#include "commands.h"
 #include "io/folders.h"
 #include "io/output_folder.h"
 #include "io/program.h"
+#include "io/text_hash.h"
 #include "register/choices.h"
 #include "study/formatted_text.h"
+#include "study/input_hash.h"
 #include "study/option_values.h"
 #include "study/report_program.h"
 #include "threads/first_exception.h"
@@ -65,90 +66,119 @@ recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
   return chosen;
 }
 
-/** One pair to be registered by those methods that have no row of it. */
-struct Task {
+/** Two scans, and their registrations, one for each method. */
+struct PairOfScans {
   int target, source;
   std::vector<EdgeName> names;
 };
 
-/** Of one pair, one for each method. */
-std::vector<EdgeName>
-namesOf(const RegisteredRecording& registered, int target, int source)
+/** Of the points of each scan. */
+std::vector<std::uint64_t>
+hashesOf(const Recording& recording, int num_threads)
 {
-  const Recording& recording = registered.recording;
-  std::vector<EdgeName> names;
-  for (const std::string& method : edgeMethods())
-    names.push_back({recording.name,
-                     static_cast<int>(recording.poses.size()),
-                     registered.seed,
-                     target,
-                     source,
-                     method});
-  return names;
+  std::vector<std::uint64_t> hashes(recording.poses.size());
+  FirstException failure;
+#pragma omp parallel for schedule(dynamic) num_threads(num_threads)
+  for (std::size_t scan = 0; scan < hashes.size(); ++scan)
+    failure.guard([&] { // no exception may leave a parallel region
+      InputHash hash;
+      hash.addMatrix(recording.read(scan));
+      hashes[scan] = hash.value();
+    });
+  failure.rethrow();
+  return hashes;
 }
 
-std::vector<Task>
-tasksOf(const RegisteredRecording& registered,
-        const TrajectoriesOptions& options,
-        const EdgeFile& results)
+std::vector<PairOfScans>
+scanPairsOf(const RegisteredRecording& registered, const TrajectoriesOptions& options)
 {
-  std::vector<Task> tasks;
+  const Recording& recording = registered.recording;
+  const std::vector<std::uint64_t> hashes = hashesOf(recording, options.num_threads);
+  std::vector<PairOfScans> pairs;
   for (const auto& [target, source] :
-       pairsOf(registered.recording, options.span, options.closure_distance)) {
-    Task task{target, source, {}};
-    for (const EdgeName& name : namesOf(registered, target, source))
-      if (results.find(name) == nullptr)
-        task.names.push_back(name);
-    if (!task.names.empty())
-      tasks.push_back(std::move(task));
+       pairsOf(recording, options.span, options.closure_distance)) {
+    InputHash inputs;
+    for (const int scan : {target, source})
+      inputs.add(&hashes[std::size_t(scan)], sizeof hashes[0]);
+    inputs.addMatrix(guessOf(recording, registered.seed, target, source).matrix());
+    inputs.add(BAYESIAN_ICP_VERSION, sizeof BAYESIAN_ICP_VERSION);
+    PairOfScans pair{target, source, {}};
+    for (const std::string& method : edgeMethods())
+      pair.names.push_back({recording.name,
+                            registered.seed,
+                            target,
+                            source,
+                            method,
+                            io::textOfHash(inputs.value())});
+    pairs.push_back(std::move(pair));
   }
-  return tasks;
+  return pairs;
+}
+
+/** The registrations that a file does not have. */
+std::vector<PairOfScans>
+missingOf(std::vector<PairOfScans> pairs, const EdgeFile& results)
+{
+  std::vector<PairOfScans> missing;
+  for (PairOfScans& pair : pairs) {
+    auto& names = pair.names;
+    names.erase(std::remove_if(names.begin(),
+                               names.end(),
+                               [&](const EdgeName& name) {
+                                 return results.find(name) != nullptr;
+                               }),
+                names.end());
+    if (!names.empty())
+      missing.push_back(std::move(pair));
+  }
+  return missing;
 }
 
 void
-registerAll(const RegisteredRecording& registered,
-            const TrajectoriesOptions& options,
-            EdgeFile& results)
+registerMissing(const std::vector<PairOfScans>& pairs,
+                const RegisteredRecording& registered,
+                int num_threads,
+                EdgeFile& results)
 {
-  const std::vector<Task> tasks = tasksOf(registered, options, results);
+  const std::vector<PairOfScans> missing = missingOf(pairs, results);
   const std::string name =
       registered.recording.name + ", seed " + io::textOf(registered.seed);
   std::size_t num_done = 0;
   FirstException failure;
-#pragma omp parallel for schedule(dynamic) num_threads(options.num_threads)
-  for (std::size_t k = 0; k < tasks.size(); ++k)
+#pragma omp parallel for schedule(dynamic) num_threads(num_threads)
+  for (std::size_t k = 0; k < missing.size(); ++k)
     // No exception may leave a parallel region or a critical section.
     failure.guard([&] {
-      const Task& task = tasks[k];
+      const PairOfScans& pair = missing[k];
       const auto read = [&](int scan) {
         return registered.recording.read(static_cast<std::size_t>(scan));
       };
-      const Eigen::Matrix3Xd source = read(task.source), target = read(task.target);
+      const Eigen::Matrix3Xd source = read(pair.source), target = read(pair.target);
       const Eigen::Isometry3d guess =
-          guessOf(registered.recording, registered.seed, task.target, task.source);
-      for (const EdgeName& edge : task.names) {
+          guessOf(registered.recording, registered.seed, pair.target, pair.source);
+      for (const EdgeName& edge : pair.names) {
         const EdgeRun run = registeredEdge(edge, source, target, guess);
 #pragma omp critical(trajectory_results)
         failure.guard([&] { results.add(run); });
       }
 #pragma omp critical(trajectory_results)
       std::cerr << name + ": " + io::textOf(++num_done) + " of " +
-                       io::textOf(tasks.size()) + " pairs registered\n";
+                       io::textOf(missing.size()) + " pairs registered\n";
     });
   failure.rethrow();
 }
 
-/** The rows that belong to the recordings' pairs. */
+/** Register what is not in the file, and take all edges from there. */
 void
-takeEdges(const TrajectoriesOptions& options,
-          const EdgeFile& results,
-          std::vector<RegisteredRecording>& recordings)
+registerAll(const TrajectoriesOptions& options,
+            EdgeFile& results,
+            RegisteredRecording& registered)
 {
-  for (RegisteredRecording& one : recordings)
-    for (const auto& [target, source] :
-         pairsOf(one.recording, options.span, options.closure_distance))
-      for (const EdgeName& name : namesOf(one, target, source))
-        one.edges.push_back(*results.find(name));
+  const std::vector<PairOfScans> pairs = scanPairsOf(registered, options);
+  registerMissing(pairs, registered, options.num_threads, results);
+  for (const PairOfScans& pair : pairs)
+    for (const EdgeName& name : pair.names)
+      registered.edges.push_back(*results.find(name));
 }
 
 std::string
@@ -212,7 +242,8 @@ to four edges (1 if covariances are right and errors of edges independent).
 Errors include those of the true poses ("of": exact, or quality A, B, C).
 
 Each registration is a row of a second CSV file, FILE_edges.csv, in which an
-interrupted study goes on.
+interrupted study goes on. Rows of other scans, other guesses or another
+version of this program do not count.
 
 Exit codes: 0 good, 2 usage, 3 cannot read or write a file.
 
@@ -277,9 +308,8 @@ runTrajectoriesCommand(int argc, const char* const* argv)
   folder.commit();
   {
     EdgeFile results(edgeFileName(options.result_file));
-    for (const RegisteredRecording& registered : recordings)
-      registerAll(registered, options, results);
-    takeEdges(options, results, recordings);
+    for (RegisteredRecording& registered : recordings)
+      registerAll(options, results, registered);
   }
   const std::vector<TrajectoryRun> runs = trajectoriesOf(recordings, options.loss);
   folder.add(std::filesystem::path(options.result_file).filename().string(),

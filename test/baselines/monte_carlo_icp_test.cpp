@@ -48,20 +48,6 @@ protected:
 
 } // namespace
 
-TEST_F(MonteCarloIcp, TheNumberOfThreadsChangesNoBit)
-{
-  options_.num_threads = 1;
-  const auto expected = run(options_);
-  ASSERT_EQ(expected.size(), 24u);
-  for (const int num_threads : {2, 5}) {
-    options_.num_threads = num_threads;
-    const auto runs = run(options_);
-    ASSERT_EQ(runs.size(), expected.size());
-    for (std::size_t i = 0; i < runs.size(); ++i)
-      expectSame(runs[i], expected[i]);
-  }
-}
-
 TEST_F(MonteCarloIcp, APartIsAPartOfTheWhole)
 {
   const auto whole = run(options_);

@@ -384,25 +384,6 @@ TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
   }
 }
 
-TEST(CalibratedDraws, DoNotDependOnTheNumberOfThreads)
-{
-  const StandIn problem(StandIn::Options{});
-  ChainOptions options;
-  options.num_draws = 403;
-  options.num_threads = 1;
-  const ChainSet reference = sample(problem, options);
-  EXPECT_EQ(reference.chains[0].draws.rows(), 101);
-  EXPECT_EQ(reference.chains[3].draws.rows(), 100);
-  for (const int num_threads : {2, 3}) {
-    options.num_threads = num_threads;
-    const ChainSet set = sample(problem, options);
-    for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_EQ(set.chains[i].draws, reference.chains[i].draws);
-  }
-  options.seed = 2;
-  EXPECT_NE(sample(problem, options).chains[0].draws, reference.chains[0].draws);
-}
-
 TEST(CalibratedDraws, ReportProgressAndCanBeCancelled)
 {
   const StandIn problem(StandIn::Options{});

@@ -354,24 +354,6 @@ TEST(SurfaceModel, IsTheSameFarFromTheOrigin)
   expectEqual(far_model, model);
 }
 
-TEST(SurfaceModel, IsTheSameForEveryNumberOfThreads)
-{
-  const NoisyBox box(1);
-  const SurfaceModel model(box.points, SurfaceModelOptions(), 1);
-  const SurfaceModel threaded(box.points, SurfaceModelOptions(), 3);
-  expectEqual(threaded, model);
-  Random random(76, 0);
-  for (int k = 0; k < 100; ++k) {
-    const Eigen::Vector3f query = (0.1 * random.normal6().head<3>()).cast<float>();
-    const auto nearest = [&](const SurfaceModel& surface) {
-      return surface.tree()
-          .nearest(query, std::numeric_limits<float>::infinity(), KdTree::none)
-          .index;
-    };
-    EXPECT_EQ(nearest(threaded), nearest(model));
-  }
-}
-
 TEST(SurfaceModel, LeavesOutPointsThatAreNotFinite)
 {
   Random random(77, 0);

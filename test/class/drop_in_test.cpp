@@ -225,6 +225,20 @@ TEST_P(DropInClouds, WithGates)
     expectSameWith([&](Icp& icp) { icp.setMaxCorrespondenceDistance(gate); });
 }
 
+TEST_P(DropInClouds, WithCriteria)
+{
+  expectSameWith([](Icp& icp) { icp.setMaximumIterations(0); });
+  expectSameWith([](Icp& icp) { icp.setEuclideanFitnessEpsilon(0.1); });
+  expectSameWith([](Icp& icp) {
+    icp.setMaximumIterations(200);
+    icp.setTransformationEpsilon(1e-10);
+  });
+  expectSameWith([](Icp& icp) {
+    icp.setMaximumIterations(3);
+    icp.getConvergeCriteria()->setFailureAfterMaximumIterations(true);
+  });
+}
+
 TEST_P(DropInClouds, WithRejectors)
 {
   expectSameWith([](Icp& icp) {

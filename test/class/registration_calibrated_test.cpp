@@ -8,7 +8,6 @@
 #include <Eigen/LU>
 
 #include <functional>
-#include <limits>
 
 namespace pcl {
 namespace test {
@@ -187,32 +186,6 @@ TEST_F(CalibratedTest, AnObjectThatKeepsItsTargetGivesWhatANewOneGives)
     point.x += 0.01f;
   icp.setInputTarget(other_target);
   expectAsNew(other_source, other_target);
-}
-
-TEST_F(CalibratedTest, AnInfinitePriorIsRefused)
-{
-  bayesian_icp::Vector6d variance = bayesian_icp::Vector6d::Constant(0.1);
-  variance[5] = std::numeric_limits<double>::infinity();
-  icp.setPrior(bayesian_icp::Vector6d::Zero(), variance);
-  icp.align(output);
-  EXPECT_TRUE(icp.hasConverged()); // ICP's meaning
-  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
-  EXPECT_EQ(icp.getSamples().rows(), 0);
-}
-
-TEST_F(CalibratedTest, NonFinitePointsAreLeftOut)
-{
-  icp.align(output);
-  const auto expected = icp.getSamples();
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const Cloud::Ptr holey_source(new Cloud(*source)), holey_target(new Cloud(*target));
-  holey_source->push_back({nan, 0.0f, 0.0f});
-  holey_target->push_back({0.0f, nan, 0.0f});
-  holey_source->is_dense = holey_target->is_dense = false;
-  icp.setInputSource(holey_source);
-  icp.setInputTarget(holey_target);
-  icp.align(output);
-  EXPECT_EQ(icp.getSamples(), expected);
 }
 
 } // namespace

@@ -3,7 +3,6 @@
 import json
 import os
 import pathlib
-import resource
 import shutil
 import signal
 import subprocess
@@ -280,52 +279,6 @@ class BatchResume(BatchTest):
         other = run_batch(manifest, *FAST, "--results", self.results)
         self.assert_refused(3, other, self.results, "no result")
         self.assertEqual(self.results.read_text(), "x,y\n1,2\n")
-
-    def test_two_at_once(self):
-        manifest = self.seeds(9)
-        command = [BATCH, manifest, *SLOW, "--results", self.results, "--quiet"]
-        with subprocess.Popen(command) as process:
-            while not self.results.exists():
-                time.sleep(0.01)
-            second = run_batch(manifest, *SLOW, "--results", self.results)
-            process.wait(60)
-        self.assert_refused(3, second, self.results, "in use")
-        self.assertEqual(len(results_of(self.results.read_text())), 9)
-
-    def test_full_disk(self):
-        """No file may be larger than 8000 bytes: the lines that fit stay."""
-        manifest = self.seeds(9)
-
-        def limit_files():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
-
-        result = run_batch(
-            manifest,
-            *FAST,
-            "--quiet",
-            "--results",
-            self.results,
-            preexec_fn=limit_files,
-            restore_signals=False,
-        )
-        self.assert_refused(3, result, self.results, "File too large")
-        self.assertIn(len(results_of(self.results.read_text())), range(1, 9))
-        self.assertEqual(self.resumed(manifest, *FAST), self.whole_run(manifest, *FAST))
-
-    def test_unwritable(self):
-        manifest = self.seeds(1)
-        for results, named in (
-            ("/proc/no_such/r", "/proc/no_such"),
-            ("/dev/null", "/dev/null"),
-            (self.folder, self.folder),
-        ):
-            result = run_batch(manifest, *FAST, "--results", results)
-            self.assert_refused(3, result, named)
-        with open("/dev/full", "w", encoding="ascii") as full:
-            result = run_batch(manifest, *FAST, "--quiet", stdout=full)
-        self.assertEqual(result.returncode, 3)
-        self.assertIn("standard output: cannot be written", result.stderr)
 
     def test_interrupt(self):
         manifest = self.seeds(9)

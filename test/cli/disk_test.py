@@ -2,6 +2,7 @@
 
 import contextlib
 import fcntl
+import json
 import os
 import pathlib
 import resource
@@ -210,14 +211,20 @@ class OneFolderForTwo(FaultTest):
         self.assertEqual((output / "samples.csv").read_text(), draws[seed])
         self.assertEqual(self.names_in(output), {"aligned.pcd", "posterior.json", "samples.csv"})
 
-    def test_a_file_of_results_is_for_one_study_at_a_time(self):
-        """As that of a batch: the second one is refused."""
-        results = self.file("results.csv", "")
+    def test_a_file_of_results_is_for_one_run_at_a_time(self):
+        self.small_pair()
+        pair = {"name": "pair", "source": "source.pcd", "target": "target.pcd"}
+        manifest = self.file("manifest.json", json.dumps([pair]))
+        results = self.file("results", "")
         with open(results, "r+", encoding="ascii") as taken:
             fcntl.flock(taken, fcntl.LOCK_EX)
-            result = call(EVALUATE, "sbc", "--runs", 1, "--output", results)
-        self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertIn("in use by another process", result.stderr)
+            for words in (
+                [EVALUATE, "sbc", "--runs", 1, "--output", results],
+                [BATCH, manifest, *FAST, "--results", results],
+            ):
+                result = call(*words)
+                self.assertEqual(result.returncode, 3, result.stderr)
+                self.assertIn("in use by another process", result.stderr)
         self.assertEqual(results.read_text(), "")
 
 

@@ -48,12 +48,6 @@ class Mug(ExactTest):
         self.assertEqual(document["status"]["name"], "ok")
         self.assert_holds_truth(document, DATA / "mug")
 
-    def test_same_draws_on_any_number_of_threads(self):
-        runs = [
-            self.run_to_files(*MUG, "--preset=exact", *SENSOR, "--threads", n)[0] for n in (1, 2)
-        ]
-        self.assertEqual(runs[0], runs[1])
-
 
 class Options(ExactTest):
     # Each changes the draws of SMALL.

@@ -3,7 +3,6 @@
 import os
 import pty
 import re
-import resource
 import select
 import signal
 import subprocess
@@ -15,41 +14,12 @@ from faults import ENDLESS
 
 
 class UnwritableOutput(ToolTest):
-    def test_folder_that_cannot_be_made(self):
-        obstacle = self.file("obstacle", "")
-        pair = self.small_pair()
-        for output in (obstacle, obstacle / "below", "/dev/full", "/proc/no_such"):
-            with self.subTest(output=output):
-                self.assert_refused(3, run(*pair, *FAST, "-o", output), output)
-
     def test_name_that_is_taken_by_a_folder(self):
         output = self.folder / "output"
         (output / "samples.csv").mkdir(parents=True)
         result = run(*self.small_pair(), *FAST, "-o", output)
         self.assert_refused(3, result, output / "samples.csv", "is a directory")
         self.assertEqual([path.name for path in output.iterdir()], ["samples.csv"])
-
-    def test_full_disk(self):
-        """No file may be larger than 4000 bytes; older files stay as they are."""
-        output = self.folder / "output"
-        output.mkdir()
-        (output / "aligned.pcd").write_text("old")
-
-        def limit_files():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
-
-        result = run(
-            *self.small_pair(),
-            *FAST,
-            "-o",
-            output,
-            preexec_fn=limit_files,
-            restore_signals=False,
-        )
-        self.assert_refused(3, result, output, "cannot be written: File too large")
-        self.assertEqual([path.name for path in output.iterdir()], ["aligned.pcd"])
-        self.assertEqual((output / "aligned.pcd").read_text(), "old")
 
     def test_full_standard_output(self):
         with open("/dev/full", "w", encoding="ascii") as full:

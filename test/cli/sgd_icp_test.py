@@ -4,7 +4,7 @@ import math
 import unittest
 
 import cloud_files
-from cli_tool import DATA, SMALL_PAIR_POSE, ToolTest, run, strict_json
+from cli_tool import SMALL_PAIR_POSE, ToolTest, run, strict_json
 
 SGD = ["--method", "sgd-icp"]
 
@@ -25,15 +25,6 @@ class SgdIcp(ToolTest):
             math.dist(pose[:3], truth[:3]),
             max(abs(a - b) for a, b in zip(pose[3:], truth[3:])),
         )
-
-    def test_comes_nearer_to_the_truth_with_every_optimizer(self):
-        pair = self.small_pair()
-        start = math.dist(SMALL_PAIR_POSE[:3], (0, 0, 0))
-        for optimizer in ("fixed", "momentum", "adadelta", "adam", "rmsprop"):
-            with self.subTest(optimizer=optimizer):
-                document = self.json_of(*pair, "--optimizer", optimizer)
-                self.assertEqual(document["options"]["optimizer"], optimizer)
-                self.assertLess(self.errors(document, SMALL_PAIR_POSE)[0], start)
 
     def test_rests_where_icp_rests(self):
         # All points, all pairs: both seek a pose at which the mean gradient is zero. ICP is
@@ -65,13 +56,6 @@ class SgdIcp(ToolTest):
         translation, angle = self.errors(document, SMALL_PAIR_POSE)
         self.assertLess(max(translation, angle), 1e-11)
         self.assertEqual((document["iterations"], document["end"]), (1, "max_iterations"))
-
-    def test_is_repeatable_and_depends_on_the_seed(self):
-        pair = self.small_pair()
-        first, again = (self.json_of(*pair) for _ in range(2))
-        other = self.json_of(*pair, "--seed", "2")
-        self.assertEqual(first["pose"], again["pose"])
-        self.assertNotEqual(first["pose"], other["pose"])
 
     def test_every_option_arrives(self):
         given = {
@@ -136,14 +120,6 @@ class SgdIcp(ToolTest):
         self.assertEqual(document["target"]["finite_points"], 300)
         self.assertEqual(document["pose"], self.json_of(*self.small_pair())["pose"])
         self.assertEqual(self.json_of(holed, source)["source"]["points"], 301)
-
-    def test_a_committed_pair(self):
-        pair = DATA / "mug"
-        document = self.json_of(pair / "source.pcd", pair / "target.pcd", "--iterations", "1000")
-        # Nearer than it started: 39 mm and 0.12 rad.
-        translation, angle = self.errors(document, (0.03, -0.02, 0.015, 0.08, -0.06, 0.12))
-        self.assertLess(translation, 0.039)
-        self.assertLess(angle, 0.12)
 
 
 class SgdIcpRefusals(ToolTest):

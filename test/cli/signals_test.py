@@ -13,7 +13,6 @@ import unittest
 
 from cli_tool import FAST, TOOL, strict_json
 from faults import (
-    BATCH,
     ENDLESS,
     EVALUATE,
     ONE_CASE,
@@ -162,38 +161,6 @@ class EndedBySignal(FaultTest):
             process.communicate(timeout=60)
             self.assertEqual(process.returncode, -number)
             self.assertFalse({path.name for path in output.iterdir()} & REGISTERED)
-
-    def test_batch_goes_on_where_it_was_ended(self):
-        self.small_pair()
-        pairs = [
-            {
-                "name": f"seed {seed}",
-                "source": "source.pcd",
-                "target": "target.pcd",
-                "settings": {"chains": {"seed": seed}},
-            }
-            for seed in range(6)
-        ]
-        manifest = self.file("manifest.json", json.dumps(pairs))
-        results = self.folder / "results.jsonl"
-        words = [BATCH, manifest, *ENDLESS[:2], "--samples", 200, "--chains", 2]
-        words += ["--thinning", 10, "--step-size", "1e-6", "--results", results]
-        process = start(*words)
-        self.addCleanup(process.kill)
-        process.stderr.readline()  # of the first pair
-        process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130)
-        first = results.read_text()
-        self.assertTrue(first.endswith("\n"))
-        self.assertLess(first.count("\n"), len(pairs))
-        again = start(*words)
-        again.communicate(timeout=120)
-        self.assertEqual(again.returncode, 1)  # so few draws do not mix
-        text = results.read_text()
-        self.assertTrue(text.startswith(first))
-        names = [strict_json(line)["name"] for line in text.splitlines()]
-        self.assertEqual(sorted(names), [pair["name"] for pair in pairs])
 
     def test_pose_graph_writes_nothing(self):
         for number in SIGNALS:

@@ -196,6 +196,17 @@ class TrackWithBadScans(TrackTest):
         self.assertEqual(kinds[:3], ["predicted", "predicted", "split"])
         self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 0, 0, 3])
 
+    def test_scan_before_the_target_is_gone(self):
+        scans, _ = self.trajectory(EYES[:4])
+        files = [scans / f"scan_{k}.pcd" for k in range(4)]
+        self.assertIn(self.run_track(*files, "--span", 2).returncode, (0, 1))
+        edges = self.track / "edges.jsonl"
+        lines = edges.read_text().splitlines(keepends=True)
+        edges.write_text("".join(lines[:2]))
+        files[1].unlink()
+        result = self.run_track(*files, "--span", 2, "--quiet")
+        self.assert_refused(3, result, "scan_1.pcd", "no such file")
+
     def test_first_scan(self):
         source, target = self.small_pair()
         gone = self.folder / "gone.pcd"

@@ -79,15 +79,3 @@ TEST_F(CoverageCommand, BadFilesExitWithThree)
     EXPECT_EQ(result.exit_code, 3) << arguments << ": " << result.output;
   }
 }
-
-TEST_F(CoverageCommand, PrintsItsTableWithoutPython)
-{
-  const CommandResult result = run("--quick --methods prior --output a.csv --report",
-                                   "PCL_BAYESIAN_ICP_PYTHON=/nowhere");
-  EXPECT_EQ(result.exit_code, 3) << result.output;
-  EXPECT_NE(result.output.find("\nall\n  prior "), std::string::npos) << result.output;
-  EXPECT_NE(result.output.find("then run: pcl_bayesian_icp_evaluate report .\n"),
-            std::string::npos)
-      << result.output;
-  EXPECT_TRUE(fs::exists(folder_ / "a.csv"));
-}

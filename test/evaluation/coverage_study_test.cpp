@@ -128,20 +128,6 @@ TEST_F(CoverageStudyTest, GoesOnWhereItStopped)
   EXPECT_TRUE(std::equal(complete.begin(), complete.end() - 1, lines.begin()));
 }
 
-TEST_F(CoverageStudyTest, RowsDoNotDependOnThreads)
-{
-  CoverageFile one(file_), many(file_ + "2");
-  runCoverageStudy(study(8, 1), one);
-  runCoverageStudy(study(8, 4), many);
-  for (std::uint64_t seed = 1; seed <= 8; ++seed)
-    for (const char* method : {"right", "bad"}) {
-      const CoverageRunName name = {"scene", "condition", seed, method};
-      ASSERT_NE(one.find(name), nullptr);
-      ASSERT_NE(many.find(name), nullptr);
-      expectSame(one.find(name)->score, many.find(name)->score);
-    }
-}
-
 TEST_F(CoverageStudyTest, AnExceptionOfAMethodIsAResult)
 {
   CoverageFile results(file_);
@@ -184,28 +170,6 @@ TEST_F(CoverageStudyTest, AnExceptionOfTheReportEndsTheStudy)
   CoverageStudy failing = study(2, 2);
   failing.report = [](const CoverageProgress&) { throw std::bad_alloc(); };
   EXPECT_THROW(runCoverageStudy(failing, results), std::bad_alloc);
-}
-
-TEST_F(CoverageStudyTest, BrokenRowsAreRefused)
-{
-  {
-    CoverageFile results(file_);
-    runCoverageStudy(study(1, 1), results);
-  }
-  const auto lines = linesOf(file_);
-  const std::string good = lines[0] + '\n' + lines[1] + '\n';
-  writeFile(file_, good);
-  EXPECT_NO_THROW(CoverageFile{file_});
-  std::string wrong_number = lines[1];
-  wrong_number.replace(wrong_number.find(",1,"), 3, ",x,");
-  for (const std::string& bad :
-       {wrong_number, lines[1] + ",more", std::string("a,b")}) {
-    writeFile(file_, good + bad + '\n');
-    EXPECT_THROW(CoverageFile{file_}, io::FileError) << bad;
-    EXPECT_EQ(linesOf(file_).size(), 3u) << "the file is left as it was";
-  }
-  writeFile(file_, "x,y\n");
-  EXPECT_THROW(CoverageFile{file_}, io::FileError);
 }
 
 TEST_F(CoverageStudyTest, TableHasEveryCellAndThePools)

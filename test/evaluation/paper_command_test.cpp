@@ -70,29 +70,6 @@ TEST_F(PaperCommand, BrokenPairsAreSkippedAndTheExitCodeSaysSo)
     EXPECT_EQ(rows[i][1], "good");
 }
 
-TEST_F(PaperCommand, GoesOnAfterFilesThatWereCutOff)
-{
-  writeScanPair(folder_, "good");
-  const std::string command = std::string("distribution --pairs good") + small;
-  const CommandResult first = run(command);
-  ASSERT_EQ(first.exit_code, 0) << first.output;
-  const fs::path results = folder_ / "out/distribution.csv";
-  const std::string icp_rows = contentOf(runsOfIcp());
-  const Rows rows = rowsOf(results);
-  fs::resize_file(results, fs::file_size(results) - 100);
-  fs::resize_file(runsOfIcp(), icp_rows.size() - 150);
-  const CommandResult second = run(command);
-  EXPECT_EQ(second.exit_code, 0) << second.output;
-  EXPECT_EQ(contentOf(runsOfIcp()), icp_rows);
-  EXPECT_TRUE(withoutSeconds(rowsOf(results)) == withoutSeconds(rows));
-  // Only what was lost is made again.
-  EXPECT_EQ(count(" runs\n", second.output), 1) << second.output;
-  // A file that is not ours is not touched.
-  std::ofstream(results) << "x,y\n";
-  EXPECT_EQ(run(command).exit_code, 3);
-  EXPECT_EQ(contentOf(results), "x,y\n");
-}
-
 TEST_F(PaperCommand, ThreadsMakeNoDifference)
 {
   writeScanPair(folder_, "good");

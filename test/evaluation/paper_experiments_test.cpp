@@ -1,7 +1,6 @@
 // The experiments `runtime` and `accuracy`: rows that are kept, and medians of
 // them.
 #include "geometry/twist.h"
-#include "paper/accuracy_file.h"
 #include "paper/accuracy_methods.h"
 #include "paper/paper_experiment.h"
 #include "support/command_helpers.h"
@@ -135,20 +134,4 @@ TEST(AccuracyMethods, FindThePoseFromNearby)
     EXPECT_LT(error.head<3>().norm(), bound(method.name)) << method.name;
     EXPECT_LT(error.tail<3>().norm(), bound(method.name) / 0.4) << method.name;
   }
-}
-
-TEST(AccuracyFile, RowsComeBackAsTheyWent)
-{
-  AccuracyRun run;
-  run.name = {"0123456789abcdef", "a pair", "icp", 7, 49};
-  run.translation_error = std::nextafter(0.1, 1.0);
-  run.rotation_error = std::nan("");
-  run.status = "no, good";
-  const AccuracyRun back = runOf<AccuracyRun>(rowOf(run));
-  EXPECT_EQ(rowOf(back.name), rowOf(run.name));
-  EXPECT_EQ(back.translation_error, run.translation_error);
-  EXPECT_TRUE(std::isnan(back.rotation_error));
-  EXPECT_EQ(back.status, "no  good");
-  EXPECT_ANY_THROW(runOf<AccuracyRun>(rowOf(run) + ",1"));
-  EXPECT_ANY_THROW(runOf<AccuracyRun>("a,b,c,1"));
 }

@@ -68,15 +68,6 @@ class Numbers(unittest.TestCase):
 
 
 class TableOne(unittest.TestCase):
-    def test_numbers_are_the_papers(self):
-        bayesian, online = table_one.cell("mug_hidden_handle", "yaw")
-        self.assertEqual(bayesian[:2], (5.467, 4.926))
-        self.assertEqual(online[0], 370.697)
-        self.assertEqual(table_one.cell("table_top", "roll")[0][0], 5.947)
-        self.assertEqual(table_one.cell("table", "y")[1][0], 0.062)
-        self.assertEqual(table_one.cell("mug", "x")[0][1], 0.049)
-        self.assertIsNone(table_one.cell("corridor", "x"))
-
     def test_orders_are_decided_beyond_the_deviations(self):
         def order(a, b):
             return table_one.order_of((*a, 10, 10), (*b, 10, 10))

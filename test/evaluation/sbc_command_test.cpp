@@ -22,23 +22,6 @@ protected:
 
 } // namespace
 
-TEST_F(SbcCommand, GoesOnWhereItStoppedAndMakesTheReport)
-{
-  const std::string options = " --sampler calibrated,exact --output a.csv";
-  const CommandResult first = run("--runs 2" + options);
-  EXPECT_EQ(first.exit_code, 0) << first.output;
-  const std::string rows = contentOf(folder_ / "a.csv");
-  const CommandResult second = run("--runs 3" + options);
-  EXPECT_EQ(second.exit_code, 0) << second.output;
-  EXPECT_NE(second.output.find("3 of 3 runs"), std::string::npos) << second.output;
-  EXPECT_NE(second.output.find("exact-metropolis      3/3"), std::string::npos)
-      << second.output;
-  EXPECT_EQ(contentOf(folder_ / "a.csv").substr(0, rows.size()), rows);
-  EXPECT_EQ(run("--runs 3 --report" + options).exit_code, 0);
-  EXPECT_EQ(contentOf(folder_ / "a_ranks.png").substr(1, 3), "PNG");
-  EXPECT_NE(contentOf(folder_ / "a_ranks.svg").find("</svg>"), std::string::npos);
-}
-
 TEST_F(SbcCommand, TellsRanksThatAreNotUniform)
 {
   std::ofstream file(folder_ / "a.csv");

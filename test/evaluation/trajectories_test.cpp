@@ -11,7 +11,9 @@
 #include <Eigen/LU>
 
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <string>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;
@@ -68,7 +70,7 @@ drawnRecording(const std::string& name, std::uint64_t seed)
             .matrix() *
         expSE3(-error));
     for (const std::string& method : edgeMethods()) {
-      run.name = {name, 20, seed, target, source, method};
+      run.name = {name, seed, target, source, method, ""};
       run.complaint = method == "closed-form" ? "none" : "";
       const double scale = method == "gicp" ? 0.1 : 1.0;
       run.covariance.setZero();
@@ -100,7 +102,7 @@ TEST(Trajectories, ACameraAlongABareWallIsRightAboutTheMotionsThatItSees)
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= num_runs; ++seed) {
     const Recording drive = makeDrive("room_camera", seed, 100);
-    const EdgeName name{drive.name, 100, seed, 21, 24, "calibrated"};
+    const EdgeName name{drive.name, seed, 21, 24, "calibrated", ""};
     const EdgeRun run = registeredEdge(
         name, drive.read(24), drive.read(21), guessOf(drive, seed, 21, 24));
     ASSERT_EQ(run.complaint, "") << seed;
@@ -247,6 +249,41 @@ TEST_F(TrajectoriesCommand, GoesOnWhereItStopped)
   EXPECT_EQ(second.output.find("pairs"), std::string::npos) << second.output;
   EXPECT_EQ(contentOf(folder_ / "r/a.csv"), rows);
   EXPECT_NE(contentOf(folder_ / "r/report.md").find("Trajectories"), std::string::npos);
+}
+
+TEST_F(TrajectoriesCommand, RegistersAgainIfAScanIsAnotherOne)
+{
+  const auto write = [this](const std::string& name, const std::string& text) {
+    std::filesystem::create_directories(folder_ / "scans/wall");
+    std::ofstream(folder_ / "scans/wall" / name) << text;
+  };
+  const auto writeScan = [&](const std::string& name, double height) {
+    std::string points;
+    for (int k = 0; k < 100; ++k)
+      points += std::to_string(k % 10) + ' ' + std::to_string(k / 10) + ' ' +
+                std::to_string(height * (k % 3)) + '\n';
+    write(name,
+          "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 100\nHEIGHT 1\nPOINTS 100\n"
+          "DATA ascii\n" +
+              points);
+  };
+  write("set.json",
+        R"({"quality": "A", "accuracy_translation_m": 0.01,
+            "accuracy_rotation_rad": 0.001, "lost_displacement_m": 1})");
+  write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
+  writeScan("scan_0000.pcd", 0.1);
+  writeScan("scan_0001.pcd", 0.1);
+  const auto numRegistered = [this] {
+    const std::string output = run("scans --output a.csv").output;
+    return output.find("1 of 1 pairs") == std::string::npos ? 0 : 1;
+  };
+  EXPECT_EQ(numRegistered(), 1);
+  EXPECT_EQ(numRegistered(), 0);
+  writeScan("scan_0000.pcd", 0.2);
+  EXPECT_EQ(numRegistered(), 1);
+  write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n");
+  EXPECT_EQ(numRegistered(), 1);
+  EXPECT_EQ(numRegistered(), 0);
 }
 
 TEST_F(TrajectoriesCommand, SaysWhatItCannotUse)

@@ -185,25 +185,6 @@ TEST(Exact, AKernelThatLeavesOutAllPointsIsADoubt)
       << lost.summary.message;
 }
 
-TEST(Exact, DrawsAreBitIdenticalForEveryNumberOfThreads)
-{
-  const Scans scans;
-  for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
-    Options options = exactOptions();
-    options.chains.num_draws = 200;
-    options.exact.metropolis = metropolis;
-    options.chains.num_threads = 1;
-    const auto reference =
-        estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
-    for (const int num_threads : {2, 3}) {
-      options.chains.num_threads = num_threads;
-      const auto estimate =
-          estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
-      EXPECT_EQ(estimate.samples, reference.samples) << toString(metropolis);
-    }
-  }
-}
-
 TEST(Exact, ASearchOfTheUsersOwnGivesTheSamePosterior)
 {
   const Scans scans(100);

@@ -10,7 +10,6 @@
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
-#include <stdexcept>
 
 namespace bayesian_icp {
 namespace {
@@ -167,26 +166,6 @@ TEST(Modes, ThatAreClearlyWorseLoseTheirChains)
   EXPECT_GT(summary.coordinates[0].quantile_2_5, 0.8);
 }
 
-TEST(PreconditionedSampler, DrawsDoNotDependOnTheNumberOfThreads)
-{
-  auto energy = mixture(1.0);
-  energy.num_terms = 1000;
-  energy.term_noise = 20.0 * Matrix6d::Identity();
-  for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
-    ExactOptions sampler;
-    sampler.metropolis = metropolis;
-    auto options = chainOptions(100);
-    options.num_threads = 1;
-    const ChainSet reference = sample(energy, sampler, options);
-    for (const int num_threads : {2, 3}) {
-      options.num_threads = num_threads;
-      const ChainSet set = sample(energy, sampler, options);
-      for (std::size_t i = 0; i < 4; ++i)
-        EXPECT_EQ(set.chains[i].draws, reference.chains[i].draws);
-    }
-  }
-}
-
 TEST(PreconditionedSampler, ObeysBurnInAndThinningAndReportsThem)
 {
   ExactOptions options;
@@ -232,15 +211,6 @@ TEST(PreconditionedSampler, CanBeCancelledInWarmUpAndInSampling)
   EXPECT_TRUE(late.cancelled);
   EXPECT_GT(pooledDraws(late.chains).rows(), 0);
   EXPECT_LT(pooledDraws(late.chains).rows(), 400);
-}
-
-TEST(PreconditionedSampler, ExceptionsReachTheCaller)
-{
-  auto energy = gaussianEnergy(Vector6d::Zero(), Matrix6d::Identity());
-  energy.likelihood_gradient = [](const Vector6d&) -> Vector6d {
-    throw std::runtime_error("broken");
-  };
-  EXPECT_THROW(sample(energy, ExactOptions(), chainOptions(40)), std::runtime_error);
 }
 
 } // namespace

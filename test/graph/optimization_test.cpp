@@ -1,69 +1,24 @@
 // Poses and covariances of optimised graphs against closed forms and known truths.
 #include "graph/adjoint.h"
 #include "graph/cycle_closure.h"
+#include "graph/graph_support.h"
 #include "graph/loop_candidates.h"
 #include "graph/optimization.h"
-#include "support/test_support.h"
-
-#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 using namespace bayesian_icp;
+using namespace bayesian_icp::test;
 using app::GaussianPose;
 using app::GraphEdge;
 using app::OptimizedPoses;
 using app::RobustLoss;
 
 namespace {
-
-using Poses = std::vector<Eigen::Matrix4d>;
-
-/** Correlated, of about 1 cm and 2 mrad. */
-Matrix6d
-someCovariance(Random& random)
-{
-  Matrix6d sum = Matrix6d::Zero();
-  for (int k = 0; k < 12; ++k) {
-    Vector6d direction = random.normal6();
-    direction.head<3>() *= 0.003;
-    direction.tail<3>() *= 0.0006;
-    sum += direction * direction.transpose();
-  }
-  return sum;
-}
-
-/** Between two of \p poses, with an error that is drawn from its covariance. */
-GraphEdge
-drawnEdge(const Poses& poses, int target, int source, Random& random)
-{
-  const Matrix6d covariance = someCovariance(random);
-  const Vector6d error = covariance.llt().matrixL() * random.normal6();
-  return {target,
-          source,
-          poses[std::size_t(target)].inverse() * poses[std::size_t(source)] *
-              expSE3(-error),
-          covariance,
-          0.0};
-}
-
-/** About a metre apart, and the first one is the frame. */
-Poses
-somePoses(std::size_t count, Random& random)
-{
-  Poses poses(1, Eigen::Matrix4d::Identity());
-  while (poses.size() < count)
-    poses.push_back(matrixOf(test::randomPose(random, 0.9)));
-  return poses;
-}
 
 /** As a tool has them before the optimisation. */
 Poses
@@ -185,20 +140,7 @@ TEST(OptimizedPosesOf, EdgesThatShareTheNoiseOfASourceAreAsFarOffAsStated)
   double shared = 0.0, independent = 0.0;
   for (int run = 0; run < num_runs; ++run) {
     const Poses truth = somePoses(num_poses, random);
-    std::vector<GraphEdge> edges;
-    for (int source = 1; source < num_poses; ++source) {
-      const Vector6d noise = random.normal6();
-      for (int target = source - 1; target >= std::max(0, source - 3); --target) {
-        GraphEdge edge = drawnEdge(truth, target, source, random);
-        const Vector6d z =
-            std::sqrt(share) * noise + std::sqrt(1.0 - share) * random.normal6();
-        const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
-        edge.T_target_source = truth[std::size_t(target)].inverse() *
-                               truth[std::size_t(source)] *
-                               expSE3(Vector6d(-solver.operatorSqrt() * z));
-        edges.push_back(edge);
-      }
-    }
+    std::vector<GraphEdge> edges = drawnSpan(truth, 3, share, random);
     const auto squaredErrorFor = [&](double assumed_share) {
       for (GraphEdge& edge : edges)
         edge.share = assumed_share;

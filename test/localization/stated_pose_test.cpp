@@ -1,4 +1,5 @@
 // Priors from messages: the inverse of what the exports do.
+#include "examples/kalman.h"
 #include "localization/localization_test_support.h"
 #include "localization/stated_pose.h"
 
@@ -9,6 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <cmath>
 #include <limits>
 
 using namespace bayesian_icp;
@@ -180,4 +182,16 @@ TEST(StatedPose, ThatCannotBeUsedIsRefusedWithTheReason)
   Vector6d up = Vector6d::Zero();
   up[4] = 0.5 * M_PI;
   expectRefusal(stated(up, good), "pitch");
+}
+
+TEST(KalmanExample, HasAPriorInTheAxesOfTheTarget)
+{
+  // A quarter turn: the source's x axis is the target's y axis.
+  Vector6d mean, variances, expected;
+  mean << 1.0, 2.0, 3.0, 0.0, 0.0, std::acos(0.0);
+  variances << 1.0, 4.0, 9.0, 0.01, 0.04, 0.09;
+  expected << 4.0, 1.0, 9.0, 0.01, 0.04, 0.09;
+  const Prior prior = kalman::priorAbout({matrixOf(mean), variances.asDiagonal()});
+  EXPECT_TRUE(prior.mean().isApprox(mean, 1e-12)) << prior.mean();
+  EXPECT_TRUE(prior.variance().isApprox(25.0 * expected, 1e-9)) << prior.variance();
 }

@@ -142,23 +142,6 @@ TEST(Chains, SampleAGaussianWithTheBiasOfTheStepSize)
   }
 }
 
-TEST(Chains, AreBitIdenticalForEveryNumberOfThreads)
-{
-  auto options = withSteps(0.1);
-  options.initial_spread = Vector6d::Constant(0.1);
-  const auto run = [&](int num_threads) {
-    auto chains = chainOptions(5, 503);
-    chains.num_threads = num_threads;
-    return runChains(Vector6d::Zero(), unitGaussian(), options, chains);
-  };
-  const ChainSet reference = run(1);
-  for (const int num_threads : {2, 3, 8, 0}) {
-    const ChainSet set = run(num_threads);
-    for (std::size_t c = 0; c < 5; ++c)
-      EXPECT_EQ(set.chains[c].draws, reference.chains[c].draws) << num_threads;
-  }
-}
-
 TEST(Chains, DependOnSeedAndChainOnly)
 {
   auto options = chainOptions(2, 20);

@@ -121,13 +121,6 @@ TEST(Legend, HasUnitsAndTheMagnification)
   EXPECT_EQ(legendOf(panel, scene, &*uncertainty, options, true)[0].color, (Color{}));
 }
 
-TEST(Legend, BreaksLinesAtBlanks)
-{
-  EXPECT_EQ(wrapped("one two three", 7), "one two\nthree");
-  EXPECT_EQ(wrapped("one two three", 100), "one two three");
-  EXPECT_EQ(wrapped("unbreakable", 3), "unbreakable");
-}
-
 TEST(Keys, AreAllDifferentAndNotPclViewers)
 {
   const std::string taken = "pwsjcfeq+-guorlhxk0123456789";

@@ -1,17 +1,13 @@
 // Closures of cycles of a graph whose errors are drawn from its covariances.
-#include "graph/cycle_closure.h"
+#include "graph/closed_cycles.h"
 #include "graph/graph_file.h"
+#include "graph/graph_support.h"
 #include "io/errors.h"
-#include "support/test_support.h"
 
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/measurement.h>
-#include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include <unistd.h>
 
@@ -21,54 +17,10 @@
 #include <tuple>
 
 using namespace bayesian_icp;
+using namespace bayesian_icp::test;
 using app::Closure;
 using app::Cycle;
 using app::GraphEdge;
-
-namespace {
-
-/** Correlated, of about 1 cm and 2 mrad. */
-Matrix6d
-someCovariance(Random& random)
-{
-  Matrix6d root = Matrix6d::Zero();
-  for (int k = 0; k < 12; ++k) {
-    Vector6d direction = random.normal6();
-    direction.head<3>() *= 0.003;
-    direction.tail<3>() *= 0.0006;
-    root += direction * direction.transpose();
-  }
-  return root;
-}
-
-/** Between two vertices whose poses are known. */
-GraphEdge
-drawnEdge(const std::vector<Eigen::Matrix4d>& poses,
-          int target,
-          int source,
-          Random& random)
-{
-  GraphEdge edge;
-  edge.target = target;
-  edge.source = source;
-  edge.covariance = someCovariance(random);
-  edge.share = 0.0;
-  const Vector6d error = edge.covariance.llt().matrixL() * random.normal6();
-  edge.T_target_source = poses[std::size_t(target)].inverse() *
-                         poses[std::size_t(source)] * expSE3(-error);
-  return edge;
-}
-
-std::vector<Eigen::Matrix4d>
-somePoses(std::size_t count, Random& random)
-{
-  std::vector<Eigen::Matrix4d> poses;
-  while (poses.size() < count)
-    poses.push_back(matrixOf(test::randomPose(random, 0.9)));
-  return poses;
-}
-
-} // namespace
 
 TEST(Cycles, CloseWithinTheSumOfTheCovariances)
 {
@@ -93,6 +45,58 @@ TEST(Cycles, CloseWithinTheSumOfTheCovariances)
   }
   EXPECT_NEAR(squared_error, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
   EXPECT_NEAR(num_in_half, num_runs / 2, 4.0 * std::sqrt(num_runs / 4.0));
+}
+
+TEST(Cycles, TogetherAreChiSquareWhateverTheyHaveInCommon)
+{
+  constexpr int num_runs = 300, num_poses = 8;
+  constexpr double share = 0.6;
+  Random random(6, 0);
+  double squared_error = 0.0;
+  int num_rare = 0, num_rare_if_independent = 0;
+  for (int run = 0; run < num_runs; ++run) {
+    const Poses poses = somePoses(num_poses, random);
+    const std::vector<GraphEdge> edges = drawnSpan(poses, 3, share, random);
+    const auto cycles = app::closedCycles(edges, 4);
+    const app::JointClosure joint = app::jointClosureOf(edges, cycles);
+    // An edge more than the chain needs is a cycle more.
+    ASSERT_EQ(joint.num_cycles, edges.size() - num_poses + 1);
+    ASSERT_EQ(joint.num_degrees, 66);
+    squared_error += joint.squared_error / num_runs;
+    num_rare += joint.probability < 0.05 ? 1 : 0;
+    double sum = 0.0;
+    for (const app::ClosedCycle& closed : cycles)
+      sum += closed.closure.squared_error;
+    // 95 % quantile of chi-square with 66 degrees of freedom.
+    num_rare_if_independent += sum > 85.965 ? 1 : 0;
+  }
+  EXPECT_NEAR(squared_error, 66.0, 4.0 * std::sqrt(2.0 * 66.0 / num_runs));
+  const double tolerance = 4.0 * std::sqrt(0.05 * 0.95 * num_runs);
+  EXPECT_NEAR(num_rare, 0.05 * num_runs, tolerance);
+  EXPECT_GT(num_rare_if_independent, 0.05 * num_runs + tolerance);
+}
+
+TEST(Cycles, ThatAreSumsOfOthersAreNotCountedTogether)
+{
+  Random random(7, 0);
+  const Poses poses = somePoses(4, random);
+  std::vector<GraphEdge> edges;
+  for (int target = 0; target < 4; ++target)
+    for (int source = target + 1; source < 4; ++source)
+      edges.push_back(drawnEdge(poses, target, source, random));
+  auto cycles = app::closedCycles(edges, 4);
+  ASSERT_EQ(cycles.size(), 3u);
+  const double expected = app::jointClosureOf(edges, cycles).squared_error;
+  // From 2 to 3, and back by 1: the fourth of four triangles.
+  const Cycle fourth{5, {3, 4}};
+  cycles.push_back({"2-1-3", fourth, app::closureOf(edges, fourth)});
+  const app::JointClosure joint = app::jointClosureOf(edges, cycles);
+  EXPECT_EQ(joint.num_cycles, 3u);
+  EXPECT_EQ(joint.num_degrees, 18);
+  // Any three of them say the same, to first order.
+  cycles.erase(cycles.begin());
+  EXPECT_NEAR(
+      app::jointClosureOf(edges, cycles).squared_error, expected, 0.05 * expected);
 }
 
 TEST(Cycles, AreTheShortestAndEachIsThereOnce)
@@ -161,7 +165,7 @@ protected:
 TEST_F(GraphFile, GivesBackWhatWasExported)
 {
   Random random(5, 0);
-  const Vector6d mean = test::randomPose(random, 0.5);
+  const Vector6d mean = randomPose(random, 0.5);
   const Matrix6d covariance = someCovariance(random);
   PoseEstimate estimate = estimateOf(mean, covariance, CovarianceConvention::RightSE3);
   estimate.status = Status::Ok;

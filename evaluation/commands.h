@@ -1,0 +1,36 @@
+/** \file
+ * \brief The sub-commands of pcl_bayesian_icp_evaluate, but those of the paper's
+ * evaluation.
+ */
+#pragma once
+
+namespace bayesian_icp::evaluate {
+
+/** All take the command line from the sub-command's name on, return the exit code (0
+ * but for what is said below), and throw io::UsageError and io::FileError. */
+
+/** \brief Posteriors of every method against the truth. */
+int
+runCoverageCommand(int argc, const char* const* argv);
+
+/** \brief Are the covariances of a pose graph's edges right, judged without the truth?
+ * \return 1 if the errors of the closures are larger than chance allows */
+int
+runCyclesCommand(int argc, const char* const* argv);
+
+/** \brief Every sampler on every scene and cell, next to a gold standard.
+ * \return 1 if a gold standard did not converge */
+int
+runSamplersCommand(int argc, const char* const* argv);
+
+/** \brief Simulation-based calibration of the samplers.
+ * \return 1 if the ranks of a well-specified model are not uniform */
+int
+runSbcCommand(int argc, const char* const* argv);
+
+/** \brief Do covariances of registrations make trajectories better, and is their stated
+ * accuracy true? */
+int
+runTrajectoriesCommand(int argc, const char* const* argv);
+
+} // namespace bayesian_icp::evaluate

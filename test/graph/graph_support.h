@@ -1,0 +1,84 @@
+/** \file
+ * \brief Graphs whose errors are drawn from their covariances.
+ */
+#pragma once
+
+#include "graph/pose_graph.h"
+#include "support/test_support.h"
+
+#include <bayesian_icp/random.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace bayesian_icp::test {
+
+using Poses = std::vector<Eigen::Matrix4d>;
+
+/** \brief Correlated, of about 1 cm and 2 mrad. */
+inline Matrix6d
+someCovariance(Random& random)
+{
+  Matrix6d sum = Matrix6d::Zero();
+  for (int k = 0; k < 12; ++k) {
+    Vector6d direction = random.normal6();
+    direction.head<3>() *= 0.003;
+    direction.tail<3>() *= 0.0006;
+    sum += direction * direction.transpose();
+  }
+  return sum;
+}
+
+/** \brief About a metre apart, and the first one is the frame. */
+inline Poses
+somePoses(std::size_t count, Random& random)
+{
+  Poses poses(1, Eigen::Matrix4d::Identity());
+  while (poses.size() < count)
+    poses.push_back(matrixOf(randomPose(random, 0.9)));
+  return poses;
+}
+
+/** \brief Between two of \p poses, independent of all others. */
+inline app::GraphEdge
+drawnEdge(const Poses& poses, int target, int source, Random& random)
+{
+  const Matrix6d covariance = someCovariance(random);
+  const Vector6d error = covariance.llt().matrixL() * random.normal6();
+  return {target,
+          source,
+          poses[std::size_t(target)].inverse() * poses[std::size_t(source)] *
+              expSE3(-error),
+          covariance,
+          0.0};
+}
+
+/** \brief From each pose to up to \p span before it; those with the same source have
+ * the share \p share of their variance in common. */
+inline std::vector<app::GraphEdge>
+drawnSpan(const Poses& poses, int span, double share, Random& random)
+{
+  std::vector<app::GraphEdge> edges;
+  for (int source = 1; source < static_cast<int>(poses.size()); ++source) {
+    const Vector6d noise = random.normal6();
+    for (int target = source - 1; target >= std::max(0, source - span); --target) {
+      app::GraphEdge edge = drawnEdge(poses, target, source, random);
+      const Vector6d z =
+          std::sqrt(share) * noise + std::sqrt(1.0 - share) * random.normal6();
+      const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
+      edge.T_target_source = poses[std::size_t(target)].inverse() *
+                             poses[std::size_t(source)] *
+                             expSE3(Vector6d(-solver.operatorSqrt() * z));
+      edge.share = share;
+      edges.push_back(edge);
+    }
+  }
+  return edges;
+}
+
+} // namespace bayesian_icp::test
