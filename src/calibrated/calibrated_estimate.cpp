@@ -311,7 +311,7 @@ estimateAt(const SurfaceScorer& scorer,
   const double num_ratio =
       double(e.scores.num_active) / std::max(1, of_first.scores.num_active);
   e.score_covariance =
-      J.covariance + num_ratio * J.kappa_inf / J_first.kappa_inf *
+      J.covariance + num_ratio * J.kappa / J_first.kappa *
                          (of_first.score_covariance - J_first.covariance);
   finish(curvature, num_ratio, e);
   e.num_queries = scorer.sourcePoints().cols() +

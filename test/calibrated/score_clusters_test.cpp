@@ -246,6 +246,53 @@ TEST(ScoreClusters, ADirectionThatFewClustersHoldIsUnbiased)
   EXPECT_LT(4.5 * error, 0.15);
 }
 
+/** Rings of a LiDAR on the ground, half of whose noise is one offset per ring. */
+TEST(ScoreClusters, ShellsSeeTheOffsetsOfRings)
+{
+  constexpr int num_scans = 400, num_rings = 20, num_of_ring = num_points / num_rings;
+  constexpr double turn = 2.0 * 3.14159265358979323846;
+  test::Sheet ground(num_points);
+  MatrixXd offsets = MatrixXd::Zero(num_points, num_rings);
+  for (Index i = 0; i < num_points; ++i) {
+    const Index ring = i / num_of_ring;
+    const double radius = 3.0 + 0.5 * double(ring),
+                 angle = turn * double(i) / num_of_ring;
+    ground.points.col(i) << radius * std::cos(angle), radius * std::sin(angle), -1.8;
+    ground.normals.col(i) = Eigen::Vector3d::UnitZ();
+    offsets(i, ring) = 1.0;
+  }
+  const Matrix6d precision = 1e-6 * Matrix6d::Identity();
+  const Matrix6Xd jacobians = test::distanceJacobians(ground) / residual_noise;
+  const Matrix6d working_information =
+      jacobians * jacobians.transpose() + 5.0 * precision;
+  const Eigen::RowVectorXd heights = jacobians.row(2);
+  const double truth =
+      0.5 * (heights.squaredNorm() + (heights * offsets).squaredNorm());
+  ClusterOptions shells;
+  shells.num_clusters = num_rings / 2;
+  shells.num_partitions = 1;
+  shells.are_shells = true;
+  Random random(88, 0);
+  double sum = 0.0, sum_of_squares = 0.0, sum_of_clusters = 0.0;
+  for (int k = 0; k < num_scans; ++k) {
+    const PointScores points =
+        fittedScores(ground, correlatedNoise(offsets, random), precision);
+    const double ratio =
+        clusteredCovariance(points, working_information, shells)(2, 2) / truth;
+    sum += ratio;
+    sum_of_squares += ratio * ratio;
+    sum_of_clusters +=
+        clusteredCovariance(points, working_information, ClusterOptions())(2, 2) /
+        truth;
+  }
+  const double mean = sum / num_scans;
+  const double error =
+      std::sqrt((sum_of_squares / num_scans - mean * mean) / num_scans);
+  EXPECT_NEAR(mean, 1.0, 4.5 * error);
+  // Clusters of neighbours have pieces of rings.
+  EXPECT_LT(sum_of_clusters / num_scans, 0.5);
+}
+
 TEST(ScoreClusters, OfNoPointsIsZero)
 {
   PointScores none;

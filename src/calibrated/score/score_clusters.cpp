@@ -271,12 +271,12 @@ scoreCovariance(const PointScores& points,
   const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
                       0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
   result.kappa_inf = std::max({1.0, kappa_24, root * root});
-  const double correlation = std::max(result.kappa_inf, kappa(clustered[shells]));
+  result.kappa = std::max(result.kappa_inf, kappa(clustered[shells]));
   // Number of independent points to which the correlated ones are equivalent.
-  const double nu = static_cast<double>(points.scores.cols()) / correlation;
+  const double nu = static_cast<double>(points.scores.cols()) / result.kappa;
   const double correction = nu / std::max(1.0, nu - lost_degrees_of_freedom);
   result.covariance =
-      0.5 * correction * correlation * (J_48 / result.kappa_48 + independent);
+      0.5 * correction * result.kappa * (J_48 / result.kappa_48 + independent);
   return result;
 }
 
