@@ -72,7 +72,8 @@ struct Registration {
   explicit Registration(const CoverageCase& problem)
   : model(problem.target, SurfaceModelOptions(), 1)
   , scorer(
-        evenSource(problem.source, CalibratedOptions().max_source_points, problem.seed),
+        evenSource(
+            problem.source, model, CalibratedOptions().max_source_points, problem.seed),
         model)
   , prior(priorOf(problem))
   {}

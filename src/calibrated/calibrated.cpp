@@ -119,6 +119,7 @@ estimateCalibratedPosterior(
     return failure(surface.status, surface.complaint);
   // 2: what source points say.
   const SurfaceScorer scorer(evenSource(source_points,
+                                        surface.model,
                                         options.calibrated.max_source_points,
                                         options.chains.seed),
                              surface.model);

@@ -27,9 +27,10 @@ namespace {
 /** Stream of the random order of source points; those of chains count from 0. */
 constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
-/** At most this part of a source is used, if that leaves enough points: a choice of
- * nearly all points would be as uneven as they are. */
-constexpr double max_part_of_source = 0.4;
+/** More than num_curvature_points are at most this part of the source, because a choice
+ * of nearly all points is as uneven as they are, and this number per patch: more would
+ * repeat the noise of the patches, of which J sees only what differs between them. */
+constexpr double max_part_used = 0.4;
 
 /** Starts and the mode have converged at this part of the target's noise. */
 constexpr double start_tolerance = 0.03;
@@ -354,10 +355,15 @@ moveToMean(const SurfaceScorer& scorer,
 } // namespace
 
 Eigen::Matrix3Xd
-evenSource(const Eigen::Matrix3Xd& points, Index max_points, std::uint64_t seed)
+evenSource(const Eigen::Matrix3Xd& points,
+           const SurfaceModel& model,
+           Index max_points,
+           std::uint64_t seed)
 {
   const Index num_first = EstimateOptions().num_curvature_points;
-  const auto part = static_cast<Index>(max_part_of_source * double(points.cols()));
+  const auto num_patches = static_cast<Index>(model.patches().size());
+  const auto part = static_cast<Index>(
+      max_part_used * static_cast<double>(std::min(points.cols(), num_patches)));
   max_points = std::min(max_points, std::max(num_first, part));
   const Eigen::Vector3d centroid = points.rowwise().mean();
   const Eigen::Matrix3Xf centred = (points.colwise() - centroid).cast<float>();

@@ -79,12 +79,16 @@ struct EstimateOptions {
  * the sensor most points repeat each other, but the far points hold rotations. So do
  * the first EstimateOptions::num_curvature_points by themselves.
  * \param[in] points 3 x n, finite [m]
- * \param[in] max_points how many, at most. Beyond num_curvature_points it is no more
- *            than 40 % of the points, because nearly all points cannot be even.
+ * \param[in] model of the target
+ * \param[in] max_points how many, at most. More than num_curvature_points are no more
+ *            than 40 % of the points and 0.4 per patch.
  * \param[in] seed of their order. The order of the first is random, so that the search
  *            of the mode, which uses the first of these, gets a random choice. */
 Eigen::Matrix3Xd
-evenSource(const Eigen::Matrix3Xd& points, Eigen::Index max_points, std::uint64_t seed);
+evenSource(const Eigen::Matrix3Xd& points,
+           const SurfaceModel& model,
+           Eigen::Index max_points,
+           std::uint64_t seed);
 
 /** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
  * result from there) and estimate its covariance.

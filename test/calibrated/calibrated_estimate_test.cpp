@@ -46,11 +46,13 @@ ballAndBox(Random& random, Index num_points)
 
 /** Two scans, and a true pose from the prior. */
 struct Case {
-  explicit Case(std::uint64_t stream, Index num_source_points = 500)
+  explicit Case(std::uint64_t stream,
+                Index num_source_points = 500,
+                Index num_target_points = 2000)
   {
     Random random(101, stream);
     model = std::make_unique<SurfaceModel>(
-        test::noisy(ballAndBox(random, 2000), sigma, random));
+        test::noisy(ballAndBox(random, num_target_points), sigma, random));
     const Matrix3Xd seen =
         test::noisy(ballAndBox(random, num_source_points), sigma, random);
     truth = isometryOf(random.normal6().cwiseProduct(priorDeviations()));
@@ -102,7 +104,7 @@ TEST(CalibratedEstimate, MorePointsThanThoseOfTheCurvatureMakeItSharper)
   EstimateOptions options;
   options.num_curvature_points = 500;
   for (int k = 0; k < num_cases; ++k) {
-    const Case c(200 + static_cast<std::uint64_t>(k), 2000);
+    const Case c(200 + static_cast<std::uint64_t>(k), 2000, 8000);
     const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior, options);
     const CalibratedEstimate of_first =
         estimateCalibrated(c.scorer->ofFirst(500), *c.prior, options);
@@ -122,15 +124,23 @@ TEST(CalibratedEstimate, MorePointsThanThoseOfTheCurvatureMakeItSharper)
   EXPECT_LT(ratio, 0.7);
 }
 
-TEST(CalibratedEstimate, NeverUsesNearlyAllOfALargeSource)
+TEST(CalibratedEstimate, UsesAPartOfTheSourceAndNotMoreThanThePatchesCarry)
 {
   Random random(101, 300);
-  for (const auto& [num_points, num_used] : {std::pair<Index, Index>(1500, 1500),
-                                             {4000, 2000},
-                                             {10000, 4000},
-                                             {30000, 6000}})
-    EXPECT_EQ(evenSource(ballAndBox(random, num_points).points, 6000, 1).cols(),
-              num_used);
+  const SurfaceModel few(ballAndBox(random, 3000).points),
+      many(ballAndBox(random, 25000).points);
+  const auto expectUsed = [&](Index num_points, const SurfaceModel& model, Index most) {
+    const Matrix3Xd points = ballAndBox(random, num_points).points;
+    const Index num_used = evenSource(points, model, 6000, 1).cols();
+    EXPECT_LE(num_used, most) << num_points;
+    // A grid cannot have any number of cubes.
+    EXPECT_GT(num_used, 0.95 * static_cast<double>(most)) << num_points;
+  };
+  expectUsed(1500, many, 1500);
+  expectUsed(4000, many, 2000);
+  expectUsed(10000, many, 4000);
+  expectUsed(30000, many, 6000);
+  expectUsed(30000, few, 2000);
 }
 
 TEST(CalibratedEstimate, PutsItsPartsTogether)

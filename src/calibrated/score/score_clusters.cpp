@@ -27,6 +27,11 @@ constexpr std::uint64_t partition_seed = 1;
  * estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
 constexpr double lost_degrees_of_freedom = 13.0;
 
+/** Shells, and what remains of their kappa after its noise: the 95 % quantile of
+ * chi-square with six degrees of freedom per shell, over its mean, is 1.29. */
+constexpr int num_shells = 12;
+constexpr double shells_to_clusters = 1.0 / 1.29;
+
 /** Upper limit of one cluster's share of the information. */
 constexpr double max_share = 0.9;
 
@@ -249,7 +254,7 @@ scoreCovariance(const PointScores& points,
     return metric.solve(covariance).trace() / size;
   };
   constexpr int num_sizes = 5, shells = 4;
-  constexpr int num_clusters[num_sizes] = {12, 24, 48, 96, 12};
+  constexpr int num_clusters[num_sizes] = {12, 24, 48, 96, num_shells};
   constexpr int num_partitions[num_sizes] = {16, 12, 8, 8, 1};
   Matrix6d clustered[num_sizes];
   forEachPiece(num_sizes, num_threads, [&](std::ptrdiff_t i) {
@@ -271,7 +276,8 @@ scoreCovariance(const PointScores& points,
   const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
                       0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
   result.kappa_inf = std::max({1.0, kappa_24, root * root});
-  result.kappa = std::max(result.kappa_inf, kappa(clustered[shells]));
+  result.kappa =
+      std::max(result.kappa_inf, shells_to_clusters * kappa(clustered[shells]));
   // Number of independent points to which the correlated ones are equivalent.
   const double nu = static_cast<double>(points.scores.cols()) / result.kappa;
   const double correction = nu / std::max(1.0, nu - lost_degrees_of_freedom);

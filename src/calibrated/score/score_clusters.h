@@ -59,7 +59,7 @@ struct ScoreCovariance {
   /** The same, extrapolated to clusters so large that they are independent; at least
    * 1. */
   double kappa_inf = 1.0;
-  /** The same of J: kappa_inf, or that of shells if it is larger. */
+  /** The same of J: kappa_inf, or that of shells if it is clearly larger. */
   double kappa = 1.0;
 };
 
@@ -67,8 +67,8 @@ struct ScoreCovariance {
  *
  * Half of it has the shape of the covariance of 48 clusters, half that of independent
  * points. Both are scaled by kappa: that of independent clusters, or that of shells if
- * it is larger. The factor nu / (nu - 13) allows for the number nu = n / kappa of
- * independent points from which J is estimated.
+ * it is clearly larger. The factor nu / (nu - 13) allows for the number nu = n / kappa
+ * of independent points from which J is estimated.
  *
  * \param[in] points their scores and positions
  * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
