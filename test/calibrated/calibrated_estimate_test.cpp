@@ -1,5 +1,6 @@
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibration_test_support.h"
+#include "calibrated/surface/even_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,8 @@
 
 #include <cmath>
 #include <memory>
-#include <utility>
+#include <numeric>
+#include <vector>
 
 namespace bayesian_icp {
 namespace {
@@ -44,6 +46,16 @@ ballAndBox(Random& random, Index num_points)
   return both;
 }
 
+/** In random order, as estimateCalibrated() wants them. */
+Matrix3Xd
+shuffled(const Matrix3Xd& points, Random& random)
+{
+  std::vector<Index> columns(static_cast<std::size_t>(points.cols()));
+  std::iota(columns.begin(), columns.end(), Index(0));
+  shuffle(columns, random);
+  return points(Eigen::all, columns);
+}
+
 /** Two scans, and a true pose from the prior. */
 struct Case {
   explicit Case(std::uint64_t stream,
@@ -58,7 +70,8 @@ struct Case {
     truth = isometryOf(random.normal6().cwiseProduct(priorDeviations()));
     const Vector3d centre = seen.rowwise().mean();
     truth = Eigen::Translation3d(centre) * truth * Eigen::Translation3d(-centre);
-    scorer = std::make_unique<SurfaceScorer>(truth.inverse() * seen, *model);
+    scorer = std::make_unique<SurfaceScorer>(truth.inverse() * shuffled(seen, random),
+                                             *model);
     prior = std::make_unique<Prior>(
         Vector6d::Zero(), priorDeviations().cwiseAbs2(), scorer->centroid());
   }

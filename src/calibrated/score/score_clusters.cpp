@@ -27,10 +27,10 @@ constexpr std::uint64_t partition_seed = 1;
  * estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
 constexpr double lost_degrees_of_freedom = 13.0;
 
-/** Shells, and what remains of their kappa after its noise: the 95 % quantile of
- * chi-square with six degrees of freedom per shell, over its mean, is 1.29. */
+/** Shells, and what remains of their kappa after its noise: the 99 % quantile of
+ * chi-square with six degrees of freedom per shell, over its mean, is 1.43. */
 constexpr int num_shells = 12;
-constexpr double shells_to_clusters = 1.0 / 1.29;
+constexpr double shells_to_clusters = 1.0 / 1.43;
 
 /** Upper limit of one cluster's share of the information. */
 constexpr double max_share = 0.9;
