@@ -97,7 +97,8 @@ TEST(Calibrated, APreparedTargetIsForManySourcesPresetsAndThreads)
 
 TEST(Calibrated, FindsPoseNoiseAndSixObservedDirections)
 {
-  const Scans scans;
+  // With 1500 points one direction is weak in a fifth of the runs, by chance.
+  const Scans scans(Scans::surface(91, 2000));
   const PosteriorEstimate estimate = estimateFrom(scans);
   const Summary& summary = estimate.summary;
   ASSERT_EQ(summary.status, Status::Ok) << summary.message;
@@ -110,7 +111,7 @@ TEST(Calibrated, FindsPoseNoiseAndSixObservedDirections)
   const DataReport& data = summary.data;
   ASSERT_TRUE(data.is_available);
   EXPECT_FALSE(data.flags.any());
-  // The scale of 1500 residuals has an error of 3 %, the surface adds to it.
+  // The scale of 2000 residuals has an error of 3 %, the surface adds to it.
   EXPECT_NEAR(data.noise_scale, noise, 0.15 * noise);
   ASSERT_EQ(data.directions.size(), 6u);
   for (const DataDirection& direction : data.directions)
