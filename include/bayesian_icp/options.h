@@ -252,9 +252,9 @@ struct ExactOptions {
 struct CalibratedOptions {
   /** Largest number of source points that are used; of a larger source, points that
    * cover it evenly: this many, but beyond 2000 no more than 40 % of it, or of the
-   * target's points. Starts and curvature use 2000 of them, so that 6000 take a quarter
-   * more time than 2000. At least min_calibrated_points. */
-  int max_source_points = 6000;
+   * target's points. Starts and curvature use 2000 of them, so that 4000 take an
+   * eighth more time than 2000. At least min_calibrated_points. */
+  int max_source_points = 4000;
   /** Number of these points that are used to follow the starts to their modes. At least
    * min_calibrated_points; if it exceeds the number of points, all are used. */
   int num_mode_points = 500;

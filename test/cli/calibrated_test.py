@@ -122,7 +122,7 @@ class CalibratedOptions(ToolTest):
     def test_options_arrive_and_are_obeyed(self):
         pair = scans("mug")
         plain, document = self.run_to_files(*pair, *PRESET)
-        defaults = {"max_source_points": 6000, "num_mode_points": 500}
+        defaults = {"max_source_points": 4000, "num_mode_points": 500}
         self.assertEqual(document["options"]["calibrated"], defaults)
         for word, key, value in (
             ("calibrated-points=1000", "max_source_points", 1000),
