@@ -46,7 +46,7 @@ struct Groups {
  * that no cluster of neighbours contains. About another place they are groups like any
  * other. */
 Groups
-shellsOf(const Matrix3Xd& positions, Index num_shells)
+shellsOf(const Matrix3Xd& positions, Index count)
 {
   const Eigen::VectorXd distances = positions.colwise().squaredNorm();
   std::vector<Index> order(static_cast<std::size_t>(positions.cols()));
@@ -55,11 +55,11 @@ shellsOf(const Matrix3Xd& positions, Index num_shells)
     return distances[a] < distances[b] || (distances[a] == distances[b] && a < b);
   });
   Groups shells;
-  shells.count = num_shells;
+  shells.count = count;
   shells.of_point.resize(order.size());
   for (std::size_t i = 0; i < order.size(); ++i)
     shells.of_point[static_cast<std::size_t>(order[i])] =
-        static_cast<Index>(i) * num_shells / positions.cols();
+        static_cast<Index>(i) * count / positions.cols();
   return shells;
 }
 
