@@ -122,9 +122,13 @@ followStarts(const SurfaceScorer& scorer,
 }
 
 RobustFit
-fitOnAllPoints(const SurfaceScorer& scorer, const Prior& prior, const Isometry3d& start)
+fitOnAllPoints(const SurfaceScorer& scorer,
+               const Prior& prior,
+               const Isometry3d& start,
+               const Matrix6d& hold = Matrix6d::Zero())
 {
   RobustFitOptions fit;
+  fit.hold = hold;
   fit.max_steps = max_mode_steps;
   fit.tolerance = mode_tolerance * scorer.model().medianSigma();
   return fitRobustly(scorer, prior, start, fit);
@@ -331,15 +335,35 @@ isFarFromMean(const CalibratedEstimate& e)
          length < max_distance_to_radius * radiusOf(e.displacement_metric);
 }
 
-/** The estimate about the mode nearest to the mean. \return whether it has moved */
+/** Precision that holds a pose along the free directions, to within \p tolerance [m].
+ */
+Matrix6d
+holdOfFree(const CalibratedEstimate& e, double tolerance)
+{
+  const Matrix6d to_directions = e.directions.inverse();
+  Matrix6d hold = Matrix6d::Zero();
+  for (int k = 0; k < 6; ++k)
+    if (e.keep[k] == 0.0)
+      hold += to_directions.row(k).transpose() * to_directions.row(k);
+  return hold / (tolerance * tolerance);
+}
+
+/** The estimate about the mode nearest to the mean; in the \p last move, about that of
+ * the held directions at the mean, because the fit slides back along a motion that is
+ * held falsely, and the others are wrong there. \return whether it has moved */
 bool
 moveToMean(const SurfaceScorer& scorer,
            const Prior& prior,
            const EstimateOptions& options,
+           bool last,
            CalibratedEstimate& e)
 {
+  const double tolerance = mode_tolerance * scorer.model().medianSigma();
   const RobustFit mode =
-      fitOnAllPoints(scorer, prior, movedBy(e.mean, e.centre, e.mode));
+      fitOnAllPoints(scorer,
+                     prior,
+                     movedBy(e.mean, e.centre, e.mode),
+                     last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
   CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
   next.num_queries +=
       e.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
@@ -398,7 +422,7 @@ estimateCalibrated(const SurfaceScorer& scorer,
   e.num_queries +=
       ends.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
   for (int move = 0; move < max_moves && isFarFromMean(e); ++move)
-    if (!moveToMean(scorer, prior, options, e))
+    if (!moveToMean(scorer, prior, options, move + 1 == max_moves, e))
       break;
   e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
   e.other_cost_ratio = relativeCost(ends.other, ends.best);

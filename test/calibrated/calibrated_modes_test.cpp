@@ -137,6 +137,30 @@ TEST(RelativeCost, OverlapCountsWherePointsDoNotTell)
   EXPECT_DOUBLE_EQ(relativeCost(nowhere, seen), 5.0 / seen.cost);
 }
 
+TEST(RobustFit, StaysWhereItIsHeldAndFitsTheRest)
+{
+  const Clouds clouds = cloudsOf(onMug, 0.0);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  Vector6d wrong = Vector6d::Zero();
+  wrong[2] = 0.01; // Along the axis, which the ends would find.
+  const Eigen::Vector3d centre = clouds.truth * scorer.centroid();
+  const Eigen::Isometry3d start = movedBy(wrong, centre, clouds.truth);
+  const Prior prior = priorWith(0.5, scorer.centroid());
+  RobustFitOptions options;
+  options.tolerance = 1e-6;
+  const auto offTruth = [&](const RobustFit& fit) {
+    return Vector6d(twistBetween(clouds.truth, fit.pose, centre));
+  };
+  const Vector6d free = offTruth(fitRobustly(scorer, prior, start, options));
+  EXPECT_LT(std::abs(free[2]), 0.001);
+  constexpr double tolerance = 1e-5;
+  options.hold(2, 2) = 1.0 / (tolerance * tolerance);
+  const Vector6d held = offTruth(fitRobustly(scorer, prior, start, options));
+  EXPECT_NEAR(held[2], wrong[2], 10 * tolerance);
+  EXPECT_LT(held.head<2>().norm(), 0.002);
+}
+
 TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
 {
   const Clouds clouds = cloudsOf(onCube, 1.3);

@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <cmath>
 #include <memory>
 
 namespace bayesian_icp {
@@ -334,6 +335,69 @@ TEST(Curvature, APlaneLeavesThreeMotionsToThePrior)
     for (const int k : {2, 3, 4})
       EXPECT_LT(std::sqrt(e.covariance(k, k)), 0.1 * sd[k]) << k;
   }
+}
+
+// ---- What few points hold ----
+
+/** Points of a floor with waves along x on it, 0.3 m long and 17 mm high, that end
+ * smoothly at |y| = 0.15 m: \p num_flat with |x|, |y| <= 0.5 m, and \p num_on_waves
+ * with |x|, |y| <= 0.15 m. */
+test::Sheet
+floorWithWaves(Random& random, Index num_flat, Index num_on_waves)
+{
+  constexpr double half_length = 0.15, height = 0.017;
+  const double pi = std::acos(-1.0);
+  test::Sheet sheet(num_flat + num_on_waves);
+  for (Index i = 0; i < sheet.points.cols(); ++i) {
+    const double half = i < num_flat ? 0.5 : half_length;
+    const double x = test::symmetric(random, half), y = test::symmetric(random, half);
+    const bool is_flat = std::abs(x) > half_length || std::abs(y) > half_length;
+    // Only flat points outside of the waves, so that num_on_waves are on them.
+    if (i < num_flat && !is_flat) {
+      --i;
+      continue;
+    }
+    const double k = pi / half_length, across = std::cos(0.5 * k * y);
+    const double wave = is_flat ? 0.0 : height * across * across;
+    sheet.points.col(i) << x, y, wave * std::sin(k * x);
+    const double slope_y =
+        is_flat ? 0.0 : -height * 0.5 * k * std::sin(k * y) * std::sin(k * x);
+    sheet.normals.col(i) =
+        Vector3d(-wave * k * std::cos(k * x), -slope_y, 1.0).normalized();
+  }
+  return sheet;
+}
+
+/** Trust in the direction along x of a floor whose source has so many points on its
+ * waves. */
+double
+trustAlongWaves(Index num_on_waves)
+{
+  constexpr double sigma = 0.001;
+  Random random(96, 0);
+  const SurfaceModel model(
+      test::noisy(floorWithWaves(random, 8000, 2000), sigma, random));
+  const SurfaceScorer scorer(
+      test::noisy(floorWithWaves(random, 800, num_on_waves), sigma, random), model);
+  const Isometry3d truth = Isometry3d::Identity();
+  PatchHints hints;
+  SurfaceScores at_mode;
+  scorer.evaluate(truth, scorer.centroid(), 1.0, hints, at_mode);
+  const Matrix6d prior = 100.0 * Matrix6d::Identity();
+  const SecantPlan plan = {(at_mode.information + prior).inverse(),
+                           displacementMetric(scorer, truth),
+                           prior,
+                           sigma};
+  const Secants secants = measureSecants(scorer, truth, at_mode, 1.0, plan);
+  Index along_x = 0;
+  secants.steps.colwise().normalized().row(0).cwiseAbs().maxCoeff(&along_x);
+  return secants.trust[along_x];
+}
+
+TEST(Secants, AMotionAlongTheSurfaceIsNotTrustedToFewPoints)
+{
+  EXPECT_EQ(trustAlongWaves(15), 0.0);
+  EXPECT_GT(trustAlongWaves(1000), 0.2);
 }
 
 } // namespace

@@ -114,7 +114,10 @@ fitRobustly(const SurfaceScorer& scorer,
     const double tau = std::max(fit.residual_scale, scale);
     const bool is_annealing = tau > scale_tolerance * fit.residual_scale;
     scale *= annealing;
-    const Vector6d xi = stepFrom(linear, tau, twistPrior(prior, fit.pose, centre));
+    TwistPrior pull = twistPrior(prior, fit.pose, centre);
+    pull.precision += options.hold;
+    pull.gradient += options.hold * twistBetween(start, fit.pose, centre);
+    const Vector6d xi = stepFrom(linear, tau, pull);
     if (!xi.allFinite())
       break;
     const Matrix6d metric = displacementMetric(scorer, fit.pose);

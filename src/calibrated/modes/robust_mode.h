@@ -18,6 +18,9 @@ struct RobustFitOptions {
   int max_steps = 25;
   /** Root mean squared displacement of the source at which it has converged [m]. */
   double tolerance = 0.0;
+  /** Precision with which the start holds the pose, in a twist about the source's
+   * centroid, translation [m] first. */
+  Matrix6d hold = Matrix6d::Zero();
 };
 
 /** \brief Where a fit ended. */
