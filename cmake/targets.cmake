@@ -4,8 +4,9 @@
 # Never add -march or -m<isa> here: PCL and Eigen types cross the library's border.
 function(bayesian_icp_configure target)
   # In a unity build names in a file's unnamed namespace look as if they were in a header.
+  # Clang has no -Wshadow=local.
   set(in_unity_build $<CXX_COMPILER_ID:GNU>:-Wshadow=local;-Wno-subobject-linkage)
-  set(shadow $<IF:$<BOOL:${CMAKE_UNITY_BUILD}>,$<${in_unity_build}>,-Wshadow>)
+  set(shadow $<IF:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,$<${in_unity_build}>,-Wshadow>)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   target_compile_options(
