@@ -2,6 +2,7 @@
 
 #include <bayesian_icp/options.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace bayesian_icp {
@@ -139,18 +140,21 @@ check(const PaperOptions& paper, Checker& checker)
 }
 
 void
-check(const ExactOptions& exact, Checker& checker)
+check(const ExactOptions& exact, int num_chains, Checker& checker)
 {
   check(exact.scale, checker);
   checker.positive("kernel_width", exact.residual.kernel_width, " (m)");
   checkGate(exact.residual.max_distance, checker);
   checker.atLeast("batch_size", exact.batch_size.valueOr(1), 1);
-  checker.require(!exact.batch_size.isGiven() ||
-                      exact.metropolis != MetropolisUse::Always,
-                  "metropolis",
-                  toString(exact.metropolis),
-                  "automatic or never with a batch_size: Metropolis steps evaluate the "
+  checker.require(!exact.batch_size.isGiven() || exact.steps == ExactSteps::Automatic ||
+                      exact.steps == ExactSteps::Langevin,
+                  "steps",
+                  toString(exact.steps),
+                  "automatic or langevin with a batch_size: other steps evaluate the "
                   "whole source");
+  if (usesParticles(exact.steps))
+    checker.atLeast(
+        "num_particles", exact.num_particles, std::max(min_particles, num_chains));
   checker.require(exact.max_step_size > 0.0 && exact.max_step_size <= 1.0,
                   "max_step_size",
                   exact.max_step_size,
@@ -198,7 +202,29 @@ toString(MiniBatchSampling sampling)
 const char*
 toString(Residual residual)
 {
-  return residual == Residual::PointToPoint ? "point-to-point" : "point-to-plane";
+  switch (residual) {
+  case Residual::PointToPoint:
+    return "point-to-point";
+  case Residual::PointToPlane:
+    return "point-to-plane";
+  case Residual::DistributionToDistribution:
+    return "distribution-to-distribution";
+  }
+  return "unknown";
+}
+
+const char*
+toString(CovarianceRegularization regularization)
+{
+  switch (regularization) {
+  case CovarianceRegularization::Plane:
+    return "plane";
+  case CovarianceRegularization::Frobenius:
+    return "frobenius";
+  case CovarianceRegularization::None:
+    return "none";
+  }
+  return "unknown";
 }
 
 const char*
@@ -216,15 +242,19 @@ toString(RobustKernel kernel)
 }
 
 const char*
-toString(MetropolisUse use)
+toString(ExactSteps steps)
 {
-  switch (use) {
-  case MetropolisUse::Automatic:
+  switch (steps) {
+  case ExactSteps::Automatic:
     return "automatic";
-  case MetropolisUse::Never:
-    return "never";
-  case MetropolisUse::Always:
-    return "always";
+  case ExactSteps::Langevin:
+    return "langevin";
+  case ExactSteps::Metropolis:
+    return "metropolis";
+  case ExactSteps::SteinGradient:
+    return "stein-gradient";
+  case ExactSteps::SteinNewton:
+    return "stein-newton";
   }
   return "unknown";
 }
@@ -265,7 +295,7 @@ Options::validate() const
     check(paper, checker);
     break;
   case Preset::Exact:
-    check(exact, checker);
+    check(exact, chains.num_chains, checker);
     break;
   case Preset::Calibrated:
     check(calibrated, checker);

@@ -126,10 +126,12 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                    "preset is calibrated, but must be paper or exact with a search of "
                    "the user's own: calibrated needs the target's points");
   if (options.preset == Preset::Exact &&
-      options.exact.residual.residual == Residual::PointToPlane)
+      options.exact.residual.residual != Residual::PointToPoint)
     return failure(Status::InvalidOptions,
-                   "residual is point-to-plane, but must be point-to-point: a search "
-                   "of the user's own gives no normals");
+                   std::string("residual is ") +
+                       toString(options.exact.residual.residual) +
+                       ", but must be point-to-point: a search of the user's own gives "
+                       "no normals");
   // The search knows points by their index in the whole source, so it is not thinned.
   Options whole_source = options;
   whole_source.exact.max_source_points =
@@ -155,18 +157,13 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                              initial_pose,
                              options,
                              progress);
-  const ResidualOptions& residual = options.exact.residual;
   const bool is_exact = options.preset == Preset::Exact;
-  const bool needs_normals = is_exact && residual.residual == Residual::PointToPlane;
   const double max_distance =
-      is_exact ? residual.max_distance : options.paper.max_distance;
-  const TreeTarget target(target_tree,
-                          max_distance,
-                          needs_normals ? patchNormals(target_tree.points())
-                                        : Eigen::Matrix3Xf());
+      is_exact ? options.exact.residual.max_distance : options.paper.max_distance;
   return estimate(source_points,
                   TreeSearch(target_tree, max_distance),
-                  target,
+                  is_exact ? treeTargetFor(options.exact.residual, target_tree)
+                           : TreeTarget(target_tree, max_distance),
                   initial_pose,
                   options,
                   progress);

@@ -97,7 +97,7 @@ addDeviations(const PoseEstimate& estimate, Localization& result)
 void
 addSummary(const Summary& summary, Localization& result)
 {
-  double rhat = 0.0, ess = std::numeric_limits<double>::infinity();
+  double rhat = summary.coordinates[0].rhat, ess = summary.coordinates[0].bulk_ess;
   for (const CoordinateSummary& coordinate : summary.coordinates) {
     rhat = std::max(rhat, coordinate.rhat);
     ess = std::min({ess, coordinate.bulk_ess, coordinate.tail_ess});

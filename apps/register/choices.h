@@ -29,16 +29,30 @@ choicesOf(MiniBatchSampling)
   return {MiniBatchSampling::WithReplacement, MiniBatchSampling::ShuffledEpochs};
 }
 
-inline std::array<Residual, 2>
+inline std::array<Residual, 3>
 choicesOf(Residual)
 {
-  return {Residual::PointToPoint, Residual::PointToPlane};
+  return {Residual::PointToPoint,
+          Residual::PointToPlane,
+          Residual::DistributionToDistribution};
 }
 
-inline std::array<MetropolisUse, 3>
-choicesOf(MetropolisUse)
+inline std::array<CovarianceRegularization, 3>
+choicesOf(CovarianceRegularization)
 {
-  return {MetropolisUse::Automatic, MetropolisUse::Never, MetropolisUse::Always};
+  return {CovarianceRegularization::Plane,
+          CovarianceRegularization::Frobenius,
+          CovarianceRegularization::None};
+}
+
+inline std::array<ExactSteps, 5>
+choicesOf(ExactSteps)
+{
+  return {ExactSteps::Automatic,
+          ExactSteps::Langevin,
+          ExactSteps::Metropolis,
+          ExactSteps::SteinGradient,
+          ExactSteps::SteinNewton};
 }
 
 inline std::array<RobustKernel, 3>

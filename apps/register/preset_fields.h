@@ -102,16 +102,23 @@ visitExact(SettingsT& settings, Visitor& visit)
          "wide as the prior, but at most 0.5."}, exact.initial_spread);
   visit({"mini_batch", "batch_size", "batch-size", "N",
          "Number of source points in each Langevin step, without replacement. With a "
-         "number, there are no Metropolis steps."}, exact.batch_size);
+         "number, there are no other steps."}, exact.batch_size);
   visit({"exact", "max_step_size", "max-step-size", "B",
          "Largest size of a Langevin step, at most 1, which is a Newton step."},
         exact.max_step_size);
-  visit({"exact", "metropolis", "metropolis", "WHEN",
-         "When to use Metropolis steps on the whole source instead of Langevin steps. "
-         "They are exact where small mini-batches are too noisy."}, exact.metropolis);
+  visit({"exact", "steps", "steps", "NAME",
+         "How draws are made. Metropolis steps are exact where small mini-batches are "
+         "too noisy for Langevin steps. Stein steps move particles, which replace the "
+         "draws."}, exact.steps);
+  visit({"exact", "num_particles", "particles", "N",
+         "Number of particles of Stein steps."}, exact.num_particles);
   visit({"exact", "residual", "residual", "NAME",
-         "Distance to penalize: from a source point to its nearest target point, or "
-         "along the target's normal there."}, exact.residual.residual);
+         "Distance to penalize: from a source point to its nearest target point, along "
+         "the target's normal there, or in units of both neighbourhoods' covariances "
+         "(GICP)."}, exact.residual.residual);
+  visit({"exact", "regularization", "regularization", "NAME",
+         "What these covariances are made: planes, or as fast_gicp's, or nothing."},
+        exact.residual.regularization);
   visit({"exact", "kernel", "kernel", "NAME",
          "Robust kernel on that distance, against outliers."}, exact.residual.kernel);
   visit({"exact", "kernel_width_m", "kernel-width", "M",

@@ -31,7 +31,7 @@ bool
 lacksNormals(const Settings& settings)
 {
   return settings.options.preset == Preset::Exact &&
-         settings.options.exact.residual.residual == Residual::PointToPlane &&
+         settings.options.exact.residual.residual != Residual::PointToPoint &&
          (settings.is_reciprocal || settings.is_one_to_one);
 }
 
@@ -73,9 +73,8 @@ Settings::validate() const
   if (!guess.allFinite())
     return "--guess: must be finite";
   if (lacksNormals(*this))
-    return "--residual: is point-to-plane, but must be point-to-point with "
-           "--reciprocal "
-           "or --one-to-one";
+    return std::string("--residual: is ") + toString(options.exact.residual.residual) +
+           ", but must be point-to-point with --reciprocal or --one-to-one";
   const std::string complaint = options.validate();
   return complaint.empty() ? complaint : withOptionName(*this, complaint);
 }

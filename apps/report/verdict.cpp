@@ -159,7 +159,10 @@ opening(const Summary& summary, Preset preset)
     return {Tone::Caution, "Use with care: the clouds call for doubt", "", ""};
   case Status::NotMixed:
     return {Tone::Bad,
-            "Do not trust the ±: the chains have not mixed",
+            // Particles have no R-hat, nor have chains of a few draws.
+            std::isnan(summary.coordinates[0].rhat)
+                ? "Do not trust the ±: the draws have not converged"
+                : "Do not trust the ±: the chains have not mixed",
             "Draws so far, which describe the chains rather than the posterior: ",
             ""};
   case Status::SeveralModes:

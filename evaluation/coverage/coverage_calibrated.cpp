@@ -103,7 +103,9 @@ runCalibrated(const CoverageCase& problem)
 MethodResult
 runCalibratedDraws(const CoverageCase& problem)
 {
-  const PosteriorEstimate estimate = presetEstimate(problem, Preset::Calibrated);
+  Options options;
+  options.preset = Preset::Calibrated;
+  const PosteriorEstimate estimate = presetEstimate(problem, options);
   MethodResult result = resultOf(problem, estimate);
   const DataReport& report = estimate.summary.data;
   if (report.is_available) {

@@ -6,6 +6,7 @@
 #include "coverage/coverage_study.h"
 #include "coverage/coverage_table.h"
 #include "io/cloud_file.h"
+#include "io/command_line.h"
 #include "io/errors.h"
 #include "io/folders.h"
 #include "study/formatted_text.h"
@@ -202,11 +203,21 @@ methodsOf(const CoverageOptions& options)
   Names known;
   for (const CoverageMethod& method : coverageMethods())
     known.push_back(method.name);
-  const Names names = chosen(options.methods, known, "methods");
+  Names named;
+  std::vector<CoverageMethod> of_exact;
+  for (const std::string& name : options.methods)
+    if (name.rfind("exact:", 0) == 0)
+      io::readOption("methods", [&] { of_exact.push_back(exactMethod(name)); });
+    else
+      named.push_back(name);
+  if (named.empty() && !of_exact.empty())
+    return of_exact;
+  const Names names = chosen(named, known, "methods");
   std::vector<CoverageMethod> methods;
   for (const CoverageMethod& method : coverageMethods())
     if (std::count(names.begin(), names.end(), method.name) > 0)
       methods.push_back(method);
+  methods.insert(methods.end(), of_exact.begin(), of_exact.end());
   return methods;
 }
 

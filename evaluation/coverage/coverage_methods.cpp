@@ -1,6 +1,8 @@
 #include "coverage/coverage_methods.h"
 
 #include "geometry/twist.h"
+#include "register/choices.h"
+#include "study/option_values.h"
 
 #include <Eigen/LU>
 
@@ -35,8 +37,9 @@ runPrior(const CoverageCase& problem)
 MethodResult
 runPaperPreset(const CoverageCase& problem)
 {
-  MethodResult result = resultOf(problem, presetEstimate(problem, Preset::Paper));
-  const Options options;
+  Options options;
+  options.preset = Preset::Paper;
+  MethodResult result = resultOf(problem, presetEstimate(problem, options));
   const PaperOptions& paper = options.paper;
   result.num_queries =
       (static_cast<long>(options.chains.num_chains) * paper.num_burn_in +
@@ -80,11 +83,29 @@ timedResult(const CoverageMethod& method, const CoverageCase& problem)
   return result;
 }
 
-PosteriorEstimate
-presetEstimate(const CoverageCase& problem, Preset preset)
+CoverageMethod
+exactMethod(const std::string& name)
 {
+  const auto words = split(name, ':');
   Options options;
-  options.preset = preset;
+  options.preset = Preset::Exact;
+  ExactOptions& exact = options.exact;
+  LikelihoodScale& scale = exact.scale;
+  if (words.size() != 6 || words[0] != "exact" ||
+      !app::readChoice(words[1], exact.residual.residual) ||
+      !app::readChoice(words[2], exact.steps) ||
+      !io::readNumber(words[3], scale.measurement_sigma) ||
+      !io::readNumber(words[4], scale.effective_points) ||
+      !io::readNumber(words[5], exact.max_source_points) || !options.validate().empty())
+    io::refuseValue(name, "of the form exact:RESIDUAL:STEPS:SIGMA:N:POINTS");
+  return {name, [options](const CoverageCase& problem) {
+            return resultOf(problem, presetEstimate(problem, options));
+          }};
+}
+
+PosteriorEstimate
+presetEstimate(const CoverageCase& problem, Options options)
+{
   options.prior.mean = problem.prior_mean;
   options.prior.variance = problem.prior_sd.cwiseAbs2();
   options.prior.frame = PriorFrame::SourceCentroid;

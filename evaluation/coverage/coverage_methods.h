@@ -31,10 +31,16 @@ coverageMethods();
 MethodResult
 timedResult(const CoverageMethod& method, const CoverageCase& problem);
 
-/** \brief What the library makes of a case with a preset's defaults and the case's
- * prior and seed, in one thread. */
+/** \brief Preset `exact` with the residual, steps, sigma [m], N and largest number of
+ * source points that \p name states: exact:RESIDUAL:STEPS:SIGMA:N:POINTS.
+ * \throws io::BadValue of another form or value */
+CoverageMethod
+exactMethod(const std::string& name);
+
+/** \brief What the library makes of a case with \p options, but the case's prior and
+ * seed, in one thread. */
 PosteriorEstimate
-presetEstimate(const CoverageCase& problem, Preset preset);
+presetEstimate(const CoverageCase& problem, Options options);
 
 /** \brief Its draws as a result; a status that is not Ok is a flag. Queries are not
  * counted. */

@@ -1,5 +1,6 @@
 #include "coverage/coverage_options.h"
 
+#include "register/choices.h"
 #include "study/option_values.h"
 
 #include <cmath>
@@ -46,7 +47,11 @@ describeOptions(CoverageOptions& options)
      "points_quarter, points_x4, points_x16 and points_x64 (both clouds have that many "
      "times the points)")
     ("methods", list(options.methods),
-     "methods, separated by commas; the default is all")
+     ("methods, separated by commas; the default is all that have a name. Preset exact "
+      "is exact:RESIDUAL:STEPS:SIGMA:N:POINTS, with sigma [m], N effective points and "
+      "at most so many source points: residual " +
+      app::namesOfChoices(Residual()) + ", steps " + app::namesOfChoices(ExactSteps()))
+         .c_str())
     ("seeds", integer(options.num_seeds, 1, most),
      "number of cases of each scene and condition")
     ("first-seed", integer(options.first_seed, 0, max_seed),

@@ -49,6 +49,8 @@ goldKey(const Problem& problem, const GoldOptions& options)
   hash.addMatrix(problem.energy().prior().variance());
   hash.addMatrix(problem.energy().prior().referencePoint());
   hash.add(problem.energy().residual().max_distance);
+  if (problem.energy().residual().residual != Residual::PointToPoint)
+    hash.add(static_cast<double>(problem.energy().residual().residual));
   for (const double number : {static_cast<double>(options.chains_per_run),
                               static_cast<double>(options.steps_per_round),
                               options.max_rhat,

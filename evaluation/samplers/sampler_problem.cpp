@@ -24,6 +24,14 @@ thinned(const Eigen::Matrix3Xf& points, std::size_t size)
   return kept;
 }
 
+ResidualOptions
+withResidual(Residual residual)
+{
+  ResidualOptions options;
+  options.residual = residual;
+  return options;
+}
+
 } // namespace
 
 Scene
@@ -35,16 +43,25 @@ readScene(const std::string& folder, const std::string& name, std::size_t max_po
           KdTree(io::readFinitePoints(path + "target.pcd"))};
 }
 
-Problem::Problem(const Scene& scene, const Cell& cell)
+Problem::Problem(const Scene& scene, const Cell& cell, Residual residual)
 : scene_(scene)
 , cell_(cell)
-, target_(scene.target, ResidualOptions().max_distance)
+, residual_(withResidual(residual))
+, target_(treeTargetFor(residual_, scene.target))
 , energy_(scene.source,
           target_,
           Prior(Vector6d::Zero(), PriorOptions().variance),
           options(Preset::Exact).exact.scale.weight(),
-          ResidualOptions())
+          residual_)
 {}
+
+std::string
+Problem::name() const
+{
+  return residual_.residual == Residual::PointToPoint
+             ? scene_.name
+             : scene_.name + " " + toString(residual_.residual);
+}
 
 Vector6d
 Problem::startSpread() const
@@ -62,6 +79,7 @@ Problem::options(Preset preset) const
   Options options;
   options.preset = preset;
   options.paper.scale = options.exact.scale = {cell_.effective_points, cell_.sigma};
+  options.exact.residual = residual_;
   options.paper.initial_spread = startSpread();
   options.exact.initial_spread = startSpread();
   return options;

@@ -41,12 +41,14 @@ struct Scene {
 Scene
 readScene(const std::string& folder, const std::string& name, std::size_t max_points);
 
-/** \brief The posterior of a scene at a cell: preset `exact` with the default prior
- * about the identity. */
+/** \brief The posterior of a scene at a cell: preset `exact` with a residual and the
+ * default prior about the identity. */
 class Problem {
 public:
   /** \p scene must outlive this object. */
-  Problem(const Scene& scene, const Cell& cell);
+  Problem(const Scene& scene,
+          const Cell& cell,
+          Residual residual = Residual::PointToPoint);
   Problem(const Problem&) = delete;
   Problem&
   operator=(const Problem&) = delete;
@@ -77,6 +79,10 @@ public:
     return scene_;
   }
 
+  /** \brief The scene's name, and the residual's unless it is point-to-point. */
+  std::string
+  name() const;
+
   const Cell&
   cell() const
   {
@@ -89,6 +95,7 @@ private:
 
   const Scene& scene_;
   Cell cell_;
+  ResidualOptions residual_;
   TreeTarget target_;
   PoseEnergy energy_;
 };

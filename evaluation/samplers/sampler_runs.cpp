@@ -25,12 +25,7 @@ runEstimate(const Problem& problem, const Options& options)
   SamplerRun run;
   run.seconds = cpuSeconds() - begin;
   run.chains.chains = std::move(estimate.chains);
-  for (const Mode& mode : estimate.summary.modes) {
-    ChainMode members;
-    members.members = mode.chains;
-    members.log_evidence = std::log(mode.weight);
-    run.chains.modes.push_back(members);
-  }
+  run.summary = estimate.summary;
   run.message = estimate.summary.message;
   return run;
 }
@@ -75,11 +70,15 @@ oracleOf(const Problem& problem, const GoldStandard& gold)
 }
 
 SamplerRun
-runExact(const Problem& problem, std::uint64_t seed, int num_threads, bool metropolis)
+runExact(const Problem& problem,
+         std::uint64_t seed,
+         int num_threads,
+         ExactSteps steps,
+         int num_particles)
 {
   Options options = problem.options(Preset::Exact);
-  if (metropolis)
-    options.exact.metropolis = MetropolisUse::Always;
+  options.exact.steps = steps;
+  options.exact.num_particles = num_particles;
   options.chains.seed = seed;
   options.chains.num_threads = num_threads;
   return runEstimate(problem, options);

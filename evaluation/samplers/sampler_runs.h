@@ -6,7 +6,10 @@
 #include "sampler/chain_set.h"
 #include "samplers/sampler_problem.h"
 
+#include <bayesian_icp/summary.h>
+
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,8 @@ namespace bayesian_icp::evaluate {
 /** \brief What a sampler made. */
 struct SamplerRun {
   ChainSet chains;
+  /** Of a preset; other samplers have none. */
+  std::optional<Summary> summary;
   /** CPU time from the first to the last step, warm-up included, of all threads [s]. */
   double seconds = 0.0;
   /** Not empty if the sampler refused to run, or says more than the draws show. */
@@ -32,9 +37,14 @@ struct Oracle {
 Oracle
 oracleOf(const Problem& problem, const GoldStandard& gold);
 
-/** \brief Preset `exact` with its defaults, or with Metropolis steps. */
+/** \brief Preset `exact` with these steps.
+ * \param[in] num_particles of Stein steps */
 SamplerRun
-runExact(const Problem& problem, std::uint64_t seed, int num_threads, bool metropolis);
+runExact(const Problem& problem,
+         std::uint64_t seed,
+         int num_threads,
+         ExactSteps steps,
+         int num_particles = ExactOptions().num_particles);
 
 /** \brief Algorithm 1 with a step size: 1000 steps of burn-in, every tenth step kept.
  */

@@ -16,7 +16,7 @@ std::string
 titleOf(const Problem& problem)
 {
   std::ostringstream title;
-  title << problem.scene().name << ", sigma " << problem.cell().sigma << " m, N "
+  title << problem.name() << ", sigma " << problem.cell().sigma << " m, N "
         << problem.cell().effective_points;
   return title.str();
 }
@@ -37,7 +37,7 @@ runSamplersCommand(int argc, const char* const* argv)
     const Scene scene = readScene(
         options.data_folder, name, static_cast<std::size_t>(options.num_points));
     for (const Cell& cell : options.cells) {
-      const Problem problem(scene, cell);
+      const Problem problem(scene, cell, options.residual);
       const std::string title = titleOf(problem);
       const Study::Report report = [&title](const std::string& line) {
         std::cerr << title << ": " << line << std::endl;

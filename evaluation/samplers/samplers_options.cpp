@@ -1,5 +1,6 @@
 #include "samplers/samplers_options.h"
 
+#include "register/choices.h"
 #include "study/option_values.h"
 
 #include <algorithm>
@@ -57,6 +58,24 @@ takeSamplers(const std::string& text, SamplersOptions& options)
       throw io::BadValue(": there is no " + io::inQuotes(sampler));
 }
 
+void
+takeParticles(const std::string& text, SamplersOptions& options)
+{
+  for (const std::string& item : split(text, ',')) {
+    const double number = positiveNumberOf(item);
+    if (number != std::floor(number) || number < min_particles || number > 10000.0)
+      io::refuseValue(item, "a whole number from 8 to 10000");
+    options.particles.push_back(static_cast<int>(number));
+  }
+}
+
+void
+takeResidual(const std::string& text, SamplersOptions& options)
+{
+  if (!app::readChoice(text, options.residual))
+    io::refuseValue(text, app::namesOfChoices(Residual()));
+}
+
 po::options_description
 describeOptions(SamplersOptions& options)
 {
@@ -72,11 +91,17 @@ describeOptions(SamplersOptions& options)
     ("cells", taken("1:6000,0.0015:100,0.0015:1000,0.005:300", taking(takeCells)),
      "scales of the likelihood as sigma:N, separated by commas: sigma [m], effective "
      "points N")
-    ("samplers", taken("exact,exact-metropolis,paper,walk,mala", taking(takeSamplers)),
+    ("residual", taken("point-to-point", taking(takeResidual)),
+     ("residual of the energy, for all samplers and the gold standard (paper has its "
+      "own): " + app::namesOfChoices(Residual())).c_str())
+    ("samplers", taken("exact,exact-metropolis,stein-gradient,stein-newton,paper,walk,"
+                       "mala", taking(takeSamplers)),
      "samplers to compare: exact (preset exact), exact-metropolis (the same with "
-     "Metropolis steps), paper (Algorithm 1 at several step sizes; all seeds at the "
-     "best one), walk and mala (full batch; covariance and starts from the gold "
-     "standard)")
+     "Metropolis steps), stein-gradient and stein-newton (with Stein steps), paper "
+     "(Algorithm 1 at several step sizes; all seeds at the best one), walk and mala "
+     "(full batch; covariance and starts from the gold standard)")
+    ("particles", taken("20,50,100", taking(takeParticles)),
+     "numbers of particles of the Stein samplers")
     ("step-sizes", taken("1e-3,1e-4,1e-5,1e-6", taking(takeStepSizes)),
      "step sizes alpha of Algorithm 1. Each is also tried times 6000 sigma^2 / N, "
      "which is its value at the paper's scale. Smaller ones are tried as long as they "

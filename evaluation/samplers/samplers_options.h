@@ -20,8 +20,16 @@ struct SamplersOptions {
   bool is_quick = false;
   std::vector<std::string> scenes = {"can", "bowl", "mug", "table", "corridor"};
   std::vector<Cell> cells;
-  std::vector<std::string> samplers = {
-      "exact", "exact-metropolis", "paper", "walk", "mala"};
+  std::vector<std::string> samplers = {"exact",
+                                       "exact-metropolis",
+                                       "stein-gradient",
+                                       "stein-newton",
+                                       "paper",
+                                       "walk",
+                                       "mala"};
+  Residual residual = Residual::PointToPoint;
+  /** Numbers of particles that Stein samplers are tried with. */
+  std::vector<int> particles;
   int num_seeds = 5;
   int num_points = 2000;
   int num_threads = 1;

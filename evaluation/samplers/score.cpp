@@ -45,7 +45,7 @@ spreadColumn(const PoseMatrix& draws, int k)
 Score
 scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
 {
-  const Summary summary = summarize(run.chains);
+  const Summary summary = run.summary ? *run.summary : summarize(run.chains);
   Score score;
   score.status = toString(summary.status);
   score.seconds = run.seconds;

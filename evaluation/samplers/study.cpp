@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace bayesian_icp::evaluate {
 
@@ -40,7 +41,7 @@ Score
 Study::runOnce(const std::string& name, std::uint64_t seed, const Sampler& sampler)
 {
   ScoredRun run;
-  run.name = {problem_.scene().name,
+  run.name = {problem_.name(),
               problem_.cell().sigma,
               problem_.cell().effective_points,
               name,
@@ -128,11 +129,19 @@ Study::run()
     report_("the gold standard has NOT converged");
   gold_draws_ = pooled(gold.chains);
   const Oracle oracle = oracleOf(problem_, gold);
-  for (const bool metropolis : {false, true})
-    if (options_.wants(metropolis ? "exact-metropolis" : "exact"))
-      runAllSeeds(metropolis ? "exact-metropolis" : "exact", [&](std::uint64_t seed) {
-        return runExact(problem_, seed, options_.num_threads, metropolis);
+  for (const auto& [name, steps] :
+       {std::pair("exact", ExactSteps::Automatic),
+        std::pair("exact-metropolis", ExactSteps::Metropolis)})
+    if (options_.wants(name))
+      runAllSeeds(name, [&, of_run = steps](std::uint64_t seed) {
+        return runExact(problem_, seed, options_.num_threads, of_run);
       });
+  for (const auto steps : {ExactSteps::SteinGradient, ExactSteps::SteinNewton})
+    if (options_.wants(toString(steps)))
+      for (const int particles : options_.particles)
+        runAllSeeds(nameWith(toString(steps), particles), [&](std::uint64_t seed) {
+          return runExact(problem_, seed, options_.num_threads, steps, particles);
+        });
   if (options_.wants("paper"))
     runPaperSteps();
   if (options_.wants("walk"))

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t model_stream = 0x736263;
 
 std::optional<Ranks>
-runExactPreset(std::uint64_t seed, MetropolisUse metropolis)
+runExactPreset(std::uint64_t seed, ExactSteps steps)
 {
   Random random(seed, model_stream);
   const FarPointsModel model(random);
@@ -25,7 +25,7 @@ runExactPreset(std::uint64_t seed, MetropolisUse metropolis)
   options.exact.scale.measurement_sigma = model.noise;
   options.prior.mean = model.prior.mean();
   options.prior.variance = model.prior.variance();
-  options.exact.metropolis = metropolis;
+  options.exact.steps = steps;
   options.chains.seed = seed;
   options.chains.num_threads = 1;
   const PosteriorEstimate estimate = estimatePosterior(
@@ -72,10 +72,10 @@ rankSamplers()
   static const std::vector<RankSampler> samplers = {
       {"exact-langevin",
        true,
-       [](std::uint64_t seed) { return runExactPreset(seed, MetropolisUse::Never); }},
+       [](std::uint64_t seed) { return runExactPreset(seed, ExactSteps::Langevin); }},
       {"exact-metropolis",
        true,
-       [](std::uint64_t seed) { return runExactPreset(seed, MetropolisUse::Always); }},
+       [](std::uint64_t seed) { return runExactPreset(seed, ExactSteps::Metropolis); }},
       {"calibrated", true, runLinearScores},
       {"calibrated-scans", false, runScans}};
   return samplers;

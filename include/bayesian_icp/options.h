@@ -171,7 +171,31 @@ enum class Residual {
   PointToPoint,
   /** Distance along the target's normal at the nearest target point. Its energy jumps
    * where the nearest point changes, so only Metropolis steps are exact for it. */
-  PointToPlane
+  PointToPlane,
+  /** r^2 = d^T (C_target + R C_source R^T)^-1 d for the vector d to the nearest target
+   * point (A. Segal, D. Haehnel, S. Thrun: Generalized-ICP, RSS 2009). C is the
+   * covariance of a point's neighbourhood in its own cloud, regularised and scaled as
+   * CovarianceRegularization says: where both surfaces are planes with the same normal,
+   * r is the distance along it, as with PointToPlane, and measurement_sigma [m] is the
+   * standard deviation of that distance. The energy has no log-determinant, as in
+   * GICP, and jumps as that of PointToPlane does. */
+  DistributionToDistribution
+};
+
+/** \brief How the covariance of a neighbourhood becomes the C of
+ * Residual::DistributionToDistribution. C is dimensionless. Its least eigenvalue is
+ * 1/2, the share of one of two clouds along a common normal, unless said otherwise. */
+enum class CovarianceRegularization {
+  /** Eigenvalues (1, 1, 1e-3) / 2e-3: every neighbourhood is a plane, and a distance
+   * within two such planes counts 1/31.6 of one along their normal (Segal et al.). */
+  Plane,
+  /** Covariance + 1e-3 m^2, scaled so that the Frobenius norm of the inverse is 2:
+   * neighbourhoods that are not flat stay so (fast_gicp). The least eigenvalue is 1/2
+   * for a wide plane, and up to sqrt(3) / 2 for what is narrower than 3 cm. */
+  Frobenius,
+  /** The covariance as it is, scaled only. Eigenvalues below 1e-6 of the largest are
+   * raised to that. */
+  None
 };
 
 /** \brief The function rho. */
@@ -185,9 +209,14 @@ enum class RobustKernel {
   Tukey
 };
 
-/** \brief Short name: "point-to-point" or "point-to-plane". */
+/** \brief Short name: "point-to-point", "point-to-plane" or
+ * "distribution-to-distribution". */
 BAYESIAN_ICP_EXPORT const char*
 toString(Residual residual);
+
+/** \brief Short name: "plane", "frobenius" or "none". */
+BAYESIAN_ICP_EXPORT const char*
+toString(CovarianceRegularization regularization);
 
 /** \brief Short name: "none", "huber" or "tukey". */
 BAYESIAN_ICP_EXPORT const char*
@@ -196,6 +225,8 @@ toString(RobustKernel kernel);
 /** \brief Residual, kernel and gate of the preset `exact`. */
 struct ResidualOptions {
   Residual residual = Residual::PointToPoint;
+  /** Used by Residual::DistributionToDistribution alone. */
+  CovarianceRegularization regularization = CovarianceRegularization::Plane;
   RobustKernel kernel = RobustKernel::None;
   /** Width k of the kernel [m], positive. Not used by RobustKernel::None. */
   double kernel_width = 0.01;
@@ -206,28 +237,48 @@ struct ResidualOptions {
   double max_distance = std::numeric_limits<double>::infinity();
 };
 
-/** \brief Whether chains make Metropolis steps in place of Langevin steps. */
-enum class MetropolisUse {
-  /** Where the gradient of a batch is so noisy that Langevin steps would need (nearly)
-   * all terms. */
+/** \brief How preset `exact` makes draws after its warm-up. */
+enum class ExactSteps {
+  /** Metropolis where the gradient of a batch is so noisy that Langevin steps would
+   * need (nearly) all terms; Langevin elsewhere. */
   Automatic,
-  Never,
-  Always
+  Langevin,
+  /** Asymptotically exact. Each step evaluates the whole source. */
+  Metropolis,
+  /** Stein variational gradient descent (Q. Liu, D. Wang, NIPS 2016; F. Afzal Maken, F.
+   * Ramos, L. Ott: Stein ICP, 2021): the draws are particles that repel each other.
+   * Status::Ok if their kernelised Stein discrepancy says so; there is no R-hat. */
+  SteinGradient,
+  /** Stein variational Newton steps (G. Detommaso et al., NeurIPS 2018) of the same
+   * particles. */
+  SteinNewton
 };
 
-/** \brief Short name: "automatic", "never", "always". */
+/** \brief Whether the draws are particles, not chains. */
+constexpr bool
+usesParticles(ExactSteps steps)
+{
+  return steps == ExactSteps::SteinGradient || steps == ExactSteps::SteinNewton;
+}
+
+/** \brief Short name: "automatic", "langevin", "metropolis", "stein-gradient",
+ * "stein-newton". */
 BAYESIAN_ICP_EXPORT const char*
-toString(MetropolisUse use);
+toString(ExactSteps steps);
+
+/** \brief Smallest number of Stein particles: fewer have no covariance. */
+constexpr int min_particles = 8;
 
 /** \brief Options of preset `exact`. Its mini-batches are drawn without replacement. */
 struct ExactOptions {
   LikelihoodScale scale;
   ResidualOptions residual;
-  /** Metropolis steps are asymptotically exact, and each of them evaluates the whole
-   * source. */
-  MetropolisUse metropolis = MetropolisUse::Automatic;
-  /** Source points in each Langevin step, positive. With a value, steps are Langevin
-   * steps; MetropolisUse::Always excludes it. */
+  ExactSteps steps = ExactSteps::Automatic;
+  /** Number of Stein particles, which replaces ChainOptions::num_draws: at least
+   * min_particles and num_chains, among which they are divided. */
+  int num_particles = 100;
+  /** Source points in each Langevin step, positive. With a value, automatic steps are
+   * Langevin steps, and all others are excluded. */
   Automatic<int> batch_size;
   /** Largest size of a Langevin step, in (0, 1]; 1 would be a Newton step. Longer steps
    * bias the draws of a rough density: docs/performance.md. */

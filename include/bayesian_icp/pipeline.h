@@ -61,9 +61,9 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const ProgressCallback& progress = ProgressCallback());
 
 /** \brief The same with nearest neighbours in \p target_tree, within the max_distance
- * of preset `exact` or `paper`. This is the fast overload for preset `exact`, and the
- * only one with Residual::PointToPlane (normals are those of patches of the target).
- * Preset `calibrated` uses the tree's points. */
+ * of preset `exact` or `paper`. As with the target itself, preset `exact` is fast and
+ * takes other residuals than Residual::PointToPoint (normals and covariances are those
+ * of patches of the target). Preset `calibrated` uses the tree's points. */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const KdTree& target_tree,

@@ -48,6 +48,7 @@ class PaperOptions:
 
 class ResidualOptions:
     residual: str
+    regularization: str
     kernel: str
     kernel_width: float
     max_distance: float
@@ -56,7 +57,8 @@ class ResidualOptions:
 class ExactOptions:
     scale: LikelihoodScale
     residual: ResidualOptions
-    metropolis: str
+    steps: str
+    num_particles: int
     batch_size: Optional[int]
     max_step_size: float
     num_burn_in: Optional[int]

@@ -87,7 +87,12 @@ void
 bindExact(py::module_& module)
 {
   Fields<ResidualOptions>(module, "ResidualOptions", "Energy of a source point.")
-      .add("residual", &ResidualOptions::residual, "point-to-point or point-to-plane.")
+      .add("residual",
+           &ResidualOptions::residual,
+           "point-to-point, point-to-plane or distribution-to-distribution.")
+      .add("regularization",
+           &ResidualOptions::regularization,
+           "Of covariances of the last one: plane, frobenius or none.")
       .add("kernel", &ResidualOptions::kernel, "none, huber or tukey.")
       .add("kernel_width", &ResidualOptions::kernel_width, "[m], positive.")
       .add("max_distance",
@@ -96,9 +101,12 @@ bindExact(py::module_& module)
   Fields<ExactOptions>(module, "ExactOptions", "Options of preset exact.")
       .add("scale", &ExactOptions::scale, "Scale of the likelihood.")
       .add("residual", &ExactOptions::residual, "Residual, kernel and gate.")
-      .add("metropolis",
-           &ExactOptions::metropolis,
-           "Metropolis steps: automatic, never or always.")
+      .add("steps",
+           &ExactOptions::steps,
+           "automatic, langevin, metropolis, stein-gradient or stein-newton.")
+      .add("num_particles",
+           &ExactOptions::num_particles,
+           "Number of particles of Stein steps, which replace the draws.")
       .add("batch_size",
            &ExactOptions::batch_size,
            "Source points in each Langevin step; None: found.")

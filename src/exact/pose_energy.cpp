@@ -1,6 +1,8 @@
 #include "exact/pose_energy.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <numeric>
@@ -46,36 +48,76 @@ wrench(const Eigen::Vector3f& arm, const Eigen::Vector3f& force)
   return w;
 }
 
+/** The residual of one match, and how it changes. */
+struct MatchResidual {
+  /** r^2 [m^2]. */
+  double squared;
+  /** Gradient of r^2 / 2 with respect to the moved point, and where this force acts on
+   * the rotation. */
+  Eigen::Vector3f force;
+  Eigen::Vector3f arm;
+  /** M of a residual d^T M d that is neither of points nor of planes. */
+  Eigen::Matrix3d information;
+};
+
+/** d is the distance along the normal, or all of it. */
+MatchResidual
+simpleResidual(const Eigen::Vector3f& arm, const Eigen::Vector3f& d)
+{
+  return {static_cast<double>(d.squaredNorm()), d, arm, Eigen::Matrix3d::Zero()};
+}
+
+/** d^T M d, M = (target + source)^-1. A rotation by w turns the source's covariance S,
+ * too: with y = M d, half of the change of d^T M d is w . (y x S y), as if y acted at
+ * the arm less S y. \param[in] source S, already in the target frame */
+MatchResidual
+distributionResidual(const Eigen::Vector3f& arm,
+                     const Eigen::Vector3f& d,
+                     const Eigen::Matrix3d& target,
+                     const Eigen::Matrix3d& source)
+{
+  const Eigen::Matrix3d information = (target + source).inverse();
+  const Eigen::Vector3d y = information * d.cast<double>();
+  return {d.cast<double>().dot(y),
+          y.cast<float>(),
+          arm - (source * y).cast<float>(),
+          information};
+}
+
 /** Energy of one match, and its gradient in rotation vectors. */
 void
-addResidual(const ResidualOptions& residual,
-            const Eigen::Vector3f& arm,
-            const Eigen::Vector3f& r,
+addResidual(const ResidualOptions& options,
+            const MatchResidual& residual,
             BatchTerms::Extras extras,
             BatchTerms& terms)
 {
-  const double squared = static_cast<double>(r.squaredNorm());
-  terms.energy += robustEnergy(residual, squared);
+  terms.energy += robustEnergy(options, residual.squared);
   if (extras == BatchTerms::Nothing)
     return;
-  const Vector6d gradient = robustWeight(residual, squared) * wrench(arm, r);
+  const Vector6d gradient =
+      robustWeight(options, residual.squared) * wrench(residual.arm, residual.force);
   terms.gradient += gradient;
   if (extras == BatchTerms::SecondMoment)
     terms.second_moment.noalias() += gradient * gradient.transpose();
 }
 
-/** Gauss-Newton matrices of one match without its robust weight. */
+/** Gauss-Newton matrices of one match without its robust weight.
+ * \param[in] normal zero if \p information says how distances count */
 void
 addCurvature(const Eigen::Vector3f& arm,
              const Eigen::Vector3f& normal,
+             const Eigen::Matrix3d& information,
              BatchTerms& terms)
 {
+  Eigen::Matrix<double, 6, 3> rows;
   for (int k = 0; k < 3; ++k) {
-    const Vector6d row = wrench(arm, Eigen::Vector3f::Unit(k));
-    terms.point_curvature.noalias() += row * row.transpose();
+    rows.col(k) = wrench(arm, Eigen::Vector3f::Unit(k));
+    terms.point_curvature.noalias() += rows.col(k) * rows.col(k).transpose();
   }
   const Vector6d row = wrench(arm, normal);
   terms.plane_curvature.noalias() += row * row.transpose();
+  if (normal.isZero(0.0f))
+    terms.plane_curvature.noalias() += rows * information * rows.transpose();
 }
 
 std::vector<std::size_t>
@@ -100,7 +142,10 @@ PoseEnergy::PoseEnergy(const Eigen::Matrix3Xd& source_points,
 , centroid_(source_points.rowwise().mean())
 , arms_((source_points.colwise() - centroid_).cast<float>())
 , normals_(patchNormals(arms_))
-{}
+{
+  if (residual.residual == Residual::DistributionToDistribution)
+    covariances_ = patchCovariances(arms_, residual.regularization);
+}
 
 double
 PoseEnergy::energy(const Vector6d& theta) const
@@ -169,33 +214,39 @@ BatchTerms
 PoseEnergy::batchTerms(const Vector6d& phi,
                        const std::vector<std::size_t>& indices,
                        BatchTerms::Extras extras,
-                       const ResidualOptions& residual,
+                       const ResidualOptions& options,
                        EnergyWorkspace& workspace) const
 {
   moveBatch(phi, indices, workspace);
   target_.match(
       toTheta(phi), indices, workspace.moved, workspace.neighbors, workspace.matches);
-  const Eigen::Matrix3f R = rotationOf(phi).cast<float>();
-  const bool is_plane = residual.residual == Residual::PointToPlane;
+  const Eigen::Matrix3d R = rotationOf(phi);
+  const Eigen::Matrix3f R_float = R.cast<float>();
+  const bool is_plane = options.residual == Residual::PointToPlane;
+  const bool is_distribution = options.residual == Residual::DistributionToDistribution;
   const double size = static_cast<double>(indices.size());
 
   BatchTerms terms;
-  terms.energy = (size - static_cast<double>(workspace.matches.size())) *
-                 unmatchedEnergy(residual);
+  terms.energy =
+      (size - static_cast<double>(workspace.matches.size())) * unmatchedEnergy(options);
   for (const auto& match : workspace.matches) {
     const auto column = static_cast<Eigen::Index>(match.column);
     const Eigen::Vector3f arm = workspace.arms.col(column);
-    const Eigen::Vector3f r = workspace.moved.col(column) - match.point;
-    terms.squared_distance += static_cast<double>(r.squaredNorm());
-    addResidual(residual,
-                arm,
-                is_plane ? match.normal.dot(r) * match.normal : r,
-                extras,
-                terms);
+    const Eigen::Vector3f d = workspace.moved.col(column) - match.point;
+    terms.squared_distance += static_cast<double>(d.squaredNorm());
+    const auto source = indices[match.column];
+    const MatchResidual residual =
+        is_distribution
+            ? distributionResidual(
+                  arm, d, *match.covariance, R * covariances_[source] * R.transpose())
+            : simpleResidual(arm, is_plane ? match.normal.dot(d) * match.normal : d);
+    addResidual(options, residual, extras, terms);
     if (extras != BatchTerms::Curvature)
       continue;
-    const auto source = static_cast<Eigen::Index>(indices[match.column]);
-    addCurvature(arm, is_plane ? match.normal : R * normals_.col(source), terms);
+    Eigen::Vector3f normal = match.normal;
+    if (options.residual == Residual::PointToPoint)
+      normal = R_float * normals_.col(static_cast<Eigen::Index>(source));
+    addCurvature(arm, normal, residual.information, terms);
   }
 
   const Matrix6d map = toAngles(rotationAxes(phi));

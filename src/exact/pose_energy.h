@@ -31,8 +31,8 @@ struct BatchTerms {
   Vector6d gradient = Vector6d::Zero();
   /** Extras SecondMoment: mean outer product of the points' gradients. */
   Matrix6d second_moment = Matrix6d::Zero();
-  /** Extras Curvature: Gauss-Newton matrices of point-to-point and of point-to-plane
-   * residuals. */
+  /** Extras Curvature: Gauss-Newton matrices of point-to-point residuals, and of
+   * point-to-plane residuals or of DistributionToDistribution's. */
   Matrix6d point_curvature = Matrix6d::Zero();
   Matrix6d plane_curvature = Matrix6d::Zero();
 };
@@ -51,7 +51,7 @@ class PoseEnergy {
 public:
   /** \param[in] source_points 3 x n, finite, source frame [m]
    * \param[in] target must outlive this object; needs normals for
-   *            Residual::PointToPlane
+   *            Residual::PointToPlane and covariances for DistributionToDistribution
    * \param[in] prior of theta
    * \param[in] weight N / sigma^2 [1/m^2]
    * \param[in] residual residual, kernel and gate */
@@ -153,6 +153,8 @@ private:
   Eigen::Vector3d centroid_;
   Eigen::Matrix3Xf arms_;
   Eigen::Matrix3Xf normals_;
+  /** Of Residual::DistributionToDistribution, source frame; else empty. */
+  std::vector<Eigen::Matrix3d> covariances_;
 };
 
 } // namespace bayesian_icp

@@ -1,7 +1,8 @@
 /** \file
  * \brief What the phases of a run of the preconditioned sampler work on: the warm-up
  * (preconditioned_warm_up.cpp), the learning of Metropolis chains
- * (preconditioned_metropolis.cpp) and the sampling (preconditioned_sampler.cpp).
+ * (preconditioned_metropolis.cpp), Stein particles (preconditioned_stein.cpp) and the
+ * sampling (preconditioned_sampler.cpp).
  */
 #pragma once
 
@@ -96,5 +97,9 @@ measureEvidence(const std::vector<Gaussian>& gaussians, PreconditionedRun& run);
  * \return the thinning that makes draws nearly independent */
 int
 startMetropolis(PreconditionedRun& run);
+
+/** \brief Let Stein particles start as Langevin chains do, and move until they rest. */
+void
+sampleParticles(PreconditionedRun& run);
 
 } // namespace bayesian_icp

@@ -19,8 +19,8 @@ constexpr int max_extensions = 3;
 bool
 usesMetropolis(const PreconditionedRun& run)
 {
-  if (run.options.metropolis != MetropolisUse::Automatic)
-    return run.options.metropolis == MetropolisUse::Always;
+  if (run.options.steps != ExactSteps::Automatic)
+    return run.options.steps == ExactSteps::Metropolis;
   if (run.options.batch_size.isGiven())
     return false;
   const auto num_terms = static_cast<double>(run.chains.front().energy->numTerms());
@@ -136,7 +136,10 @@ runPreconditionedChains(std::vector<std::unique_ptr<StochasticEnergy>> energies,
 {
   PreconditionedRun run(std::move(energies), options, chains, progress);
   warmUp(run);
-  if (!run.state.stopped()) {
+  if (!run.state.stopped() && usesParticles(options.steps)) {
+    sampleParticles(run);
+  }
+  else if (!run.state.stopped()) {
     startSampling(run);
     sample(run);
     mergeOverlappingModes(run.result);

@@ -20,7 +20,8 @@ namespace bayesian_icp {
  * Gaussians agree form a mode; those of modes more than 10 nats worse than the best
  * are moved to it. The chains of a mode refine its Gaussian together, then sample
  * with Langevin steps; or all chains together learn a proposal of Metropolis steps,
- * for all modes, then freeze it and sample.
+ * for all modes, then freeze it and sample; or Stein particles, divided among the
+ * chains, start from it.
  *
  * Draws are bit-identical for every number of threads: what the chains share is put
  * together from their results in the order of the chains.

@@ -5,6 +5,7 @@
 
 #include <bayesian_icp/draws.h>
 
+#include <optional>
 #include <vector>
 
 namespace bayesian_icp {
@@ -18,6 +19,13 @@ struct ChainMode {
   double log_evidence = 0.0;
 };
 
+/** \brief What is known of draws that are particles, not chains (sampler/stein.h). */
+struct ParticleReport {
+  double discrepancy = 0.0;
+  double variance_share = 0.0;
+  int num_steps = 0;
+};
+
 /** \brief Chains of one run. */
 struct ChainSet {
   std::vector<Chain> chains;
@@ -29,6 +37,8 @@ struct ChainSet {
    * how much worse the nearest of those modes was [nats]. */
   int num_moved_chains = 0;
   double moved_by_nats = 0.0;
+  /** Of particles, of which each chain holds some. */
+  std::optional<ParticleReport> particles;
 };
 
 } // namespace bayesian_icp

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace bayesian_icp {
@@ -16,11 +17,9 @@ using IndexIterator = std::vector<Eigen::Index>::iterator;
 
 constexpr std::ptrdiff_t patch_size = 16;
 
-void
-setPatchNormal(const Eigen::Matrix3Xf& points,
-               IndexIterator first,
-               IndexIterator last,
-               Eigen::Matrix3Xf& normals)
+/** Principal axes and variances of points, ascending [m^2]. */
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>
+shapeOf(const Eigen::Matrix3Xf& points, IndexIterator first, IndexIterator last)
 {
   const double size = static_cast<double>(last - first);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -32,22 +31,25 @@ setPatchNormal(const Eigen::Matrix3Xf& points,
     scatter += d * d.transpose();
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(scatter);
-  const Eigen::Vector3f normal = solver.eigenvectors().col(0).cast<float>();
-  for (auto i = first; i != last; ++i)
-    normals.col(*i) = normal;
+  solver.computeDirect(scatter / size);
+  return solver;
 }
 
-/** Halves the points at the median of their longest side until they are a patch. */
+/** Halves the points at the median of their longest side until they are a patch, which
+ * visit(its shape, index of a point) is told of for each point. */
+template <typename Visitor>
 void
 splitIntoPatches(const Eigen::Matrix3Xf& points,
                  IndexIterator first,
                  IndexIterator last,
-                 Eigen::Matrix3Xf& normals)
+                 const Visitor& visit)
 {
   if (last - first <= patch_size) {
-    if (last - first >= 3)
-      setPatchNormal(points, first, last, normals);
+    if (last - first < 3)
+      return;
+    const auto shape = shapeOf(points, first, last);
+    for (auto i = first; i != last; ++i)
+      visit(shape, *i);
     return;
   }
   Eigen::Vector3f low = points.col(*first), high = low;
@@ -61,8 +63,38 @@ splitIntoPatches(const Eigen::Matrix3Xf& points,
   std::nth_element(first, middle, last, [&](Eigen::Index a, Eigen::Index b) {
     return points(axis, a) < points(axis, b);
   });
-  splitIntoPatches(points, first, middle, normals);
-  splitIntoPatches(points, middle, last, normals);
+  splitIntoPatches(points, first, middle, visit);
+  splitIntoPatches(points, middle, last, visit);
+}
+
+template <typename Visitor>
+void
+forEachPatchPoint(const Eigen::Matrix3Xf& points, const Visitor& visit)
+{
+  std::vector<Eigen::Index> finite = finiteColumns(points);
+  splitIntoPatches(points, finite.begin(), finite.end(), visit);
+}
+
+/** Eigenvalues of C, of those of the covariance, ascending [m^2]. */
+Eigen::Vector3d
+regularized(const Eigen::Vector3d& variances, CovarianceRegularization regularization)
+{
+  constexpr double flatness = 1e-3, added = 1e-3 /* [m^2] */, least_share = 1e-6;
+  switch (regularization) {
+  case CovarianceRegularization::Plane:
+    break;
+  case CovarianceRegularization::Frobenius: {
+    const Eigen::Vector3d sum = variances.array() + added;
+    return 0.5 * sum.cwiseInverse().norm() * sum;
+  }
+  case CovarianceRegularization::None: {
+    const double least =
+        std::max(least_share * variances[2], std::numeric_limits<double>::min());
+    const Eigen::Vector3d raised = variances.cwiseMax(least);
+    return 0.5 / raised[0] * raised;
+  }
+  }
+  return Eigen::Vector3d(flatness, 1.0, 1.0) / (2.0 * flatness);
 }
 
 } // namespace
@@ -71,10 +103,12 @@ Target::~Target() = default;
 
 TreeTarget::TreeTarget(const KdTree& tree,
                        double max_distance,
-                       Eigen::Matrix3Xf normals)
+                       Eigen::Matrix3Xf normals,
+                       std::vector<Eigen::Matrix3d> covariances)
 : tree_(tree)
 , max_squared_distance_(squaredGate(max_distance))
 , normals_(std::move(normals))
+, covariances_(std::move(covariances))
 {}
 
 void
@@ -96,7 +130,10 @@ TreeTarget::match(const Vector6d& /* pose */,
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
     if (normals_.cols() > 0)
       normal = normals_.col(neighbor);
-    matches.push_back({i, tree_.points().col(neighbor), normal});
+    matches.push_back({i,
+                       tree_.points().col(neighbor),
+                       normal,
+                       covariances_.empty() ? nullptr : &covariances_[neighbor]});
   }
 }
 
@@ -127,9 +164,39 @@ Eigen::Matrix3Xf
 patchNormals(const Eigen::Matrix3Xf& points)
 {
   Eigen::Matrix3Xf normals = Eigen::Matrix3Xf::Zero(3, points.cols());
-  std::vector<Eigen::Index> finite = finiteColumns(points);
-  splitIntoPatches(points, finite.begin(), finite.end(), normals);
+  forEachPatchPoint(points, [&](const auto& shape, Eigen::Index i) {
+    normals.col(i) = shape.eigenvectors().col(0).template cast<float>();
+  });
   return normals;
+}
+
+std::vector<Eigen::Matrix3d>
+patchCovariances(const Eigen::Matrix3Xf& points,
+                 CovarianceRegularization regularization)
+{
+  std::vector<Eigen::Matrix3d> covariances(static_cast<std::size_t>(points.cols()),
+                                           0.5 * Eigen::Matrix3d::Identity());
+  forEachPatchPoint(points, [&](const auto& shape, Eigen::Index i) {
+    const Eigen::Matrix3d& axes = shape.eigenvectors();
+    covariances[static_cast<std::size_t>(i)] =
+        axes * regularized(shape.eigenvalues(), regularization).asDiagonal() *
+        axes.transpose();
+  });
+  return covariances;
+}
+
+TreeTarget
+treeTargetFor(const ResidualOptions& residual, const KdTree& tree)
+{
+  const Eigen::Matrix3Xf& points = tree.points();
+  if (residual.residual == Residual::PointToPlane)
+    return TreeTarget(tree, residual.max_distance, patchNormals(points));
+  if (residual.residual == Residual::DistributionToDistribution)
+    return TreeTarget(tree,
+                      residual.max_distance,
+                      Eigen::Matrix3Xf(),
+                      patchCovariances(points, residual.regularization));
+  return TreeTarget(tree, residual.max_distance);
 }
 
 } // namespace bayesian_icp

@@ -7,6 +7,7 @@
 
 #include <bayesian_icp/correspondence.h>
 #include <bayesian_icp/kd_tree.h>
+#include <bayesian_icp/options.h>
 
 #include <vector>
 
@@ -20,6 +21,8 @@ struct TargetMatch {
   Eigen::Vector3f point;
   /** Unit normal at that point; zero if the target has none. */
   Eigen::Vector3f normal;
+  /** C of its neighbourhood; null if the target has none. */
+  const Eigen::Matrix3d* covariance = nullptr;
 };
 
 /** \brief Interface: finds matches within the gate. */
@@ -54,10 +57,12 @@ class TreeTarget : public Target {
 public:
   /** \param[in] tree must outlive this object
    * \param[in] max_distance gate [m]; infinity means no gate
-   * \param[in] normals 3 x (number of the tree's points), unit or zero; may be empty */
+   * \param[in] normals 3 x (number of the tree's points), unit or zero; may be empty
+   * \param[in] covariances one for each of the tree's points; may be empty */
   TreeTarget(const KdTree& tree,
              double max_distance,
-             Eigen::Matrix3Xf normals = Eigen::Matrix3Xf());
+             Eigen::Matrix3Xf normals = Eigen::Matrix3Xf(),
+             std::vector<Eigen::Matrix3d> covariances = {});
 
   void
   match(const Vector6d& pose,
@@ -70,7 +75,12 @@ private:
   const KdTree& tree_;
   float max_squared_distance_;
   Eigen::Matrix3Xf normals_;
+  std::vector<Eigen::Matrix3d> covariances_;
 };
+
+/** \brief The target with what \p residual needs of it, and its gate. */
+TreeTarget
+treeTargetFor(const ResidualOptions& residual, const KdTree& tree);
 
 /** \brief Matches of a user's CorrespondenceSearch, without cache and normals. */
 class SearchTarget : public Target {
@@ -99,5 +109,13 @@ private:
  *            normals if there are fewer than 3 points. */
 Eigen::Matrix3Xf
 patchNormals(const Eigen::Matrix3Xf& points);
+
+/** \brief C of Residual::DistributionToDistribution for each point, from the same
+ * patches: all points of a patch have the same. I / 2, as if a patch were a ball, where
+ * there is no patch.
+ * \param[in] points 3 x n [m] */
+std::vector<Eigen::Matrix3d>
+patchCovariances(const Eigen::Matrix3Xf& points,
+                 CovarianceRegularization regularization);
 
 } // namespace bayesian_icp

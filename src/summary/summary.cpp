@@ -103,6 +103,8 @@ summarizeCoordinate(const Eigen::VectorXd& errors,
   coordinate.quantile_2_5 = coordinate.mean + quantile(errors, 0.025);
   coordinate.median = coordinate.mean + quantile(errors, 0.5);
   coordinate.quantile_97_5 = coordinate.mean + quantile(errors, 0.975);
+  if (errors_by_chain.size() == 0)
+    return;
   coordinate.rhat = rhat(errors_by_chain);
   coordinate.bulk_ess = bulkEss(errors_by_chain);
   coordinate.tail_ess = tailEss(errors_by_chain);
@@ -132,22 +134,45 @@ struct WorstDiagnostics {
 };
 
 Status
-statusOf(const Summary& summary, bool cancelled, const WorstDiagnostics& worst)
+statusOf(const Summary& summary, const ChainSet& set, const WorstDiagnostics& worst)
 {
   if (summary.num_diverged_chains > 0)
     return Status::Diverged;
-  if (cancelled)
+  if (set.cancelled)
     return Status::Cancelled;
   if (summary.modes.size() > 1)
     return Status::SeveralModes;
+  if (set.particles)
+    return set.particles->discrepancy <= max_stein_discrepancy ? Status::Ok
+                                                               : Status::NotMixed;
   if (worst.rhat <= max_rhat && worst.ess >= min_ess)
     return Status::Ok;
   return Status::NotMixed;
 }
 
 std::string
-messageOf(const Summary& summary, const WorstDiagnostics& worst)
+particlesMessage(const ParticleReport& particles, Status status)
 {
+  const bool is_good = status == Status::Ok;
+  return formatted("the particles %s after %d steps: kernelised Stein discrepancy %.3f "
+                   "(at most %.3f is good), variance %.2f of what the gradients ask "
+                   "for; particles have no R-hat%s",
+                   is_good ? "converged" : "did not converge to the posterior",
+                   particles.num_steps,
+                   particles.discrepancy,
+                   max_stein_discrepancy,
+                   particles.variance_share,
+                   is_good ? ""
+                           : "; mean and covariance describe them, not reliably the "
+                             "posterior");
+}
+
+std::string
+messageOf(const Summary& summary, const ChainSet& set, const WorstDiagnostics& worst)
+{
+  if (set.particles &&
+      (summary.status == Status::Ok || summary.status == Status::NotMixed))
+    return particlesMessage(*set.particles, summary.status);
   switch (summary.status) {
   case Status::SeveralModes:
     return modesMessage(summary);
@@ -257,12 +282,15 @@ summarize(const ChainSet& chain_set)
   for (int k = 0; k < 6; ++k) {
     auto& coordinate = summary.coordinates[static_cast<std::size_t>(k)];
     coordinate.mean = means[k];
-    summarizeCoordinate(errors.col(k), coordinateErrors(means, chains, k), coordinate);
+    summarizeCoordinate(errors.col(k),
+                        chain_set.particles ? Eigen::MatrixXd()
+                                            : coordinateErrors(means, chains, k),
+                        coordinate);
   }
   summary.modes = summarizeModes(chain_set);
   const WorstDiagnostics worst(summary);
-  summary.status = statusOf(summary, chain_set.cancelled, worst);
-  summary.message = messageOf(summary, worst) + movedMessage(chain_set);
+  summary.status = statusOf(summary, chain_set, worst);
+  summary.message = messageOf(summary, chain_set, worst) + movedMessage(chain_set);
   return summary;
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp::app {
 namespace {
@@ -38,6 +39,7 @@ summaryWith(Status status)
   for (std::size_t k = 0; k < 6; ++k) {
     summary.coordinates[k].mean = k < 3 ? 0.0213 : 0.5;
     summary.coordinates[k].standard_deviation = k < 3 ? 0.0004 : 0.1 * pi / 180.0;
+    summary.coordinates[k].rhat = 1.1;
   }
   return summary;
 }
@@ -112,6 +114,10 @@ TEST(Verdict, WhatNotToTrustComesFirst)
   Verdict verdict = verdictOf(summary, Preset::Paper);
   EXPECT_EQ(verdict.tone, html::Tone::Bad);
   EXPECT_EQ(verdict.heading, "Do not trust the ±: the chains have not mixed");
+  Summary particles = summary;
+  particles.coordinates[0].rhat = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(verdictOf(particles, Preset::Exact).heading,
+            "Do not trust the ±: the draws have not converged");
   EXPECT_NE(verdict.scale_note.find("not found from the clouds"), std::string::npos);
 
   summary.status = Status::Diverged;

@@ -23,7 +23,7 @@ class Usage(ToolTest):
             ("prior-variance", "0.125"),
             ("max-distance", "none"),
             ("preset", "calibrated"),
-            ("metropolis", "automatic"),
+            ("steps", "automatic"),
             ("initial-spread", "automatic"),
         ):
             self.assertRegex(
@@ -179,7 +179,9 @@ class Values(ToolTest):
         "exact": {
             **SCALE,
             "max-step-size": ("exact", "max_step_size", 0.5),
-            "metropolis": ("exact", "metropolis", "never"),
+            "steps": ("exact", "steps", "langevin"),
+            "particles": ("exact", "num_particles", 33),
+            "regularization": ("exact", "regularization", "frobenius"),
             "residual": ("exact", "residual", "point-to-plane"),
             "kernel": ("exact", "kernel", "tukey"),
             "kernel-width": ("exact", "kernel_width_m", 0.125),

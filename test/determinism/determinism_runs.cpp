@@ -110,15 +110,18 @@ calibratedModesRun(const RunSettings& settings)
       estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
 }
 
-/** At a scale at which \p metropolis or Langevin steps are made. */
+/** \p residual and steps of preset `exact`, at one scale. */
 RunRecord
-exactRun(const RunSettings& settings, MetropolisUse metropolis)
+exactRun(const RunSettings& settings,
+         ExactSteps steps,
+         Residual residual = Residual::PointToPoint)
 {
   const Scans scans = makeScans(settings.is_nudged);
   Options options = quickOptions(Preset::Exact, settings.num_threads);
   options.exact.scale.effective_points = 100.0;
   options.exact.scale.measurement_sigma = 0.02;
-  options.exact.metropolis = metropolis;
+  options.exact.steps = steps;
+  options.exact.residual.residual = residual;
   return recordOf(
       estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
 }
@@ -196,9 +199,14 @@ allRuns()
       {"calibrated", calibratedRun},
       {"calibrated_modes", calibratedModesRun},
       {"exact_langevin",
-       [](const RunSettings& s) { return exactRun(s, MetropolisUse::Never); }},
+       [](const RunSettings& s) { return exactRun(s, ExactSteps::Langevin); }},
       {"exact_metropolis",
-       [](const RunSettings& s) { return exactRun(s, MetropolisUse::Always); }},
+       [](const RunSettings& s) { return exactRun(s, ExactSteps::Metropolis); }},
+      {"exact_distributions",
+       [](const RunSettings& s) {
+         return exactRun(
+             s, ExactSteps::Metropolis, Residual::DistributionToDistribution);
+       }},
       {"paper", paperRun},
       {"sgd_icp", stochasticGradientRun},
       {"monte_carlo_icp", monteCarloRun},

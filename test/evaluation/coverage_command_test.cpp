@@ -56,6 +56,8 @@ TEST_F(CoverageCommand, BadOptionsExitWithTwo)
                                 "--conditions sunny",
                                 "--scenes street --conditions same",
                                 "--methods guessing",
+                                "--methods exact:plane:metropolis:0.01:300:500",
+                                "--methods exact:point-to-plane:metropolis:0.01:0:500",
                                 "--seeds 0",
                                 "--seeds x",
                                 "--first-seed -1",

@@ -191,16 +191,24 @@ TEST_F(CoverageStudyTest, TableHasEveryCellAndThePools)
     EXPECT_NE(table.str().find(title), std::string::npos) << title;
 }
 
-TEST(CoverageMethods, PaperIsAlgorithm1WithThePriorOfTheCase)
+/** Defaults of a preset with prior and seed of a case. */
+Options
+optionsOf(const CoverageCase& problem, Preset preset)
 {
-  CoverageCase problem = rightPosterior(1, 0).problem;
-  problem.prior_mean << 0.1, 0.0, -0.1, 0.0, 0.1, 0.0;
   Options options;
-  options.preset = Preset::Paper;
+  options.preset = preset;
   options.prior.mean = problem.prior_mean;
   options.prior.variance = problem.prior_sd.cwiseAbs2();
   options.prior.frame = PriorFrame::SourceCentroid;
   options.chains.seed = problem.seed;
+  return options;
+}
+
+TEST(CoverageMethods, PaperIsAlgorithm1WithThePriorOfTheCase)
+{
+  CoverageCase problem = rightPosterior(1, 0).problem;
+  problem.prior_mean << 0.1, 0.0, -0.1, 0.0, 0.1, 0.0;
+  const Options options = optionsOf(problem, Preset::Paper);
   const PosteriorEstimate expected =
       estimatePosterior(problem.source,
                         KdTree(problem.target.cast<float>(), 1),
@@ -213,6 +221,29 @@ TEST(CoverageMethods, PaperIsAlgorithm1WithThePriorOfTheCase)
       return;
     }
   FAIL() << "no method paper";
+}
+
+TEST(CoverageMethods, ExactIsThePresetThatItsNameStates)
+{
+  CoverageCase problem = rightPosterior(2, 0).problem;
+  problem.source = Eigen::Matrix3Xd::Random(3, 200);
+  problem.target = Eigen::Matrix3Xd::Random(3, 500);
+  Options options = optionsOf(problem, Preset::Exact);
+  options.exact.residual.residual = Residual::DistributionToDistribution;
+  options.exact.steps = ExactSteps::SteinNewton;
+  options.exact.scale = {300.0, 0.05};
+  options.exact.max_source_points = 90;
+  const PosteriorEstimate expected =
+      estimatePosterior(problem.source,
+                        KdTree(problem.target.cast<float>(), 1),
+                        problem.prior_mean,
+                        options);
+  ASSERT_GT(expected.samples.rows(), 0);
+  const MethodResult result = timedResult(
+      exactMethod("exact:distribution-to-distribution:stein-newton:0.05:300:90"),
+      problem);
+  EXPECT_EQ(result.draws, expected.samples);
+  EXPECT_EQ(result.notes, std::string("flag:") + toString(expected.summary.status));
 }
 
 TEST(CoverageMethods, PriorIsAsLikelyAsItSays)

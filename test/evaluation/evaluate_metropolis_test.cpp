@@ -2,6 +2,9 @@
 // are known.
 #include "evaluation/evaluate_test_support.h"
 #include "samplers/gold_standard.h"
+#include "samplers/sampler_runs.h"
+#include "samplers/score.h"
+#include "support/test_support.h"
 
 #include <bayesian_icp/diagnostics.h>
 
@@ -114,6 +117,36 @@ TEST(GoldStandard, SaysWhenItHasNotConverged)
       sampleGold(goldTarget(energyOf(exampleGaussian()), 5.0), options, no_report);
   EXPECT_FALSE(gold.has_converged);
   EXPECT_LT(gold.bulk_ess, options.min_ess);
+}
+
+// The energy jumps where nearest points change: Metropolis steps follow it, and Stein
+// particles, whose gradients do not see the jumps, are too narrow besides.
+TEST(GoldStandard, OfDistributionsIsWhatMetropolisStepsDraw)
+{
+  Random random(6, 0);
+  const auto surface = [&](Eigen::Index num_points) {
+    Eigen::Matrix3Xd points = test::randomPoints(random, num_points);
+    for (auto point : points.colwise())
+      point[2] = 0.1 * std::sin(9.0 * point[0]) * std::cos(8.0 * point[1]) +
+                 0.003 * random.normal();
+    return points;
+  };
+  const Scene scene{"waves", surface(150), KdTree(surface(2000).cast<float>())};
+  const Problem problem(scene, {0.01, 100.0}, Residual::DistributionToDistribution);
+  const GoldStandard gold = sampleGold(problem.goldTarget(), GoldOptions(), no_report);
+  EXPECT_TRUE(gold.has_converged);
+  PoseMatrix draws = pooled(gold.chains);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    draws.row(i) = problem.energy().toTheta(draws.row(i).transpose()).transpose();
+  const auto scoreOfSteps = [&](ExactSteps steps) {
+    return scoreOf(runExact(problem, 1, 1, steps), draws);
+  };
+  const Score metropolis = scoreOfSteps(ExactSteps::Metropolis);
+  EXPECT_EQ(metropolis.status, "ok");
+  EXPECT_LT(metropolis.kl, 0.06);
+  const Score stein = scoreOfSteps(ExactSteps::SteinNewton);
+  EXPECT_EQ(stein.status, "not_mixed");
+  EXPECT_GT(stein.kl, 0.2);
 }
 
 TEST(GoldStandard, DoesNotDependOnTheNumberOfThreads)

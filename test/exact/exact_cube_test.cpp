@@ -14,9 +14,9 @@ namespace bayesian_icp {
 
 /** How GoogleTest names the test's parameter. */
 static void
-PrintTo(MetropolisUse use, std::ostream* stream)
+PrintTo(ExactSteps use, std::ostream* stream)
 {
-  *stream << (use == MetropolisUse::Never ? "Langevin" : "Automatic");
+  *stream << (use == ExactSteps::Langevin ? "Langevin" : "Automatic");
 }
 
 namespace {
@@ -43,7 +43,7 @@ distanceFromSymmetry(const Eigen::Matrix3d& rotation)
   return (rotation - rounded).cwiseAbs().maxCoeff();
 }
 
-class Cube : public ::testing::TestWithParam<MetropolisUse> {};
+class Cube : public ::testing::TestWithParam<ExactSteps> {};
 
 TEST_P(Cube, StartedWideIsFoundInSymmetricPosesAndNeverCalledMixed)
 {
@@ -52,7 +52,7 @@ TEST_P(Cube, StartedWideIsFoundInSymmetricPosesAndNeverCalledMixed)
   const Eigen::Matrix3Xf target = cubeFaces(random, 20000).cast<float>();
   Options options;
   options.preset = Preset::Exact;
-  options.exact.metropolis = GetParam();
+  options.exact.steps = GetParam();
   options.exact.scale.effective_points = 300.0;
   options.exact.scale.measurement_sigma = 0.003;
   options.prior.variance << 0.01, 0.01, 0.01, 1.0, 1.0, 1.0;
@@ -80,7 +80,7 @@ TEST_P(Cube, StartedWideIsFoundInSymmetricPosesAndNeverCalledMixed)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Exact, Cube, ::testing::Values(MetropolisUse::Automatic, MetropolisUse::Never));
+    Exact, Cube, ::testing::Values(ExactSteps::Automatic, ExactSteps::Langevin));
 
 } // namespace
 } // namespace bayesian_icp

@@ -43,14 +43,14 @@ struct Groove {
 };
 
 PosteriorEstimate
-estimateGroove(MetropolisUse metropolis, int num_shifts, int num_draws)
+estimateGroove(ExactSteps steps, int num_shifts, int num_draws)
 {
   const Groove groove(num_shifts);
   Options options;
   options.preset = Preset::Exact;
   options.exact.scale.effective_points = 300.0;
   options.exact.scale.measurement_sigma = 0.003;
-  options.exact.metropolis = metropolis;
+  options.exact.steps = steps;
   options.chains.num_chains = 8;
   options.chains.num_draws = num_draws;
   Vector6d spread;
@@ -62,7 +62,7 @@ estimateGroove(MetropolisUse metropolis, int num_shifts, int num_draws)
 
 TEST(Exact, AGrooveRepeatedAlongAnAxisGivesSeveralModesWithLangevinSteps)
 {
-  const auto summary = estimateGroove(MetropolisUse::Never, 5, 400).summary;
+  const auto summary = estimateGroove(ExactSteps::Langevin, 5, 400).summary;
   EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
   ASSERT_GE(summary.modes.size(), 2u);
   EXPECT_GT(summary.coordinates[0].rhat, 1.1);
@@ -72,7 +72,7 @@ TEST(Exact, AGrooveRepeatedAlongAnAxisGivesSeveralModesWithLangevinSteps)
 
 TEST(Exact, ChainsTravelBetweenGroovesWithMetropolisSteps)
 {
-  const auto estimate = estimateGroove(MetropolisUse::Automatic, 1, 2000);
+  const auto estimate = estimateGroove(ExactSteps::Automatic, 1, 2000);
   EXPECT_EQ(estimate.summary.status, Status::Ok) << estimate.summary.message;
   for (const auto& chain : estimate.chains) {
     std::set<long> grooves;

@@ -119,9 +119,13 @@ randomWalk(const PoseEnergy& energy, const Moments& guide, int num_draws)
 TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
 {
   const Scans scans;
-  for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
+  for (const auto& [residual, steps] :
+       {std::pair(Residual::PointToPoint, ExactSteps::Langevin),
+        std::pair(Residual::PointToPoint, ExactSteps::Metropolis),
+        std::pair(Residual::DistributionToDistribution, ExactSteps::Metropolis)}) {
     Options options = exactOptions();
-    options.exact.metropolis = metropolis;
+    options.exact.residual.residual = residual;
+    options.exact.steps = steps;
     const auto estimate =
         estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
     ASSERT_EQ(estimate.summary.status, Status::Ok) << estimate.summary.message;
@@ -129,7 +133,7 @@ TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
     for (const auto& coordinate : estimate.summary.coordinates)
       EXPECT_GT(std::min(coordinate.bulk_ess, coordinate.tail_ess), 900.0);
 
-    const TreeTarget target(scans.target, options.exact.residual.max_distance);
+    const TreeTarget target = treeTargetFor(options.exact.residual, scans.target);
     const PoseEnergy energy(scans.source,
                             target,
                             Prior(Vector6d::Zero(), options.prior.variance),
@@ -137,14 +141,17 @@ TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
                             options.exact.residual);
     const Moments draws = momentsOf(estimate.samples);
     const Moments reference = momentsOf(randomWalk(energy, draws, 10000));
-    EXPECT_LT(divergence(reference, draws), 0.06) << toString(metropolis);
+    EXPECT_LT(divergence(reference, draws), 0.06)
+        << toString(residual) << " " << toString(steps);
   }
 }
 
 TEST(Exact, EveryResidualAndKernelFindsTheTruth)
 {
   const Scans scans;
-  for (const auto residual : {Residual::PointToPoint, Residual::PointToPlane})
+  for (const auto residual : {Residual::PointToPoint,
+                              Residual::PointToPlane,
+                              Residual::DistributionToDistribution})
     for (const auto kernel :
          {RobustKernel::None, RobustKernel::Huber, RobustKernel::Tukey}) {
       Options options = exactOptions();
@@ -185,13 +192,33 @@ TEST(Exact, AKernelThatLeavesOutAllPointsIsADoubt)
       << lost.summary.message;
 }
 
+TEST(Exact, SteinParticlesAreBitIdenticalForEveryNumberOfThreads)
+{
+  const Scans scans;
+  for (const auto steps : {ExactSteps::SteinGradient, ExactSteps::SteinNewton}) {
+    Options options = exactOptions();
+    options.exact.steps = steps;
+    options.exact.num_particles = 21;
+    options.chains.num_threads = 1;
+    const auto reference =
+        estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
+    ASSERT_EQ(reference.samples.rows(), 21);
+    for (const int num_threads : {2, 4}) {
+      options.chains.num_threads = num_threads;
+      const auto estimate =
+          estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
+      EXPECT_EQ(estimate.samples, reference.samples) << toString(steps);
+    }
+  }
+}
+
 TEST(Exact, ASearchOfTheUsersOwnGivesTheSamePosterior)
 {
   const Scans scans(100);
   Options options = exactOptions();
   options.chains.num_draws = 400;
   options.exact.residual.max_distance = 0.3;
-  options.exact.metropolis = MetropolisUse::Never; // Metropolis takes brute force long.
+  options.exact.steps = ExactSteps::Langevin; // Metropolis takes brute force long.
   const test::BruteForceSearch search(scans.target.points().cast<double>(), 0.3, false);
   const auto a =
       estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
@@ -203,10 +230,13 @@ TEST(Exact, ASearchOfTheUsersOwnGivesTheSamePosterior)
     EXPECT_NEAR(std::log(ca.standard_deviation / cb.standard_deviation), 0.0, 0.25)
         << k;
   }
-  options.exact.residual.residual = Residual::PointToPlane;
-  EXPECT_EQ(
-      estimatePosterior(scans.source, search, Vector6d::Zero(), options).summary.status,
-      Status::InvalidOptions);
+  for (const auto residual :
+       {Residual::PointToPlane, Residual::DistributionToDistribution}) {
+    options.exact.residual.residual = residual;
+    EXPECT_EQ(estimatePosterior(scans.source, search, Vector6d::Zero(), options)
+                  .summary.status,
+              Status::InvalidOptions);
+  }
 }
 
 TEST(Exact, OptionsAreChecked)
@@ -230,9 +260,14 @@ TEST(Exact, OptionsAreChecked)
   expect("initial_spread", [](Options& o) {
     o.exact.initial_spread = Vector6d(Vector6d::Constant(-1.0));
   });
-  expect("metropolis is always", [](Options& o) {
+  expect("steps is metropolis", [](Options& o) {
     o.exact.batch_size = 10;
-    o.exact.metropolis = MetropolisUse::Always;
+    o.exact.steps = ExactSteps::Metropolis;
+  });
+  expect("num_particles is 9", [](Options& o) {
+    o.chains.num_chains = 10;
+    o.exact.num_particles = 9;
+    o.exact.steps = ExactSteps::SteinNewton;
   });
 }
 

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <numeric>
+#include <utility>
 
 namespace bayesian_icp {
 namespace {
@@ -44,12 +48,20 @@ somePrior(const Eigen::Vector3d& reference)
 std::vector<ResidualOptions>
 allResiduals(double kernel_width, double max_distance)
 {
+  using Regularization = CovarianceRegularization;
+  constexpr auto distribution = Residual::DistributionToDistribution;
   std::vector<ResidualOptions> all;
-  for (const auto residual : {Residual::PointToPoint, Residual::PointToPlane})
+  for (const auto& [residual, regularization] :
+       {std::pair(Residual::PointToPoint, Regularization::Plane),
+        std::pair(Residual::PointToPlane, Regularization::Plane),
+        std::pair(distribution, Regularization::Plane),
+        std::pair(distribution, Regularization::Frobenius),
+        std::pair(distribution, Regularization::None)})
     for (const auto kernel :
          {RobustKernel::None, RobustKernel::Huber, RobustKernel::Tukey}) {
       ResidualOptions options;
       options.residual = residual;
+      options.regularization = regularization;
       options.kernel = kernel;
       options.kernel_width = kernel_width;
       options.max_distance = max_distance;
@@ -61,7 +73,8 @@ allResiduals(double kernel_width, double max_distance)
 std::string
 nameOf(const ResidualOptions& options)
 {
-  return std::string(toString(options.residual)) + " " + toString(options.kernel);
+  return std::string(toString(options.residual)) + " " +
+         toString(options.regularization) + " " + toString(options.kernel);
 }
 
 TEST(Kernels, WeightIsTheDerivativeOverTheResidual)
@@ -126,20 +139,27 @@ TEST(Gradients, OfEveryResidualAndKernelAgreeWithFiniteDifferences)
   const Scan scan;
   const KdTree tree(scan.target);
   const Prior prior = somePrior({0.3, 0.2, 0.1});
-  for (const auto& options : allResiduals(0.03, 0.08)) {
-    const TreeTarget target(tree, options.max_distance, patchNormals(scan.target));
-    const FixedMatches fixed(target, scan.pose);
-    const PoseEnergy energy(scan.source, fixed, prior, 1000.0, options);
-    const Vector6d gradient = energy.energyGradient(scan.pose);
-    const Vector6d numerical = test::centralDifferences(
-        [&](const Vector6d& p) { return energy.energy(p); }, scan.pose, 1e-3);
-    // Coordinates are single precision: 1e-7 m of 0.05 m residuals, step 1e-3, and the
-    // curvature of the energy over that step.
-    const double tolerance = 0.01 * gradient.norm() + 0.01;
-    EXPECT_LT((gradient - numerical).norm(), tolerance) << nameOf(options) << "\n"
-                                                        << gradient.transpose() << "\n"
-                                                        << numerical.transpose();
-  }
+  // Near the identity, and turned by more than a right angle about all axes.
+  Vector6d far = scan.pose;
+  far.tail<3>() << 1.9, -0.8, 2.6;
+  for (auto options : allResiduals(0.03, 0.08))
+    for (const Vector6d& pose : {scan.pose, far}) {
+      if (pose == far)
+        options.kernel_width = options.max_distance = 10.0;
+      const TreeTarget target = treeTargetFor(options, tree);
+      const FixedMatches fixed(target, pose);
+      const PoseEnergy energy(scan.source, fixed, prior, 1000.0, options);
+      const Vector6d gradient = energy.energyGradient(pose);
+      const Vector6d numerical = test::centralDifferences(
+          [&](const Vector6d& p) { return energy.energy(p); }, pose, 1e-3);
+      // Coordinates are single precision: 1e-7 m of 0.05 m residuals, step 1e-3, and
+      // the curvature of the energy over that step.
+      const double tolerance = 0.01 * gradient.norm() + 0.01;
+      EXPECT_LT((gradient - numerical).norm(), tolerance)
+          << nameOf(options) << "\n"
+          << gradient.transpose() << "\n"
+          << numerical.transpose();
+    }
 }
 
 TEST(Gradients, OfTheCentredPoseAgreeWithFiniteDifferences)
@@ -252,15 +272,97 @@ TEST(BatchTerms, CurvatureIsTheGaussNewtonMatrixAndSecondMomentTheNoise)
   EXPECT_NEAR((curvature.plane_curvature.topLeftCorner<3, 3>().trace()), 1.0, 1e-5);
 }
 
-TEST(PatchNormals, OfAPlaneAreItsNormal)
+/** As many points of the plane with this normal, some metres wide. */
+Eigen::Matrix3Xf
+plane(Eigen::Index num_points, const Eigen::Vector3f& normal)
 {
   Random random(73, 0);
-  Eigen::Matrix3Xf points(3, 300);
-  const Eigen::Vector3f normal = Eigen::Vector3f(1, 2, 3).normalized();
+  Eigen::Matrix3Xf points(3, num_points);
   const Eigen::Vector3f u = normal.unitOrthogonal(), v = normal.cross(u);
-  for (Eigen::Index i = 0; i < 300; ++i)
+  for (Eigen::Index i = 0; i < num_points; ++i)
     points.col(i) = static_cast<float>(random.normal()) * u +
                     static_cast<float>(random.normal()) * v;
+  return points;
+}
+
+TEST(Energy, OfDistributionsIsTheMahalanobisDistanceOfTheNearestPoints)
+{
+  const Scan scan;
+  const KdTree tree(scan.target);
+  const Eigen::Vector3d centroid = scan.source.rowwise().mean();
+  const Eigen::Matrix3d R = rotationOf(scan.pose);
+  for (const auto& options : allResiduals(0.05, 10.0)) {
+    if (options.residual != Residual::DistributionToDistribution)
+      continue;
+    const auto of_target = patchCovariances(scan.target, options.regularization);
+    const auto of_source = patchCovariances(
+        (scan.source.colwise() - centroid).cast<float>(), options.regularization);
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < scan.source.cols(); ++i) {
+      const Eigen::Vector3d moved = R * scan.source.col(i) + scan.pose.head<3>();
+      const auto nearest =
+          tree.nearest(moved.cast<float>(), std::numeric_limits<float>::infinity());
+      const Eigen::Vector3d d = moved - scan.target.col(nearest.index).cast<double>();
+      const Eigen::Matrix3d C =
+          of_target[nearest.index] +
+          R * of_source[static_cast<std::size_t>(i)] * R.transpose();
+      sum += robustEnergy(options, d.dot(C.ldlt().solve(d)));
+    }
+    const TreeTarget target = treeTargetFor(options, tree);
+    const Prior prior = somePrior({0, 0, 0});
+    const PoseEnergy energy(scan.source, target, prior, 1000.0, options);
+    const double expected = 1000.0 * sum / static_cast<double>(scan.source.cols());
+    EXPECT_NEAR(
+        energy.energy(scan.pose) - prior.energy(scan.pose), expected, 1e-4 * expected)
+        << nameOf(options);
+  }
+}
+
+TEST(Energy, OfDistributionsCountsAPlanesDistanceAsPointToPlane)
+{
+  const Eigen::Vector3f normal = Eigen::Vector3f(1, 2, 3).normalized();
+  const KdTree tree(plane(3000, normal));
+  const Eigen::Matrix3Xd source = plane(400, normal).cast<double>();
+  Vector6d pose = Vector6d::Zero();
+  pose.head<3>() = 0.2 * normal.cast<double>();
+  ResidualOptions options;
+  options.residual = Residual::DistributionToDistribution;
+  const TreeTarget target = treeTargetFor(options, tree);
+  const Prior prior = somePrior({0, 0, 0});
+  const PoseEnergy energy(source, target, prior, 1.0, options);
+  // What the spacing within the plane adds: a thousandth of the square of some 5 cm.
+  EXPECT_NEAR(energy.energy(pose) - prior.energy(pose), 0.5 * 0.2 * 0.2, 1e-5);
+}
+
+TEST(PatchCovariances, AreRegularisedAsStated)
+{
+  using Regularization = CovarianceRegularization;
+  const Eigen::Vector3f normal = Eigen::Vector3f(1, 2, 3).normalized();
+  const auto points = plane(300, normal);
+  const auto eigenvaluesOf = [](const Eigen::Matrix3d& C) -> Eigen::Vector3d {
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(C).eigenvalues();
+  };
+  for (const auto& C : patchCovariances(points, Regularization::Plane)) {
+    EXPECT_LT((eigenvaluesOf(C) - Eigen::Vector3d(0.5, 500.0, 500.0)).norm(), 1e-9);
+    EXPECT_NEAR(normal.cast<double>().dot(C * normal.cast<double>()), 0.5, 1e-3);
+  }
+  for (const auto& C : patchCovariances(points, Regularization::Frobenius))
+    EXPECT_NEAR(C.inverse().norm(), 2.0, 1e-9);
+  for (const auto& C : patchCovariances(points, Regularization::None)) {
+    const Eigen::Vector3d values = eigenvaluesOf(C);
+    EXPECT_NEAR(values[0], 0.5, 1e-6);
+    // A plane to within single precision: raised to a millionth of the largest.
+    EXPECT_NEAR(values[2], 0.5e6, 1.0);
+  }
+  // Two points are no patch.
+  EXPECT_EQ(patchCovariances(points.leftCols(2), Regularization::Plane)[1],
+            Eigen::Matrix3d(0.5 * Eigen::Matrix3d::Identity()));
+}
+
+TEST(PatchNormals, OfAPlaneAreItsNormal)
+{
+  const Eigen::Vector3f normal = Eigen::Vector3f(1, 2, 3).normalized();
+  Eigen::Matrix3Xf points = plane(300, normal);
   points(0, 7) = std::numeric_limits<float>::quiet_NaN();
   const Eigen::Matrix3Xf normals = patchNormals(points);
   for (Eigen::Index i = 0; i < 300; ++i)

@@ -65,9 +65,9 @@ TEST(PreconditionedSampler, GaussiansWellAndBadlyConditioned)
   for (const double condition : {10.0, 1e6}) {
     const Matrix6d precision = randomPrecision(30.0, 30.0 * condition);
     const auto energy = gaussianEnergy(mean, precision);
-    for (const auto metropolis : {MetropolisUse::Never, MetropolisUse::Always}) {
+    for (const auto steps : {ExactSteps::Langevin, ExactSteps::Metropolis}) {
       ExactOptions sampler;
-      sampler.metropolis = metropolis;
+      sampler.steps = steps;
       const ChainSet set = sample(energy, sampler, chainOptions(4000));
       expectMoments(set, mean, precision.inverse());
       EXPECT_EQ(set.modes.size(), 1u);
@@ -112,7 +112,7 @@ TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
   Vector6d variance = Vector6d::Constant(0.09);
   variance[1] = 0.05 * 0.05 + 2.0 * bend * bend * std::pow(0.3, 4);
   ExactOptions sampler;
-  sampler.metropolis = MetropolisUse::Always;
+  sampler.steps = ExactSteps::Metropolis;
   const Summary exact = summarize(sample(banana(bend), sampler, chainOptions(8000)));
   // Langevin steps of one length do not resolve a narrow bend: a milder one.
   const double mild_bend = 0.25;

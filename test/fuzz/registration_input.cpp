@@ -181,8 +181,9 @@ optionsOf(Bytes& bytes)
   options.preset = choiceOf<Preset>(bytes, 3);
   options.prior.frame = choiceOf<PriorFrame>(bytes, 2);
   options.paper.sampling = choiceOf<MiniBatchSampling>(bytes, 2);
-  options.exact.metropolis = choiceOf<MetropolisUse>(bytes, 3);
-  options.exact.residual.residual = choiceOf<Residual>(bytes, 2);
+  options.exact.steps = choiceOf<ExactSteps>(bytes, 5);
+  options.exact.residual.residual = choiceOf<Residual>(bytes, 3);
+  options.exact.residual.regularization = choiceOf<CovarianceRegularization>(bytes, 3);
   options.exact.residual.kernel = choiceOf<RobustKernel>(bytes, 3);
   options.chains.num_chains = bytes.ConsumeIntegralInRange(0, 5);
   options.chains.num_draws = bytes.ConsumeIntegralInRange(0, 60);

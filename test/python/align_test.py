@@ -40,14 +40,22 @@ def draws_of_program(program, folder, *arguments):
 GUESS = bayesian_icp.matrix_from_pose([0.02, -0.01, 0.01, 0.05, -0.05, 0.1]).astype(np.float32).astype(float)
 
 
-@pytest.mark.parametrize("preset", ["calibrated", "exact", "paper"])
-def test_draws_are_those_of_the_program_to_the_last_bit(preset, mug, program, tmp_path):
+@pytest.mark.parametrize("preset, rivals", [("calibrated", False), ("exact", False), ("exact", True),
+                                            ("paper", False)])
+def test_draws_are_those_of_the_program_to_the_last_bit(preset, rivals, mug, program, tmp_path):
     options = bayesian_icp.Options()
     options.chains.num_draws = 400
     lines = ["--preset", preset, "--seed", 7, "--samples", 400, "--prior-variance", 0.04]
     if preset == "exact":
         options.exact.scale.measurement_sigma = 0.05
         lines += ["--sigma", 0.05]
+    if rivals:
+        options.exact.residual.residual = "distribution-to-distribution"
+        options.exact.residual.regularization = "frobenius"
+        options.exact.steps = "stein-newton"
+        options.exact.num_particles = 40
+        lines += ["--residual", "distribution-to-distribution", "--regularization", "frobenius",
+                  "--steps", "stein-newton", "--particles", 40]
     np.savetxt(tmp_path / "guess.txt", GUESS, fmt="%.17g")
     data = os.path.join(os.path.dirname(__file__), "../../data/mug/")
     expected = draws_of_program(program, tmp_path / "out", data + "source.pcd", data + "target.pcd",

@@ -140,7 +140,7 @@ TEST(Metropolis, ModesThatChainsTravelBetweenAreOnePosterior)
   auto options = chainOptions(4000);
   options.num_chains = 8;
   ExactOptions sampler;
-  sampler.metropolis = MetropolisUse::Always;
+  sampler.steps = ExactSteps::Metropolis;
   const ChainSet set = sample(mixture(2.0), sampler, options);
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
@@ -159,17 +159,17 @@ TEST(Metropolis, IsChosenWhereBatchesAreTooNoisy)
 {
   auto energy = gaussianEnergy(Vector6d::Zero(), 100.0 * Matrix6d::Identity());
   energy.num_terms = 500;
-  const auto drawsWith = [&](MetropolisUse use, double noise) {
+  const auto drawsWith = [&](ExactSteps use, double noise) {
     energy.term_noise = std::sqrt(100.0 * noise) * Matrix6d::Identity();
     ExactOptions sampler;
-    sampler.metropolis = use;
+    sampler.steps = use;
     return pooledDraws(sample(energy, sampler, chainOptions(40)).chains);
   };
   // Variance of a term's gradient, posterior sd = 1, against 500 terms.
-  EXPECT_EQ(drawsWith(MetropolisUse::Automatic, 1000.0),
-            drawsWith(MetropolisUse::Always, 1000.0));
-  EXPECT_EQ(drawsWith(MetropolisUse::Automatic, 100.0),
-            drawsWith(MetropolisUse::Never, 100.0));
+  EXPECT_EQ(drawsWith(ExactSteps::Automatic, 1000.0),
+            drawsWith(ExactSteps::Metropolis, 1000.0));
+  EXPECT_EQ(drawsWith(ExactSteps::Automatic, 100.0),
+            drawsWith(ExactSteps::Langevin, 100.0));
 }
 
 } // namespace
