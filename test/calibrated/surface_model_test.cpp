@@ -450,6 +450,46 @@ TEST(SurfaceModel, RingsOfALidarAreGroundAndNotTheirCones)
   EXPECT_GT(num_usable, int(model.patches().size()) / 2);
 }
 
+/** Points of a level strip, 3 m long and 0.1 m wide: along a wave, or at random. */
+Matrix3Xd
+pointsOfStrip(bool along_wave)
+{
+  constexpr Index num_points = 600;
+  constexpr double half_width = 0.05, wave_length = 0.2;
+  const double pi = std::acos(-1.0);
+  Random random(97, 0);
+  Matrix3Xd points(3, num_points);
+  for (Index i = 0; i < num_points; ++i) {
+    const double x = 0.005 * double(i);
+    const double y = along_wave ? half_width * std::sin(2.0 * pi * x / wave_length)
+                                : test::symmetric(random, half_width);
+    points.col(i) << x, y, 0.001 * random.normal();
+  }
+  return points;
+}
+
+TEST(SurfaceModel, APlaneOfPointsAlongACurveMayLean)
+{
+  SurfaceModelOptions planes_only;
+  planes_only.max_misfit = 0.0;
+  const SurfaceModel of_wave(pointsOfStrip(true), planes_only);
+  int num_planes = 0;
+  for (const SurfacePatch& patch : of_wave.patches()) {
+    if (!patch.isUsable())
+      continue;
+    ++num_planes;
+    EXPECT_TRUE(patch.follows_curve);
+    EXPECT_GT(patch.sigma, 0.03 * patch.radius);
+  }
+  EXPECT_GT(num_planes, 300);
+
+  const SurfaceModel of_scattered(pointsOfStrip(false), planes_only);
+  int num_curves = 0;
+  for (const SurfacePatch& patch : of_scattered.patches())
+    num_curves += patch.follows_curve;
+  EXPECT_LT(num_curves, 12);
+}
+
 TEST(SurfaceModel, APointRepeatedIsNoSurface)
 {
   const SurfaceModel model(Matrix3Xd::Constant(3, 100, 1.5));

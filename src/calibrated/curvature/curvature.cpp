@@ -62,11 +62,12 @@ constexpr double grazing = 0.03, facing = 0.12;
 constexpr double max_doubted_facing = 0.3, part_of_patch = 0.3;
 constexpr double min_squared_ratio = 20.0;
 
-/** There, nothing is trusted that so few points hold, and everything from the second
- * number on. Planes across a crease that a few rings cross lean along it: 3 to 62
- * points hold a motion along a tunnel falsely. 44 and more hold true directions, but
- * for 28 to 40 along a corridor. */
-constexpr double few_points = 24.0, many_points = 48.0;
+/** There, too, nothing is trusted that the first number of points face, everything from
+ * the second number on. Both are smaller where fewer curves hold the motion than this
+ * share of the information. Planes across a crease that a few rings cross lean along
+ * it: up to 7.4 such points hold a motion along a tunnel falsely. */
+constexpr double few_facing = 7.5, many_facing = 10.0;
+constexpr double many_curves = 0.15;
 
 constexpr int num_noise_clusters = 48;
 constexpr int num_noise_partitions = 3;
@@ -101,6 +102,8 @@ struct Holders {
   double facing = 1.0;
   /** Effective number of them, (sum of weights)^2 / (sum of squared weights). */
   double count = 0.0;
+  /** Share of the weights on patches whose points follow a curve. */
+  double on_curves = 0.0;
 };
 
 /** Makes secants about one mode. Each thread has a copy. */
@@ -143,6 +146,7 @@ public:
   holdersOf(const Vector6d& step) const
   {
     double sum = 0.0, sum_of_squares = 0.0, motions = 0.0, cosines = 0.0;
+    double on_curves = 0.0;
     for (Index i = 0; i < scorer_.sourcePoints().cols(); ++i) {
       const auto index = static_cast<std::size_t>(i);
       if (!at_mode_.active[index])
@@ -150,10 +154,11 @@ public:
       const double rate = at_mode_.jacobians.col(i).dot(step), weight = rate * rate;
       const Eigen::Vector3d arm = mode_ * scorer_.sourcePoints().col(i) - centre_;
       const double motion = (step.head<3>() + step.tail<3>().cross(arm)).norm();
-      const double radius = scorer_.model().patches()[patches_[index]].radius;
+      const SurfacePatch& patch = scorer_.model().patches()[patches_[index]];
       sum += weight;
       sum_of_squares += weight * weight;
-      motions += weight * motion / radius;
+      motions += weight * motion / patch.radius;
+      on_curves += patch.follows_curve ? weight : 0.0;
       if (motion > 0.0) // The first half of a jacobian is along the normal.
         cosines +=
             weight * weight /
@@ -165,6 +170,7 @@ public:
       holders.next_patch = motions > 0.0 ? sum / motions : holders.next_patch;
       holders.facing = cosines / sum;
       holders.count = sum * sum / sum_of_squares;
+      holders.on_curves = on_curves / sum;
     }
     return holders;
   }
@@ -315,15 +321,17 @@ double
 trustIn(SecantMaker& maker, const Vector6d& step, int direction)
 {
   const Holders holders = maker.holdersOf(step);
-  const double trust = ramp(holders.facing, grazing, facing);
+  double trust = ramp(holders.facing, grazing, facing);
   if (holders.facing >= max_doubted_facing)
     return trust;
-  const double of_so_many = trust * ramp(holders.count, few_points, many_points);
+  const double curves = std::min(1.0, holders.on_curves / many_curves);
+  if (curves > 0.0)
+    trust *= ramp(holders.facing * holders.count / curves, few_facing, many_facing);
   const double length = part_of_patch * holders.next_patch;
-  if (of_so_many <= 0.0 || !(length > 1.0))
-    return of_so_many;
+  if (trust <= 0.0 || !(length > 1.0))
+    return trust;
   const double ratio = squaredRatio(maker.along(length * step, direction));
-  return of_so_many * ramp(ratio, min_squared_ratio, 3.0 * min_squared_ratio);
+  return trust * ramp(ratio, min_squared_ratio, 3.0 * min_squared_ratio);
 }
 
 /** Measures direction \p k anew, unless its step is nearly that of \p previous. */

@@ -8,6 +8,7 @@
 
 #include <bayesian_icp/pose.h>
 
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp {
@@ -19,6 +20,7 @@ using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 struct PatchFitWorkspace {
   NeighborList nearest;
   std::vector<double> ordered;
+  std::vector<std::pair<double, double>> places;
   PointRows neighbors;
 };
 

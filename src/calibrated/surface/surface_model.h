@@ -42,6 +42,9 @@ struct SurfacePatch {
    * noise, pooled over neighbouring quadrics; of a plane its own roughness. */
   double sigma;
   PatchKind kind;
+  /** A plane whose points follow one curve, as those of a scan line do: they say little
+   * of its slope across the curve. */
+  bool follows_curve = false;
 
   /** \brief Whether distances to it mean something. */
   bool
