@@ -39,7 +39,8 @@ struct SurfacePatch {
   /** Radius of the neighbourhood that was fitted, in the plane of x and y [m]. */
   double radius;
   /** Standard deviation of target points across the surface [m]: of a quadric their
-   * noise, pooled over neighbouring quadrics; of a plane its own roughness. */
+   * noise, pooled over neighbouring quadrics; of a plane its own roughness, and what
+   * its slope may be off where its points follow a curve. */
   double sigma;
   PatchKind kind;
   /** A plane whose points follow one curve, as those of a scan line do: they say little
