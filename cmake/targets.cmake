@@ -4,8 +4,10 @@
 # Never add -march or -m<isa> here: PCL and Eigen types cross the library's border.
 function(bayesian_icp_configure target)
   # In a unity build names in a file's unnamed namespace look as if they were in a header.
-  # Clang has no -Wshadow=local.
-  set(in_unity_build $<CXX_COMPILER_ID:GNU>:-Wshadow=local;-Wno-subobject-linkage)
+  # Clang has no -Wshadow=local. GCC takes a tenth less time if it cleans up its memory less
+  # often.
+  set(unity_options -Wshadow=local -Wno-subobject-linkage --param=ggc-min-heapsize=1000000)
+  set(in_unity_build "$<CXX_COMPILER_ID:GNU>:${unity_options}")
   set(shadow $<IF:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,$<${in_unity_build}>,-Wshadow>)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)

@@ -1,9 +1,7 @@
 #include "baselines/closed_form_covariance.h"
 
 #include "baselines/matched_pair.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <numeric>
@@ -81,7 +79,8 @@ pseudoInverse(const Matrix6d& covariance)
   Vector6d scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   scale = (scale.array() > 0.0).select(scale, 1.0);
   const Matrix6d unscale = scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(unscale * covariance * unscale);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
+      Matrix6d(unscale * covariance * unscale));
   const double least = min_relative_eigenvalue * solver.eigenvalues().maxCoeff();
   const Vector6d inverse =
       (solver.eigenvalues().array() > least)

@@ -1,8 +1,7 @@
 #include "baselines/hessian_covariance.h"
 
 #include "baselines/matched_pair.h"
-
-#include <Eigen/LU>
+#include "geometry/decompositions.h"
 
 #include <limits>
 

@@ -1,10 +1,9 @@
 #include "coverage/coverage_methods.h"
 
+#include "geometry/decompositions.h"
 #include "geometry/twist.h"
 #include "register/choices.h"
 #include "study/option_values.h"
-
-#include <Eigen/LU>
 
 #include <chrono>
 #include <new>

@@ -1,11 +1,10 @@
 #include "coverage/coverage_score.h"
 
+#include "geometry/decompositions.h"
 #include "geometry/twist.h"
 #include "study/draw_statistics.h"
 
 #include <bayesian_icp/random.h>
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>

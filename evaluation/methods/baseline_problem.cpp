@@ -1,11 +1,9 @@
 #include "methods/baseline_problem.h"
 
+#include "geometry/decompositions.h"
 #include "geometry/twist.h"
 
 #include <bayesian_icp/random.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include <limits>
 #include <numeric>

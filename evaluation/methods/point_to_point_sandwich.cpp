@@ -2,11 +2,8 @@
 
 #include "calibrated/curvature/curvature.h"
 #include "calibrated/score/score_clusters.h"
+#include "geometry/decompositions.h"
 #include "geometry/twist.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 
@@ -104,8 +101,8 @@ public:
   measure(const Matrix6d& covariance) const
   {
     const Matrix6d L = metric_.llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * covariance *
-                                                         L);
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
+        Matrix6d(L.transpose() * covariance * L));
     Secants secants;
     for (int k = 0; k < 6; ++k) {
       const Vector6d axis = L.transpose().triangularView<Eigen::Upper>().solve(

@@ -1,6 +1,6 @@
 #include "methods/published_covariances.h"
 
-#include <Eigen/Eigenvalues>
+#include "geometry/decompositions.h"
 
 #include <nanoflann.hpp>
 

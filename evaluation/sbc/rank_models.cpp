@@ -1,8 +1,8 @@
 #include "sbc/rank_models.h"
 
 #include "calibrated/draws/product_coordinates.h"
+#include "geometry/decompositions.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "study/draw_statistics.h"
 
-#include <Eigen/Cholesky>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

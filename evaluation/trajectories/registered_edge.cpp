@@ -1,14 +1,12 @@
 #include "trajectories/registered_edge.h"
 
+#include "geometry/decompositions.h"
 #include "graph/adjoint.h"
 #include "io/text_hash.h"
 #include "methods/published_covariances.h"
 #include "track/registration.h"
 
 #include <bayesian_icp/random.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <chrono>

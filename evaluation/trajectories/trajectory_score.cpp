@@ -1,7 +1,7 @@
 #include "trajectories/trajectory_score.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "geometry/decompositions.h"
+
 #include <Eigen/SVD>
 
 #include <cmath>

@@ -4,13 +4,11 @@
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
+#include "geometry/decompositions.h"
 #include "geometry/principal_axes.h"
 #include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>

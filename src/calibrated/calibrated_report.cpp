@@ -1,8 +1,6 @@
 #include "calibrated/calibrated_report.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

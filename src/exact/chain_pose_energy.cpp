@@ -1,6 +1,6 @@
 #include "exact/chain_pose_energy.h"
 
-#include <Eigen/Cholesky>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "exact/modes.h"
 
-#include <bayesian_icp/summary.h>
+#include "geometry/decompositions.h"
 
-#include <Eigen/Cholesky>
+#include <bayesian_icp/summary.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
-#include <bayesian_icp/exports.h>
+#include "geometry/decompositions.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <bayesian_icp/exports.h>
 
 #include <limits>
 #include <stdexcept>

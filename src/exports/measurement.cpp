@@ -1,9 +1,8 @@
+#include "geometry/decompositions.h"
 #include "geometry/principal_axes.h"
 #include "geometry/twist.h"
 
 #include <bayesian_icp/measurement.h>
-
-#include <Eigen/LU>
 
 namespace bayesian_icp {
 

@@ -3,10 +3,9 @@
  */
 #pragma once
 
-#include <bayesian_icp/pose.h>
+#include "geometry/decompositions.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <bayesian_icp/pose.h>
 
 #include <cmath>
 
@@ -21,8 +20,8 @@ struct PrincipalAxes {
   PrincipalAxes(const Matrix6d& covariance, const Matrix6d& metric)
   {
     const Matrix6d L = metric.llt().matrixL();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * covariance *
-                                                         L);
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
+        Matrix6d(L.transpose() * covariance * L));
     axes = L.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
     variances = solver.eigenvalues();
   }

@@ -1,7 +1,6 @@
 #include "sampler/gaussian_fit.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

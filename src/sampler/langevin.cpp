@@ -1,6 +1,6 @@
 #include "sampler/langevin.h"
 
-#include <Eigen/Eigenvalues>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,8 +38,8 @@ Eigen::SelfAdjointEigenSolver<Matrix6d>
 noiseOf(const GaussianFit& fit)
 {
   const Matrix6d& L = fit.gaussian.factor();
-  return Eigen::SelfAdjointEigenSolver<Matrix6d>(L.transpose() * fit.term_covariance *
-                                                 L);
+  return Eigen::SelfAdjointEigenSolver<Matrix6d>(
+      Matrix6d(L.transpose() * fit.term_covariance * L));
 }
 
 } // namespace

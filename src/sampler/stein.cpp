@@ -1,6 +1,6 @@
 #include "sampler/stein.h"
 
-#include <Eigen/Cholesky>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +86,7 @@ steinDiscrepancy(const ParticleMatrix& positions, const ParticleMatrix& gradient
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const auto n = static_cast<double>(positions.cols());
   const ParticleMatrix errors = positions.colwise() - positions.rowwise().mean();
-  const Eigen::LLT<Matrix6d> llt(errors * errors.transpose() / n);
+  const Eigen::LLT<Matrix6d> llt(Matrix6d(errors * errors.transpose() / n));
   if (!positions.allFinite() || llt.info() != Eigen::Success)
     return {nan, nan};
   const Matrix6d L = llt.matrixL();

@@ -4,10 +4,10 @@
  */
 #pragma once
 
+#include "geometry/decompositions.h"
+
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
-
-#include <Eigen/Cholesky>
 
 #include <vector>
 

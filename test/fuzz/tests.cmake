@@ -1,6 +1,6 @@
-# fuzz.build configures and builds the fuzzers in build/fuzz; fuzz.<name> runs one over its
-# corpus and a number of new inputs that takes seconds, always the same ones;
-# fuzz.<name>.long for a minute, over others each time.
+# fuzz.build builds the fuzzers; fuzz.<name> runs one over its corpus and a number of new
+# inputs that takes seconds, always the same ones; fuzz.<name>.long for a minute, over
+# others each time.
 find_program(CLANGXX clang++)
 find_program(BASH bash REQUIRED)
 if(NOT CLANGXX)
@@ -8,26 +8,14 @@ if(NOT CLANGXX)
   return()
 endif()
 
-set(fuzz_build ${PROJECT_BINARY_DIR}/fuzz)
-add_test(
-  NAME fuzz.build
-  COMMAND
-    ${CMAKE_CTEST_COMMAND} --build-and-test ${PROJECT_SOURCE_DIR} ${fuzz_build}
-    --build-generator ${CMAKE_GENERATOR} --build-target fuzzers --build-options
-    -DCMAKE_CXX_COMPILER=${CLANGXX}
-    -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
-    -DBAYESIAN_ICP_BUILD_FUZZERS=ON -DBAYESIAN_ICP_BUILD_APPS=OFF
-    -DBAYESIAN_ICP_BUILD_TESTS=OFF
-    -DBAYESIAN_ICP_WARNINGS_AS_ERRORS=${BAYESIAN_ICP_WARNINGS_AS_ERRORS})
-set_tests_properties(
-  fuzz.build
-  PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers PROCESSORS 2 COST 900 TIMEOUT 1800
-             ENVIRONMENT CMAKE_BUILD_PARALLEL_LEVEL=2)
+add_test(NAME fuzz.build COMMAND ${PROJECT_SOURCE_DIR}/scripts/sanitize address --fuzzers)
+set_tests_properties(fuzz.build PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers RUN_SERIAL ON
+                                           COST 900 TIMEOUT 1800)
 
 # fuzz_test(<name> <label> <fuzzer> <option of libFuzzer> ...)
 function(fuzz_test name label fuzzer)
   add_test(NAME ${name} COMMAND ${BASH} ${CMAKE_CURRENT_SOURCE_DIR}/run.sh
-                                ${fuzz_build}/bin/fuzz_${fuzzer}
+                                ${PROJECT_SOURCE_DIR}/build/asan/bin/fuzz_${fuzzer}
                                 ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${fuzzer} ${ARGN})
   set_tests_properties(${name} PROPERTIES LABELS ${label} FIXTURES_REQUIRED fuzzers
                                           TIMEOUT 900)

@@ -1,12 +1,10 @@
 #include "calibrated/curvature/curvature.h"
 
 #include "calibrated/score/score_clusters.h"
+#include "geometry/decompositions.h"
 #include "geometry/principal_axes.h"
 #include "geometry/twist.h"
 #include "threads/for_each_piece.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>

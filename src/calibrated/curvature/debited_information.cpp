@@ -1,7 +1,6 @@
 #include "calibrated/curvature/curvature.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "calibrated/draws/draw_plan.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -59,7 +58,8 @@ Matrix6d
 gainFor(const Matrix6d& noise, const Gaussian& gaussian)
 {
   const Matrix6d& L = gaussian.factor();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(L.transpose() * noise * L);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
+      Matrix6d(L.transpose() * noise * L));
   const Vector6d gains =
       (max_noise * solver.eigenvalues().cwiseMax(max_noise).cwiseInverse()).cwiseSqrt();
   const Matrix6d& U = solver.eigenvectors();
@@ -78,8 +78,8 @@ mapBetween(const MatrixXd& covariance, const MatrixXd& wanted)
   const MatrixXd L = wanted.llt().matrixL();
   const MatrixXd inverse = L.triangularView<Eigen::Lower>().solve(
       MatrixXd::Identity(wanted.rows(), wanted.cols()));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> ratio(inverse * covariance *
-                                                      inverse.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> ratio(
+      MatrixXd(inverse * covariance * inverse.transpose()));
   const VectorXd factors = ratio.eigenvalues()
                                .cwiseMax(1e-6)
                                .cwiseSqrt()

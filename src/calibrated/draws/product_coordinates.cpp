@@ -1,7 +1,6 @@
 #include "calibrated/draws/product_coordinates.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include "geometry/decompositions.h"
 
 #include <cmath>
 #include <limits>
@@ -48,6 +47,20 @@ carriedToTheExponent(const Vector6d& xi, const Vector6d& gradient)
   return sum;
 }
 
+/** Of a symmetric positive semidefinite matrix. */
+Matrix3d
+pseudoInverse(const Matrix3d& m)
+{
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(m);
+  const double least =
+      3.0 * std::numeric_limits<double>::epsilon() * solver.eigenvalues().maxCoeff();
+  const Vector3d inverses =
+      (solver.eigenvalues().array() > least)
+          .select(solver.eigenvalues().cwiseMax(least).cwiseInverse(), 0.0);
+  return solver.eigenvectors() * inverses.asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
 } // namespace
 
 ProductCoordinates::ProductCoordinates(const CalibratedEstimate& estimate)
@@ -83,8 +96,7 @@ ProductCoordinates::setUnwinding(const Matrix6d& prior_precision)
   const Eigen::MatrixXd rotations = V0.bottomRows<3>();
   const Eigen::MatrixXd weighted =
       (V0.transpose() * prior_precision * V0).llt().solve(rotations.transpose());
-  const Eigen::MatrixXd turns = rotations * weighted;
-  unwinding_ = V0 * weighted * turns.completeOrthogonalDecomposition().pseudoInverse();
+  unwinding_ = V0 * weighted * pseudoInverse(rotations * weighted);
 }
 
 Vector6d

@@ -1,8 +1,7 @@
 #include "calibrated/modes/mode_weights.h"
 
 #include "calibrated/draws/product_coordinates.h"
-
-#include <Eigen/Eigenvalues>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

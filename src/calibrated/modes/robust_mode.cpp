@@ -1,6 +1,6 @@
 #include "calibrated/modes/robust_mode.h"
 
-#include <Eigen/Cholesky>
+#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,9 @@
 #include "calibrated/score/score_clusters.h"
 
+#include "geometry/decompositions.h"
 #include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -247,8 +245,8 @@ scoreCovariance(const PointScores& points,
   const Matrix6d information = points.jacobians * points.jacobians.transpose();
   // In the fit, the prior has the weight that the robust start gives it.
   const Matrix6d working_information = information + 5.0 * fit_precision;
-  const Eigen::LDLT<Matrix6d> metric(
-      independent + independent.trace() / information.trace() * fit_precision);
+  const Eigen::LDLT<Matrix6d> metric(Matrix6d(
+      independent + independent.trace() / information.trace() * fit_precision));
   const double size = metric.solve(independent).trace();
   const auto kappa = [&](const Matrix6d& covariance) {
     return metric.solve(covariance).trace() / size;
