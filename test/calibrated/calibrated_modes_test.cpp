@@ -234,6 +234,21 @@ TEST(CalibratedModes, AHandleOutweighsAFreeYaw)
   EXPECT_GT(num_modes, 1u);
 }
 
+TEST(CalibratedModes, AFirstEstimateThatWentAstrayHidesNone)
+{
+  const Clouds clouds = cloudsOf(onMug, 0.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior = priorWith(0.35, scorer.centroid());
+  // It leaves all motions to the prior, so each pose may be the same mode.
+  CalibratedEstimate astray = estimateCalibrated(scorer, prior);
+  astray.mode.translation().x() += 0.3;
+  astray.keep.setZero();
+  const ModeSearch search = findModes(scorer, prior, astray);
+  ASSERT_FALSE(search.modes.empty());
+  EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+}
+
 TEST(CalibratedModes, ThereIsOneAlsoOfCloudsThatDoNotMeet)
 {
   Clouds clouds = cloudsOf(onCube, 0.0);

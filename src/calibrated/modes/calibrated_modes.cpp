@@ -38,6 +38,11 @@ constexpr double icp_part = 0.5, sight = 0.1;
 constexpr double cost_margin = 0.35;
 constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
 
+/** The first estimate is ignored if its cost is above the best end's by more than this
+ * part. It went astray then, for example to where few points meet the target: it leaves
+ * motions to the prior along which it would seem to be the same mode as the right one. */
+constexpr double astray_margin = 0.2;
+
 /** For the path between two modes that are one: steps at each place, and the largest
  * distance of the surface from the straight path, in parts of its length. */
 constexpr int num_way_steps = 6;
@@ -198,18 +203,20 @@ findModes(const SurfaceScorer& scorer,
   const Index num_points = subset.sourcePoints().cols();
   const std::vector<RobustFit> ends =
       followStarts(subset, prior, wideCoordinates(scorer, prior), options);
+  RobustFitOptions as_it_is;
+  as_it_is.max_steps = 0;
+  const RobustFit first_end = fitRobustly(subset, prior, first.mode, as_it_is);
   ModeSearch search;
-  search.modes.push_back({first, 0.0});
-  std::vector<ProductCoordinates> known = {ProductCoordinates(first)};
-  PatchHints hints;
-  SurfaceScores scores;
-  subset.evaluate(
-      first.mode, first.centre, std::numeric_limits<double>::infinity(), hints, scores);
-  search.num_queries += num_points;
-  double best_cost = meanCappedResidual(scores);
+  search.num_queries += num_points * first_end.num_evaluations;
+  double best_cost = first_end.cost;
   for (const RobustFit& end : ends) {
     best_cost = std::min(best_cost, end.cost);
     search.num_queries += num_points * end.num_evaluations;
+  }
+  std::vector<ProductCoordinates> known;
+  if (ends.empty() || relativeCost(first_end, ends.front()) < 1.0 + astray_margin) {
+    search.modes.push_back({first, 0.0});
+    known.emplace_back(first);
   }
   for (const RobustFit& end : ends) {
     if (end.cost > (1.0 + cost_margin) * best_cost ||

@@ -37,7 +37,8 @@ struct ModeSearch {
 bool
 mayHaveSeveralModes(const SurfaceScorer& scorer, const Prior& prior);
 
-/** \brief Look for modes other than \p first. Poses that differ by a motion that only
+/** \brief Look for modes other than \p first, and leave \p first out if another pose
+ * clearly fits better. Poses that differ by a motion that only
  * the prior holds are one mode. The search takes at most about 150 000 queries, plus
  * one estimate for each mode. */
 ModeSearch
