@@ -1,7 +1,7 @@
 #include "baselines/closed_form_covariance.h"
 
+#include "algebra/decompositions.h"
 #include "baselines/matched_pair.h"
-#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <numeric>

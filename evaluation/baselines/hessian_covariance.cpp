@@ -1,7 +1,7 @@
 #include "baselines/hessian_covariance.h"
 
+#include "algebra/decompositions.h"
 #include "baselines/matched_pair.h"
-#include "geometry/decompositions.h"
 
 #include <limits>
 

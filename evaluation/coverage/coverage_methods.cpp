@@ -1,6 +1,6 @@
 #include "coverage/coverage_methods.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 #include "geometry/twist.h"
 #include "register/choices.h"
 #include "study/option_values.h"

@@ -1,6 +1,6 @@
 #include "coverage/coverage_score.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 #include "geometry/twist.h"
 #include "study/draw_statistics.h"
 

@@ -1,6 +1,6 @@
 #include "methods/baseline_problem.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 #include "geometry/twist.h"
 
 #include <bayesian_icp/random.h>

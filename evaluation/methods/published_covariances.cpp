@@ -1,6 +1,6 @@
 #include "methods/published_covariances.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <nanoflann.hpp>
 

@@ -1,7 +1,7 @@
 #include "sbc/rank_models.h"
 
+#include "algebra/decompositions.h"
 #include "calibrated/draws/product_coordinates.h"
-#include "geometry/decompositions.h"
 
 #include <Eigen/QR>
 

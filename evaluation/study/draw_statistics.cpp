@@ -1,6 +1,6 @@
 #include "study/draw_statistics.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "trajectories/registered_edge.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 #include "graph/adjoint.h"
 #include "io/text_hash.h"
 #include "methods/published_covariances.h"

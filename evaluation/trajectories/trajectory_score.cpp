@@ -1,6 +1,6 @@
 #include "trajectories/trajectory_score.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <Eigen/SVD>
 

@@ -1,10 +1,10 @@
 #include "calibrated/calibrated_estimate.h"
 
+#include "algebra/decompositions.h"
 #include "calibrated/curvature/curvature.h"
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
-#include "geometry/decompositions.h"
 #include "geometry/principal_axes.h"
 #include "threads/for_each_piece.h"
 

@@ -1,6 +1,6 @@
 #include "calibrated/calibrated_report.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

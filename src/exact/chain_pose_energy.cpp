@@ -1,6 +1,6 @@
 #include "exact/chain_pose_energy.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "exact/modes.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <bayesian_icp/summary.h>
 

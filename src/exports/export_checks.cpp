@@ -1,4 +1,4 @@
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <bayesian_icp/exports.h>
 

@@ -1,4 +1,4 @@
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 #include "geometry/principal_axes.h"
 #include "geometry/twist.h"
 

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <bayesian_icp/pose.h>
 

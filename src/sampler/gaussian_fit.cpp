@@ -1,6 +1,6 @@
 #include "sampler/gaussian_fit.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

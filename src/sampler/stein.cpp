@@ -1,6 +1,6 @@
 #include "sampler/stein.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>

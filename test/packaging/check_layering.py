@@ -15,15 +15,16 @@ SHELL = ("include/pcl", "src/pcl")
 BELOW_EVALUATION = ("include", "src", "apps", "benchmark")
 # What a room of src/ may include. Files in src/ itself are above all rooms.
 ROOMS = {
+    "algebra": [],
     "threads": [],
-    "geometry": [],
+    "geometry": ["algebra"],
     "search": ["threads"],
-    "sampler": ["threads"],
+    "sampler": ["algebra", "threads"],
     "summary": ["sampler"],
-    "exports": ["geometry"],
+    "exports": ["algebra", "geometry"],
     "paper": ["sampler"],
-    "exact": ["sampler", "search", "summary"],
-    "calibrated": ["geometry", "sampler", "search", "summary", "threads"],
+    "exact": ["algebra", "sampler", "search", "summary"],
+    "calibrated": ["algebra", "geometry", "sampler", "search", "summary", "threads"],
     "sgd_icp": ["paper"],
     "pcl": [],
 }

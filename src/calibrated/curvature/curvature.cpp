@@ -1,7 +1,7 @@
 #include "calibrated/curvature/curvature.h"
 
+#include "algebra/decompositions.h"
 #include "calibrated/score/score_clusters.h"
-#include "geometry/decompositions.h"
 #include "geometry/principal_axes.h"
 #include "geometry/twist.h"
 #include "threads/for_each_piece.h"

@@ -1,6 +1,5 @@
+#include "algebra/decompositions.h"
 #include "calibrated/curvature/curvature.h"
-
-#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "calibrated/draws/draw_plan.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

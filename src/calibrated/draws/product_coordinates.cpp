@@ -1,6 +1,6 @@
 #include "calibrated/draws/product_coordinates.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <cmath>
 #include <limits>

@@ -40,7 +40,8 @@ constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 1
 
 /** The first estimate is ignored if its cost is above the best end's by more than this
  * part. It went astray then, for example to where few points meet the target: it leaves
- * motions to the prior along which it would seem to be the same mode as the right one. */
+ * motions to the prior along which it would seem to be the same mode as the right one.
+ */
 constexpr double astray_margin = 0.2;
 
 /** For the path between two modes that are one: steps at each place, and the largest

@@ -1,7 +1,7 @@
 #include "calibrated/modes/mode_weights.h"
 
+#include "algebra/decompositions.h"
 #include "calibrated/draws/product_coordinates.h"
-#include "geometry/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "calibrated/modes/robust_mode.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "calibrated/score/score_clusters.h"
 
-#include "geometry/decompositions.h"
+#include "algebra/decompositions.h"
 #include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>

@@ -1,0 +1,2 @@
+#define BAYESIAN_ICP_EXTERN
+#include "algebra/decompositions.h"

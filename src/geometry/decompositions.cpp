@@ -1,2 +1,0 @@
-#define BAYESIAN_ICP_EXTERN
-#include "geometry/decompositions.h"
