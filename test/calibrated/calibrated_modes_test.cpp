@@ -167,8 +167,8 @@ TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
   const SurfaceModel model(clouds.target);
   const SurfaceScorer scorer(clouds.source, model);
   const Prior prior = priorWith(1.0, scorer.centroid());
-  ASSERT_TRUE(mayHaveSeveralModes(scorer, prior));
   const CalibratedEstimate first = estimateCalibrated(scorer, prior);
+  ASSERT_TRUE(mayHaveSeveralModes(scorer, prior, first));
   const ModeSearch search = findModes(scorer, prior, first);
   ASSERT_GE(search.modes.size(), 3u);
   // 16 starts of 300 points and at most 21 evaluations, half of the points 20 more
@@ -211,9 +211,10 @@ TEST(CalibratedModes, ThereIsOneOfACanHoweverItTurns)
   const SurfaceModel model(clouds.target);
   const SurfaceScorer scorer(clouds.source, model);
   const Prior prior = priorWith(1.0, scorer.centroid());
-  const ModeSearch search = findModes(scorer, prior, estimateCalibrated(scorer, prior));
+  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
+  const ModeSearch search = findModes(scorer, prior, first);
   EXPECT_EQ(search.modes.size(), 1u);
-  EXPECT_FALSE(mayHaveSeveralModes(scorer, priorWith(0.19, scorer.centroid())));
+  EXPECT_FALSE(mayHaveSeveralModes(scorer, priorWith(0.19, scorer.centroid()), first));
 }
 
 TEST(CalibratedModes, AHandleOutweighsAFreeYaw)

@@ -168,5 +168,22 @@ TEST(CoverageOfCalibrated, IsNotTooSureOfWhatFewRingsSee)
   }
 }
 
+// Where half of the overlap is lost, the next step fits nearly as well.
+TEST(CoverageOfCalibrated, FindsTheRightStepOfStairsInANarrowPrior)
+{
+  constexpr int num_seeds = 24;
+  constexpr double step = 0.32; // from one to the next [m]
+  std::vector<double> errors(num_seeds);
+#pragma omp parallel for schedule(dynamic)
+  for (int i = 0; i < num_seeds; ++i) {
+    const CoverageCase problem = makeCoverageCase("stairs", "lost50", first_seed + i);
+    const MethodResult result = resultOf(problem, presetEstimate(problem, Options()));
+    errors[static_cast<std::size_t>(i)] = coverageScoreOf(problem, result).displacement;
+  }
+  for (int i = 0; i < num_seeds; ++i)
+    EXPECT_LT(errors[static_cast<std::size_t>(i)], step / 2)
+        << "seed " << first_seed + i;
+}
+
 } // namespace
 } // namespace bayesian_icp::evaluate

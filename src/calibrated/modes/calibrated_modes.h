@@ -1,5 +1,6 @@
 /** \file
- * \brief Further modes of the calibrated posterior, where the prior is wide.
+ * \brief Further modes of the calibrated posterior, where the prior is wide or the
+ * first one fits badly.
  */
 #pragma once
 
@@ -31,11 +32,13 @@ struct ModeSearch {
   long num_queries = 0;
 };
 
-/** \brief Whether the prior is so wide that there may be other modes: a standard
- * deviation is above 0.2 rad, or above a quarter of the diagonal of the source's
- * bounding box. */
+/** \brief Whether there may be other modes. The prior is so wide: a standard deviation
+ * is above 0.2 rad, or above a quarter of the diagonal of the source's bounding box. Or
+ * many points do not fit at \p first. */
 bool
-mayHaveSeveralModes(const SurfaceScorer& scorer, const Prior& prior);
+mayHaveSeveralModes(const SurfaceScorer& scorer,
+                    const Prior& prior,
+                    const CalibratedEstimate& first);
 
 /** \brief Look for modes other than \p first, and leave \p first out if another pose
  * clearly fits better. Poses that differ by a motion that only
@@ -53,7 +56,7 @@ findModes(const SurfaceScorer& scorer,
 std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes);
 
-/** \brief The estimate, and the other significantModes() where the prior is wide;
+/** \brief The estimate, and the other significantModes() where mayHaveSeveralModes();
  * heaviest first. */
 std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,
