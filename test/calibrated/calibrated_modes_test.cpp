@@ -137,6 +137,16 @@ TEST(RelativeCost, OverlapCountsWherePointsDoNotTell)
   EXPECT_DOUBLE_EQ(relativeCost(nowhere, seen), 5.0 / seen.cost);
 }
 
+TEST(RelativeCost, AFitOfFewerPointsMakesNoOtherClearlyWorse)
+{
+  const RobustFit overlapping = fitWith(1.2, 0), nowhere = fitWith(1.0, 100);
+  EXPECT_TRUE(isClearlyWorse(overlapping, fitWith(0.8, 5), 0.2));
+  EXPECT_TRUE(isClearlyWorse(nowhere, overlapping, 0.2));
+  EXPECT_FALSE(isClearlyWorse(overlapping, fitWith(1.1, 0), 0.2));
+  // Its 40 points fit better, and cost 3.3 with the others.
+  EXPECT_FALSE(isClearlyWorse(overlapping, fitWith(0.8, 60), 0.2));
+}
+
 TEST(RobustFit, StaysWhereItIsHeldAndFitsTheRest)
 {
   const Clouds clouds = cloudsOf(onMug, 0.0);

@@ -24,9 +24,10 @@ namespace {
  * source's extent. */
 constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
 
-/** Cost of the first estimate from which on there may be a better mode within a narrow
- * prior: about two fifths of the points see no target, or fit badly. Simulated scans
- * with full overlap stay below 1.7, and those that lost half of it are above. */
+/** Cost of the first estimate above which there may be a better mode within a narrow
+ * prior: more than a quarter of the points see no target, or fit badly. Of simulated
+ * scans with full overlap nine in ten stay below 1.7, and hardly any is above 2. Those
+ * that lost half of the overlap are above. */
 constexpr double doubtful_cost = 2.0;
 
 /** Starts reach this far, in standard deviations. Beyond, they are further from likely
@@ -43,8 +44,8 @@ constexpr double icp_part = 0.5, sight = 0.1;
 constexpr double cost_margin = 0.35;
 constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
 
-/** The first estimate is ignored if its cost is above the best end's by more than this
- * part. It went astray then, for example to where few points meet the target: it leaves
+/** The first estimate is ignored if its cost is above the best end's by this part. It
+ * went astray then, for example to where few points meet the target: it leaves
  * motions to the prior along which it would seem to be the same mode as the right one.
  */
 constexpr double astray_margin = 0.2;
@@ -217,13 +218,12 @@ findModes(const SurfaceScorer& scorer,
   const RobustFit first_end = fitRobustly(subset, prior, first.mode, as_it_is);
   ModeSearch search;
   search.num_queries += num_points * first_end.num_evaluations;
-  double best_cost = first_end.cost;
-  for (const RobustFit& end : ends) {
-    best_cost = std::min(best_cost, end.cost);
+  for (const RobustFit& end : ends)
     search.num_queries += num_points * end.num_evaluations;
-  }
+  const double best_cost =
+      ends.empty() ? first_end.cost : std::min(first_end.cost, ends.front().cost);
   std::vector<ProductCoordinates> known;
-  if (ends.empty() || relativeCost(first_end, ends.front()) < 1.0 + astray_margin) {
+  if (ends.empty() || !isClearlyWorse(first_end, ends.front(), astray_margin)) {
     search.modes.push_back({first, 0.0});
     known.emplace_back(first);
   }

@@ -32,18 +32,18 @@ struct ModeSearch {
   long num_queries = 0;
 };
 
-/** \brief Whether there may be other modes. The prior is so wide: a standard deviation
- * is above 0.2 rad, or above a quarter of the diagonal of the source's bounding box. Or
- * many points do not fit at \p first. */
+/** \brief Whether there may be other modes. Either the prior is wide: a standard
+ * deviation is above 0.2 rad, or above a quarter of the diagonal of the source's
+ * bounding box. Or many points do not fit at \p first. */
 bool
 mayHaveSeveralModes(const SurfaceScorer& scorer,
                     const Prior& prior,
                     const CalibratedEstimate& first);
 
 /** \brief Look for modes other than \p first, and leave \p first out if another pose
- * clearly fits better. Poses that differ by a motion that only
- * the prior holds are one mode. The search takes at most about 150 000 queries, plus
- * one estimate for each mode. */
+ * fits clearly better. Poses that differ by a motion that only the prior holds are one
+ * mode. The search takes at most about 150 000 queries, plus one estimate for each
+ * mode. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
           const Prior& prior,

@@ -150,6 +150,12 @@ relativeCost(const RobustFit& a, const RobustFit& b)
              : a.cost / b.cost;
 }
 
+bool
+isClearlyWorse(const RobustFit& a, const RobustFit& b, double margin)
+{
+  return a.cost > b.cost && relativeCost(a, b) >= 1.0 + margin;
+}
+
 RobustFit
 fitPointToPoint(const SurfaceScorer& scorer,
                 const Prior& prior,

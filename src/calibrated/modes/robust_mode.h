@@ -54,6 +54,12 @@ fitRobustly(const SurfaceScorer& scorer,
 double
 relativeCost(const RobustFit& a, const RobustFit& b);
 
+/** \brief Whether \p a costs more than \p b on all points, and at least (1 + \p margin)
+ * times as much by relativeCost(): that \p b meets less of the target must not make it
+ * the better one. */
+bool
+isClearlyWorse(const RobustFit& a, const RobustFit& b, double margin);
+
 /** \brief Point-to-point ICP on the model's points from \p start, with a weak prior. */
 RobustFit
 fitPointToPoint(const SurfaceScorer& scorer,
