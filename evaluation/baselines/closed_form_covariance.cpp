@@ -1,6 +1,6 @@
 #include "baselines/closed_form_covariance.h"
 
-#include "algebra/decompositions.h"
+#include "algebra/pseudo_inverse.h"
 #include "baselines/matched_pair.h"
 
 #include <algorithm>
@@ -74,19 +74,15 @@ haveSameTarget(const MatchedPoints& matches, Index a, Index b)
 
 /** Pseudo-inverse of a covariance whose coordinates have different units. */
 Matrix6d
-pseudoInverse(const Matrix6d& covariance)
+scaledPseudoInverse(const Matrix6d& covariance)
 {
   Vector6d scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   scale = (scale.array() > 0.0).select(scale, 1.0);
   const Matrix6d unscale = scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
-      Matrix6d(unscale * covariance * unscale));
-  const double least = min_relative_eigenvalue * solver.eigenvalues().maxCoeff();
-  const Vector6d inverse =
-      (solver.eigenvalues().array() > least)
-          .select(solver.eigenvalues().cwiseMax(least).cwiseInverse(), 0.0);
-  const Matrix6d axes = unscale * solver.eigenvectors();
-  return axes * inverse.asDiagonal() * axes.transpose();
+  return unscale *
+         pseudoInverse(Matrix6d(unscale * covariance * unscale),
+                       min_relative_eigenvalue) *
+         unscale;
 }
 
 } // namespace
@@ -127,7 +123,7 @@ GaussianInformation
 closedFormInformation(const ClosedFormDerivatives& derivatives, double sigma)
 {
   const Matrix6d gain = derivatives.hessian *
-                        pseudoInverse(derivatives.gradient_covariance) /
+                        scaledPseudoInverse(derivatives.gradient_covariance) /
                         (sigma * sigma);
   const Matrix6d information = gain * derivatives.hessian;
   return {0.5 * (information + information.transpose()), gain * derivatives.gradient};

@@ -1,6 +1,5 @@
 #include "coverage/coverage_score.h"
 
-#include "algebra/decompositions.h"
 #include "geometry/twist.h"
 #include "study/draw_statistics.h"
 

@@ -1,6 +1,6 @@
 #include "methods/published_covariances.h"
 
-#include "algebra/decompositions.h"
+#include <Eigen/Eigenvalues>
 
 #include <nanoflann.hpp>
 

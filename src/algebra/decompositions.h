@@ -1,7 +1,7 @@
-/** Decompositions of the symmetric matrices that a pose has. They are compiled once, in
- * decompositions.cpp: a compiler that meets one of them elsewhere takes seconds for it.
- * Those of an expression are other templates, so pass a matrix:
- * SelfAdjointEigenSolver<Matrix6d>(Matrix6d(A * B)). */
+/** Decompositions of 6x6 matrices, and the eigenvectors of symmetric ones of any size.
+ * They are compiled once, in decompositions.cpp: a compiler that meets one of them
+ * elsewhere takes seconds for it. Those of an expression are other templates, so pass a
+ * matrix: SelfAdjointEigenSolver<Matrix6d>(Matrix6d(A * B)). */
 #pragma once
 
 #include <bayesian_icp/pose.h>

@@ -8,9 +8,8 @@ if(NOT CLANGXX)
   return()
 endif()
 
-add_test(NAME fuzz.build COMMAND ${PROJECT_SOURCE_DIR}/scripts/sanitize address --fuzzers)
-set_tests_properties(fuzz.build PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers RUN_SERIAL ON
-                                           COST 900 TIMEOUT 1800)
+script_test(fuzz.build COMMAND sanitize address --fuzzers
+            PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers TIMEOUT 1800)
 
 # fuzz_test(<name> <label> <fuzzer> <option of libFuzzer> ...)
 function(fuzz_test name label fuzzer)

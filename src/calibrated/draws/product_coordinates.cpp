@@ -1,6 +1,6 @@
 #include "calibrated/draws/product_coordinates.h"
 
-#include "algebra/decompositions.h"
+#include "algebra/pseudo_inverse.h"
 
 #include <cmath>
 #include <limits>
@@ -47,20 +47,6 @@ carriedToTheExponent(const Vector6d& xi, const Vector6d& gradient)
   return sum;
 }
 
-/** Of a symmetric positive semidefinite matrix. */
-Matrix3d
-pseudoInverse(const Matrix3d& m)
-{
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(m);
-  const double least =
-      3.0 * std::numeric_limits<double>::epsilon() * solver.eigenvalues().maxCoeff();
-  const Vector3d inverses =
-      (solver.eigenvalues().array() > least)
-          .select(solver.eigenvalues().cwiseMax(least).cwiseInverse(), 0.0);
-  return solver.eigenvectors() * inverses.asDiagonal() *
-         solver.eigenvectors().transpose();
-}
-
 } // namespace
 
 ProductCoordinates::ProductCoordinates(const CalibratedEstimate& estimate)
@@ -96,7 +82,8 @@ ProductCoordinates::setUnwinding(const Matrix6d& prior_precision)
   const Eigen::MatrixXd rotations = V0.bottomRows<3>();
   const Eigen::MatrixXd weighted =
       (V0.transpose() * prior_precision * V0).llt().solve(rotations.transpose());
-  unwinding_ = V0 * weighted * pseudoInverse(rotations * weighted);
+  constexpr double round_off = 3.0 * std::numeric_limits<double>::epsilon();
+  unwinding_ = V0 * weighted * pseudoInverse(Matrix3d(rotations * weighted), round_off);
 }
 
 Vector6d
