@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -102,5 +103,17 @@ private:
   Eigen::Matrix3Xf points_;
   std::unique_ptr<const Tree> tree_;
 };
+
+/** \brief Ask many queries: calls search(begin, end) for blocks of 0 ... count - 1, in
+ * any order. Several threads share a large number of queries. They are started for this
+ * call, and none of them waits actively, so busy cores are not kept busier.
+ * \param[in] count number of queries
+ * \param[in] num_threads 0: as many as OpenMP would use; one inside a parallel region
+ * \param[in] search may be called by several threads at once; the first exception that
+ *            it throws is thrown to the caller */
+BAYESIAN_ICP_EXPORT void
+searchInBlocks(std::size_t count,
+               int num_threads,
+               const std::function<void(std::size_t begin, std::size_t end)>& search);
 
 } // namespace bayesian_icp

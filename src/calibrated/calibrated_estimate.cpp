@@ -390,14 +390,15 @@ evenSource(const Eigen::Matrix3Xd& points,
   const Eigen::Vector3d centroid = points.rowwise().mean();
   const Eigen::Matrix3Xf centred = (points.colwise() - centroid).cast<float>();
   Random random(seed, order_stream);
-  std::vector<Index> columns = evenChoice(centred, std::min(max_points, num_first));
+  std::vector<Index> columns =
+      evenChoice(centred, std::min(max_points, num_first), ChoiceStream::Source);
   shuffle(columns, random);
   std::vector<bool> is_chosen(static_cast<std::size_t>(points.cols()));
   for (const Index column : columns)
     is_chosen[static_cast<std::size_t>(column)] = true;
   std::vector<Index> others;
   if (max_points > num_first)
-    others = evenChoice(centred, max_points);
+    others = evenChoice(centred, max_points, ChoiceStream::Source);
   shuffle(others, random);
   for (const Index column : others)
     if (!is_chosen[static_cast<std::size_t>(column)] &&

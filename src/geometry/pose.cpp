@@ -53,6 +53,12 @@ inverseOf(const Eigen::Matrix4d& T)
 Eigen::Matrix3d
 nearestRotation(const Eigen::Matrix3d& m)
 {
+  // Next to a rotation, one step of Newton and Schulz is exact to the square of the
+  // distance.
+  const Eigen::Matrix3d stretch = m.transpose() * m;
+  if ((stretch - Eigen::Matrix3d::Identity()).squaredNorm() < 1e-16 &&
+      m.determinant() > 0.0)
+    return m * (1.5 * Eigen::Matrix3d::Identity() - 0.5 * stretch);
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(
       m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d signs(1.0, 1.0, 1.0);

@@ -13,7 +13,8 @@ namespace bayesian_icp {
 
 /** \brief Axes along which twists are uncorrelated, tightest first. */
 struct PrincipalAxes {
-  /** Columns are of unit length in the metric. */
+  /** Columns are of unit length in the metric. Their signs, which decide what random
+   * numbers do, do not depend on rounding. */
   Matrix6d axes;
   Vector6d variances;
 
@@ -22,7 +23,14 @@ struct PrincipalAxes {
     const Matrix6d L = metric.llt().matrixL();
     const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(
         Matrix6d(L.transpose() * covariance * L));
-    axes = L.transpose().triangularView<Eigen::Upper>().solve(solver.eigenvectors());
+    Matrix6d directions = solver.eigenvectors();
+    for (auto direction : directions.colwise()) {
+      Eigen::Index largest = 0;
+      direction.cwiseAbs().maxCoeff(&largest);
+      if (direction[largest] < 0.0)
+        direction = -direction;
+    }
+    axes = L.transpose().triangularView<Eigen::Upper>().solve(directions);
     variances = solver.eigenvalues();
   }
 };

@@ -30,6 +30,34 @@ angleRates(const Vector6d& pose)
   return rates;
 }
 
+/** The prior's deviation at a pose, and how it changes with twists. */
+struct PriorDeviation {
+  Vector6d deviation;
+  /** d(deviation) / d(xi). */
+  Matrix6d rates = Matrix6d::Identity();
+
+  PriorDeviation(const Prior& prior,
+                 const Isometry3d& T_target_source,
+                 const Vector3d& centre)
+  {
+    const Vector6d pose = poseOf(T_target_source.matrix());
+    deviation = prior.deviation(pose);
+    // The prior speaks of the place of its reference point and of the angles.
+    rates.topRightCorner<3, 3>() =
+        -crossMatrix(T_target_source * prior.referencePoint() - centre);
+    rates.bottomRightCorner<3, 3>() = angleRates(pose);
+  }
+
+  Vector6d
+  gradient(const Prior& prior) const
+  {
+    Vector6d slope = deviation.cwiseQuotient(prior.variance());
+    for (int k = 3; k < 6; ++k)
+      slope[k] = std::sin(deviation[k]) / prior.variance()[k];
+    return rates.transpose() * slope;
+  }
+};
+
 } // namespace
 
 Isometry3d
@@ -53,29 +81,28 @@ isometryOf(const Vector6d& pose)
   return Isometry3d(matrixOf(pose));
 }
 
+Vector6d
+twistPriorGradient(const Prior& prior,
+                   const Isometry3d& T_target_source,
+                   const Vector3d& centre)
+{
+  return PriorDeviation(prior, T_target_source, centre).gradient(prior);
+}
+
 TwistPrior
 twistPrior(const Prior& prior,
            const Isometry3d& T_target_source,
            const Vector3d& centre)
 {
-  const Vector6d pose = poseOf(T_target_source.matrix());
-  const Vector6d deviation = prior.deviation(pose);
-  // The prior speaks of the place of its reference point and of the angles.
-  Matrix6d rates = Matrix6d::Identity();
-  rates.topRightCorner<3, 3>() =
-      -crossMatrix(T_target_source * prior.referencePoint() - centre);
-  rates.bottomRightCorner<3, 3>() = angleRates(pose);
-  Vector6d slope = deviation.cwiseQuotient(prior.variance());
-  for (int k = 3; k < 6; ++k)
-    slope[k] = std::sin(deviation[k]) / prior.variance()[k];
+  const PriorDeviation at(prior, T_target_source, centre);
   TwistPrior result;
   result.precision =
-      rates.transpose() * prior.variance().cwiseInverse().asDiagonal() * rates;
-  result.gradient = rates.transpose() * slope;
-  Vector6d wrapped = deviation;
+      at.rates.transpose() * prior.variance().cwiseInverse().asDiagonal() * at.rates;
+  result.gradient = at.gradient(prior);
+  Vector6d wrapped = at.deviation;
   for (int k = 3; k < 6; ++k)
-    wrapped[k] = wrapAngle(deviation[k]);
-  result.deviation = rates.partialPivLu().solve(wrapped);
+    wrapped[k] = wrapAngle(wrapped[k]);
+  result.deviation = at.rates.partialPivLu().solve(wrapped);
   return result;
 }
 

@@ -48,4 +48,10 @@ twistPrior(const Prior& prior,
            const Eigen::Isometry3d& T_target_source,
            const Eigen::Vector3d& centre);
 
+/** \brief The gradient of twistPrior() alone. */
+Vector6d
+twistPriorGradient(const Prior& prior,
+                   const Eigen::Isometry3d& T_target_source,
+                   const Eigen::Vector3d& centre);
+
 } // namespace bayesian_icp

@@ -1,11 +1,17 @@
 #include "search/kd_tree_build.h"
+#include "threads/first_exception.h"
+#include "threads/num_threads.h"
 
 #include <bayesian_icp/kd_tree.h>
 
 #include <algorithm>
+#include <atomic>
+#include <future>
 #include <limits>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -26,6 +32,13 @@ kd_tree::searchesOf(InstructionSet instruction_set)
     return plain_searches;
   }
 }
+
+namespace {
+
+/** Queries of a block, and queries that are worth a thread. */
+constexpr std::size_t block_size = 1024, queries_of_thread = 4096;
+
+} // namespace
 
 // For users who compile as C++14, where a static member is no inline variable.
 constexpr std::uint32_t KdTree::none;
@@ -82,6 +95,35 @@ KdTree::numBytes() const
          storage.cells.size() * sizeof(kd_tree::Cell) +
          storage.leaves.size() * sizeof(kd_tree::Leaf) +
          storage.leaf_of.size() * sizeof(std::uint32_t);
+}
+
+void
+searchInBlocks(std::size_t count,
+               int num_threads,
+               const std::function<void(std::size_t, std::size_t)>& search)
+{
+  std::atomic<std::size_t> next{0};
+  FirstException failure;
+  const auto work = [&] {
+    for (std::size_t begin = next.fetch_add(block_size); begin < count;
+         begin = next.fetch_add(block_size))
+      if (!failure.guard([&] { search(begin, std::min(begin + block_size, count)); }))
+        return;
+  };
+  std::vector<std::future<void>> others;
+  const int num_wanted = numThreadsFor(
+      num_threads, static_cast<std::ptrdiff_t>(count / queries_of_thread));
+  try {
+    while (static_cast<int>(others.size()) + 1 < num_wanted)
+      others.push_back(std::async(std::launch::async, work));
+  }
+  catch (const std::system_error&) {
+    // No more threads are to be had.
+  }
+  work();
+  for (auto& other : others)
+    other.get();
+  failure.rethrow();
 }
 
 } // namespace bayesian_icp

@@ -49,15 +49,18 @@ largestDifference(const MatrixXd& first, const MatrixXd& second)
   return largest;
 }
 
-/** What is exceeded with a probability of 1 %, of as many independent draws as these
- * are worth. */
+/** What at least one of several comparisons exceeds with a probability of 1 % or less
+ * (Bonferroni), of as many independent draws as these are worth. */
 double
-criticalDifference(const MatrixXd& first, const MatrixXd& second)
+criticalDifference(const MatrixXd& first,
+                   const MatrixXd& second,
+                   int num_comparisons = 1)
 {
   const auto worth = [](const MatrixXd& draws) {
     return std::min(bulkEss(draws), static_cast<double>(draws.size()));
   };
-  return 1.628 * std::sqrt(1.0 / worth(first) + 1.0 / worth(second));
+  return std::sqrt(-0.5 * std::log(0.005 / num_comparisons) *
+                   (1.0 / worth(first) + 1.0 / worth(second)));
 }
 
 /** f of each draw, one chain a column. */
@@ -110,7 +113,7 @@ expectTheCalibratedGaussian(const ChainSet& set, const CalibratedEstimate& estim
     all.col(k) = values.reshaped();
     const MatrixXd normal = MatrixXd::NullaryExpr(
         values.rows(), values.cols(), [&] { return random.normal(); });
-    EXPECT_LT(largestDifference(values, normal), criticalDifference(values, normal))
+    EXPECT_LT(largestDifference(values, normal), criticalDifference(values, normal, 6))
         << k;
   }
   EXPECT_GT(least_ess, 900.0);

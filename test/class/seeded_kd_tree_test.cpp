@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 namespace pcl {
@@ -243,32 +244,75 @@ TEST_F(SeededKdTreeTest, IsNotBuiltAgainForTheSamePoints)
   EXPECT_NE(tree.seeded->get(), kept);
 }
 
-TEST_F(SeededKdTreeTest, BeginningAtLastAnswersChangesNone)
+/** Query, match and squared distance of each pair. */
+std::vector<std::tuple<index_t, index_t, float>>
+pairsOf(registration::CorrespondenceEstimation<PointXYZ, PointXYZ>& estimation,
+        const Cloud::Ptr& source,
+        double max_distance)
 {
-  Tree pcls;
-  const auto ours = pcl::make_shared<Seeded>();
-  pcls.setInputCloud(target);
-  ours->setInputCloud(target);
-  // Also fewer places than points, and answers of another cloud.
-  for (const std::size_t num_points :
-       {source->size(), std::size_t(7), std::size_t(1)}) {
-    ours->seeded->beginAtLastAnswers(num_points);
-    Cloud moved = *source;
-    for (int round = 0; round < 4; ++round) {
-      for (auto& point : moved)
-        point.x += 0.05f;
-      EXPECT_EQ(nearestTo(*ours, moved, 1), nearestTo(pcls, moved, 1));
+  estimation.setInputSource(source);
+  Correspondences found;
+  estimation.determineCorrespondences(found, max_distance);
+  std::vector<std::tuple<index_t, index_t, float>> pairs;
+  for (const auto& pair : found)
+    pairs.emplace_back(pair.index_query, pair.index_match, pair.distance);
+  return (pairs);
+}
+
+TEST_F(SeededKdTreeTest, ItsEstimationFindsPclsPairs)
+{
+  using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
+  // So many points that there is work for three threads; some are equally near.
+  const Cloud::Ptr many(new Cloud);
+  while (many->size() < 12288)
+    *many += *source;
+  const Cloud::Ptr few(new Cloud(*many));
+  few->resize(100);
+  const Cloud::Ptr repeated(new Cloud(*target + *target));
+  for (const double max_distance :
+       {std::sqrt(std::numeric_limits<double>::max()), 0.01})
+    for (const int num_threads : {1, 3}) {
+      Estimation pcls;
+      bayesian_icp_detail::SeededEstimation<PointXYZ, PointXYZ, float> ours;
+      ours.num_threads = num_threads;
+      ours.setSearchMethodTarget(pcl::make_shared<Seeded>());
+      for (const auto& cloud : {target, repeated, few}) {
+        pcls.setInputTarget(cloud);
+        ours.setInputTarget(cloud);
+        for (const auto& moved : {many, few, many}) {
+          for (auto& point : *moved)
+            point.x += 0.005f;
+          EXPECT_EQ(pairsOf(ours, moved, max_distance),
+                    pairsOf(pcls, moved, max_distance));
+        }
+      }
     }
-    const Cloud::Ptr smaller(new Cloud(*target));
-    smaller->resize(100);
-    pcls.setInputCloud(smaller);
-    ours->setInputCloud(smaller);
-    EXPECT_EQ(nearestTo(*ours, moved, 1), nearestTo(pcls, moved, 1));
-    pcls.setInputCloud(target);
-    ours->setInputCloud(target);
-  }
-  ours->seeded->beginAtLastAnswers(0);
-  EXPECT_EQ(nearestTo(*ours, *source, 1), nearestTo(pcls, *source, 1));
+}
+
+TEST_F(SeededKdTreeTest, ItsEstimationFindsPclsPairsInOtherTreesAndAmongIndices)
+{
+  using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
+  constexpr double no_gate = std::numeric_limits<double>::max();
+  const auto expectPairs = [&](const auto& prepare, bool has_pcls_tree) {
+    Estimation pcls;
+    bayesian_icp_detail::SeededEstimation<PointXYZ, PointXYZ, float> ours;
+    if (!has_pcls_tree)
+      ours.setSearchMethodTarget(pcl::make_shared<Seeded>());
+    for (Estimation* estimation : {&pcls, static_cast<Estimation*>(&ours)}) {
+      estimation->setInputTarget(target);
+      prepare(*estimation);
+    }
+    EXPECT_EQ(pairsOf(ours, source, no_gate), pairsOf(pcls, source, no_gate));
+    const auto copy = ours.clone();
+    Correspondences of_copy, of_ours;
+    copy->determineCorrespondences(of_copy, no_gate);
+    ours.determineCorrespondences(of_ours, no_gate);
+    EXPECT_EQ(of_copy.size(), of_ours.size());
+  };
+  const auto some = pcl::make_shared<Indices>(Indices{5, 3, 3, 8, 5, 0});
+  expectPairs([](Estimation&) {}, true);
+  expectPairs([&](Estimation& e) { e.setIndicesTarget(some); }, false);
+  expectPairs([&](Estimation& e) { e.setIndicesSource(some); }, false);
 }
 
 TEST_F(SeededKdTreeTest, AnswersSeveralThreadsAtOnce)

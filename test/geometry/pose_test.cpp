@@ -89,6 +89,21 @@ TEST(Pose, FloatRoundOffInAMatrixDoesNotReachThePose)
   EXPECT_LT((poseOf(rounded) - pose).norm(), 1e-6);
 }
 
+/** A symmetric stretch leaves the nearest rotation as it is. */
+TEST(Pose, IsThatOfTheNearestRotation)
+{
+  Random random(5, 0);
+  for (const double size : {1e-14, 1e-10, 2e-9, 1e-8, 1e-6, 1e-2}) {
+    const Vector6d pose = test::randomPose(random, 0.8);
+    Eigen::Matrix4d stretched = matrixOf(pose);
+    const Eigen::Matrix3d noise =
+        size * Eigen::Matrix3d::NullaryExpr([&] { return random.normal(); });
+    stretched.topLeftCorner<3, 3>() *=
+        Eigen::Matrix3d::Identity() + noise + noise.transpose();
+    EXPECT_LT((poseOf(stretched) - pose).norm(), 1e-13) << size;
+  }
+}
+
 TEST(Pose, NonFiniteMatrixGivesNaN)
 {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();

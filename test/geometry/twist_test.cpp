@@ -107,8 +107,9 @@ TEST(TwistPrior, GradientIsThatOfThePriorsEnergy)
       const Vector6d expected = test::centralDifferences(energy, Vector6d::Zero());
       // Central differences of step 1e-5: about 1e-10 in rounding and truncation,
       // times third derivatives of up to 1e3 times the gradient (levers, pitch).
-      EXPECT_LT((twistPrior(prior, pose, centre).gradient - expected).norm(),
-                1e-7 * expected.norm());
+      const Vector6d gradient = twistPriorGradient(prior, pose, centre);
+      EXPECT_LT((gradient - expected).norm(), 1e-7 * expected.norm());
+      EXPECT_EQ(twistPrior(prior, pose, centre).gradient, gradient);
     }
 }
 

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -127,6 +129,33 @@ TEST(KdTree, SeveralThreadsMaySearchAtOnce)
   odd.join();
   for (std::size_t i = 0; i < 5000; ++i)
     ASSERT_TRUE(isSame(found[i], expected[i]));
+}
+
+TEST(SearchInBlocks, AsksEachQueryOnceWhateverTheNumberOfThreads)
+{
+  for (const std::size_t count : {0, 1, 1000, 30001})
+    for (const int num_threads : {0, 1, 3}) {
+      std::vector<std::atomic<int>> times(count);
+      searchInBlocks(count, num_threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          ++times[i];
+      });
+      EXPECT_TRUE(
+          std::all_of(times.begin(), times.end(), [](const auto& n) { return n == 1; }))
+          << count << " queries, " << num_threads << " threads";
+    }
+}
+
+TEST(SearchInBlocks, PassesOnAnException)
+{
+  for (const int num_threads : {1, 3})
+    EXPECT_THROW(searchInBlocks(30001,
+                                num_threads,
+                                [](std::size_t begin, std::size_t) {
+                                  if (begin > 20000)
+                                    throw std::runtime_error("told");
+                                }),
+                 std::runtime_error);
 }
 
 TEST(KdTree, AnswersAfterAMove)

@@ -131,6 +131,7 @@ public:
     options_ = options;
     is_scale_stated_ = false;
     this->own_tree_->seeded->num_threads = options.chains.num_threads;
+    this->own_estimation_->num_threads = options.chains.num_threads;
   }
 
   const bayesian_icp::Options&
@@ -204,10 +205,10 @@ public:
     options_.chains.seed = seed;
   }
 
-  /** \brief OpenMP threads, 0 is automatic. No result depends on it. With PCL 1.15 and
-   * later they are also those of ICP, which has one if this is not called, as PCL's:
-   * those of the correspondence estimation that is installed at the time of the call.
-   */
+  /** \brief Threads of ICP and of the posterior; 0, the default, is as many as OpenMP
+   * uses. No result depends on it. ICP with a correspondence estimation of the user's
+   * own has the threads of that; with PCL 1.15 and later they are set, too, if it is
+   * installed at the time of the call. */
   void
   setNumberOfThreads(unsigned int nr_threads = 0);
 
@@ -268,9 +269,6 @@ private:
   /** \return false if the progress callback has cancelled it */
   bool
   runIcp(PointCloudSource& output, const Matrix4& guess);
-
-  bool
-  runInterruptibleIcp(PointCloudSource& output, const Matrix4& guess);
 
   void
   samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);

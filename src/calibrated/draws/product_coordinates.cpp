@@ -191,7 +191,7 @@ ProductCoordinates::linearEnergy(const Vector6d& z) const
 Vector6d
 ProductCoordinates::priorGradient(const Vector6d& z, const Prior& prior) const
 {
-  const Vector6d gradient = twistPrior(prior, pose(z), centre_).gradient;
+  const Vector6d gradient = twistPriorGradient(prior, pose(z), centre_);
   const Vector6d a = priorOnlyTwist(z), b = held_ * z;
   return prior_only_.transpose() * carriedToTheExponent(a, gradient) +
          held_.transpose() * carriedToTheExponent(b, carriedToTheRight(a, gradient));

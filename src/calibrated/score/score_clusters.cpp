@@ -6,7 +6,9 @@
 #include <bayesian_icp/random.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 
@@ -34,7 +36,7 @@ constexpr double shells_to_clusters = 1.0 / 1.43;
 constexpr double max_share = 0.9;
 
 /** Which group each point belongs to. */
-struct Groups {
+struct PointGroups {
   std::vector<Index> of_point;
   Index count = 0;
 };
@@ -43,7 +45,7 @@ struct Groups {
  * sensor usually is: a ring of a LiDAR has an error of its own, all around the sensor,
  * that no cluster of neighbours contains. About another place they are groups like any
  * other. */
-Groups
+PointGroups
 shellsOf(const Matrix3Xd& positions, Index count)
 {
   const Eigen::VectorXd distances = positions.colwise().squaredNorm();
@@ -52,7 +54,7 @@ shellsOf(const Matrix3Xd& positions, Index count)
   std::sort(order.begin(), order.end(), [&distances](Index a, Index b) {
     return distances[a] < distances[b] || (distances[a] == distances[b] && a < b);
   });
-  Groups shells;
+  PointGroups shells;
   shells.count = count;
   shells.of_point.resize(order.size());
   for (std::size_t i = 0; i < order.size(); ++i)
@@ -61,28 +63,50 @@ shellsOf(const Matrix3Xd& positions, Index count)
   return shells;
 }
 
-/** Makes groups by one randomised kd-split. */
+/** Clusters of neighbours, of several sizes: the nodes of one randomised kd-tree. */
 class KdSplit {
 public:
-  KdSplit(const Matrix3Xd& positions, Index max_points, Random& random)
-  : rotated_(randomRotation(random) * positions)
-  , max_points_(max_points)
+  /** \param[in] max_points of a cluster of each size, largest first */
+  KdSplit(const Matrix3Xd& positions,
+          const std::vector<Index>& max_points,
+          Random& random)
+  : max_points_(max_points)
   , random_(random)
-  , order_(static_cast<std::size_t>(positions.cols()))
-  , keys_(order_.size())
+  , places_(static_cast<std::size_t>(positions.cols()))
+  , clusters_(max_points.size())
   {
-    leaves_.of_point.resize(order_.size());
-    std::iota(order_.begin(), order_.end(), Index(0));
-    split(0, positions.cols());
+    const Matrix3Xd rotated =
+        randomRotation(random) * (positions.colwise() - positions.rowwise().mean());
+    for (Index i = 0; i < rotated.cols(); ++i) {
+      Place& place = places_[static_cast<std::size_t>(i)];
+      Eigen::Map<Eigen::Vector3f>(place.coordinates.data()) =
+          rotated.col(i).cast<float>();
+      place.point = static_cast<std::uint32_t>(i);
+    }
+    leaves_.of_point.resize(places_.size());
+    split(0, places_.size(), 0);
   }
 
-  const Groups&
+  /** Those of points that are in one cluster of each size. */
+  const PointGroups&
   leaves() const
   {
     return leaves_;
   }
 
+  /** Clusters of one size, as groups of leaves. */
+  const PointGroups&
+  clusters(std::size_t size) const
+  {
+    return clusters_[size];
+  }
+
 private:
+  struct Place {
+    std::array<float, 3> coordinates;
+    std::uint32_t point;
+  };
+
   static Eigen::Matrix3d
   randomRotation(Random& random)
   {
@@ -91,95 +115,268 @@ private:
     return Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
   }
 
+  /** \param[in] size of the first clusters that begin here */
   void
-  split(Index begin, Index end)
+  split(std::size_t begin, std::size_t end, std::size_t size)
   {
-    if (end - begin <= max_points_) {
-      for (Index i = begin; i < end; ++i)
-        leaves_
-            .of_point[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])] =
-            leaves_.count;
-      ++leaves_.count;
+    for (; size < max_points_.size() &&
+           static_cast<Index>(end - begin) <= max_points_[size];
+         ++size)
+      ++clusters_[size].count;
+    if (size == max_points_.size()) {
+      addLeaf(begin, end);
       return;
     }
-    const Index axis = widestAxis(begin, end);
+    const std::size_t axis = widestAxis(begin, end);
     const double part = 0.4 + 0.2 * random_.uniform();
-    const Index middle =
-        begin + std::max<Index>(1, static_cast<Index>(part * double(end - begin)));
-    const auto size = static_cast<std::size_t>(end - begin);
-    for (std::size_t i = 0; i < size; ++i) {
-      const Index point = order_[static_cast<std::size_t>(begin) + i];
-      keys_[i] = {rotated_(axis, point), point};
-    }
-    std::nth_element(
-        keys_.begin(), keys_.begin() + (middle - begin), keys_.begin() + (end - begin));
-    for (std::size_t i = 0; i < size; ++i)
-      order_[static_cast<std::size_t>(begin) + i] = keys_[i].second;
-    split(begin, middle);
-    split(middle, end);
+    const std::size_t middle =
+        begin +
+        std::max<std::size_t>(
+            1, static_cast<std::size_t>(part * static_cast<double>(end - begin)));
+    const auto places = places_.begin();
+    std::nth_element(places + static_cast<std::ptrdiff_t>(begin),
+                     places + static_cast<std::ptrdiff_t>(middle),
+                     places + static_cast<std::ptrdiff_t>(end),
+                     [axis](const Place& a, const Place& b) {
+                       const float x = a.coordinates[axis], y = b.coordinates[axis];
+                       return x < y || (x == y && a.point < b.point);
+                     });
+    split(begin, middle, size);
+    split(middle, end, size);
   }
 
-  Index
-  widestAxis(Index begin, Index end) const
+  void
+  addLeaf(std::size_t begin, std::size_t end)
   {
-    Vector3d low = rotated_.col(order_[static_cast<std::size_t>(begin)]), high = low;
-    for (Index i = begin; i < end; ++i) {
-      const auto point = rotated_.col(order_[static_cast<std::size_t>(i)]);
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-    Index axis = 0;
-    (high - low).maxCoeff(&axis);
-    return axis;
+    for (std::size_t i = begin; i < end; ++i)
+      leaves_.of_point[places_[i].point] = leaves_.count;
+    ++leaves_.count;
+    for (PointGroups& clusters : clusters_)
+      clusters.of_point.push_back(clusters.count - 1);
   }
 
-  Matrix3Xd rotated_;
-  Index max_points_;
+  std::size_t
+  widestAxis(std::size_t begin, std::size_t end) const
+  {
+    std::array<float, 3> low = places_[begin].coordinates, high = low;
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], places_[i].coordinates[axis]);
+        high[axis] = std::max(high[axis], places_[i].coordinates[axis]);
+      }
+    std::size_t widest = 0;
+    for (std::size_t axis = 1; axis < 3; ++axis)
+      if (high[axis] - low[axis] > high[widest] - low[widest])
+        widest = axis;
+    return widest;
+  }
+
+  const std::vector<Index>& max_points_;
   Random& random_;
-  std::vector<Index> order_;
-  /** Coordinate and index of the points that are being split. */
-  std::vector<std::pair<double, Index>> keys_;
-  Groups leaves_;
+  std::vector<Place> places_;
+  PointGroups leaves_;
+  std::vector<PointGroups> clusters_;
 };
 
-/** Sums of the groups' scores, less their share of the total. */
-Matrix6Xd
-groupSums(const Matrix6Xd& scores, const Groups& groups)
-{
-  Matrix6Xd sums = Matrix6Xd::Zero(6, groups.count);
-  Eigen::RowVectorXd counts = Eigen::RowVectorXd::Zero(groups.count);
-  for (Index i = 0; i < scores.cols(); ++i) {
-    const Index group = groups.of_point[static_cast<std::size_t>(i)];
-    sums.col(group) += scores.col(i);
-    counts[group] += 1.0;
+/** Scores in units of the fit: multiplied by L^-1, working information L L^T. */
+struct WhitenedScores {
+  Matrix6d L = Matrix6d::Identity();
+  /** Less their mean. */
+  Matrix6Xd scores;
+  /** Empty if the pose was not fitted. */
+  Matrix6Xd jacobians;
+
+  WhitenedScores(const PointScores& points, const Matrix6d& working_information)
+  : scores(points.scores)
+  {
+    if (scores.cols() == 0)
+      return;
+    scores.colwise() -= scores.rowwise().mean().eval();
+    if (points.jacobians.cols() != scores.cols())
+      return;
+    L = working_information.llt().matrixL();
+    scores = L.triangularView<Eigen::Lower>().solve(scores);
+    jacobians = L.triangularView<Eigen::Lower>().solve(points.jacobians);
   }
-  const Vector6d mean = scores.rowwise().mean();
-  return sums - mean * counts;
+};
+
+/** Sums over each of several groups of points. */
+struct GroupSums {
+  Matrix6Xd scores;
+  /** Of the information; empty if the pose was not fitted. */
+  std::vector<Matrix6d> shares;
+
+  GroupSums(Index num_groups, bool is_fitted)
+  : scores(Matrix6Xd::Zero(6, num_groups))
+  , shares(is_fitted ? static_cast<std::size_t>(num_groups) : 0, Matrix6d::Zero())
+  {}
+
+  GroupSums(const WhitenedScores& points, const PointGroups& groups)
+  : GroupSums(groups.count, points.jacobians.cols() > 0)
+  {
+    for (std::size_t i = 0; i < groups.of_point.size(); ++i) {
+      const auto column = static_cast<Index>(i), group = groups.of_point[i];
+      scores.col(group) += points.scores.col(column);
+      if (!shares.empty()) {
+        const Vector6d jacobian = points.jacobians.col(column);
+        shares[static_cast<std::size_t>(group)] += jacobian * jacobian.transpose();
+      }
+    }
+  }
+
+  /** \param[in] groups of the groups of \p parts */
+  GroupSums(const GroupSums& parts, const PointGroups& groups)
+  : GroupSums(groups.count, !parts.shares.empty())
+  {
+    for (std::size_t i = 0; i < groups.of_point.size(); ++i) {
+      const Index group = groups.of_point[i];
+      scores.col(group) += parts.scores.col(static_cast<Index>(i));
+      if (!shares.empty())
+        shares[static_cast<std::size_t>(group)] += parts.shares[i];
+    }
+  }
+};
+
+/** (I - H)^-1/2 s; eigenvalues of H are limited to max_share. */
+Vector6d
+withoutShare(const Matrix6d& H, const Vector6d& s)
+{
+  // Most groups have a small share: terms of the binomial series, until they vanish.
+  constexpr double largest_of_series = 0.6, negligible = 1e-15;
+  constexpr int max_terms = 64;
+  if (H.norm() < largest_of_series) {
+    Vector6d term = s, sum = s;
+    for (int k = 1; k <= max_terms &&
+                    term.squaredNorm() > negligible * negligible * sum.squaredNorm();
+         ++k) {
+      term = ((2.0 * k - 1.0) / (2.0 * k) * (H * term)).eval();
+      sum += term;
+    }
+    return sum;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> share(H);
+  const Vector6d left = 1.0 - share.eigenvalues().array().min(max_share);
+  return share.eigenvectors() * left.cwiseSqrt().cwiseInverse().asDiagonal() *
+         share.eigenvectors().transpose() * s;
 }
 
-/** Give back to the groups what fitting six parameters took from them, so that their
- * outer products are right on average for independent points: CR2 of Bell and McCaffrey
- * (2002), (I - H_b)^-1/2 s_b, H_b being the group's share of the information. A
- * direction that a few groups hold loses nearly all of their scores.
- * \param[in] whitened L^-1 j of each point, working information L L^T
- * \param[in,out] sums L^-1 s_b of each group */
-void
-undoFit(const Matrix6Xd& whitened, const Groups& groups, Matrix6Xd& sums)
+/** Sum of the outer products of the groups' scores.
+ *
+ * What fitting six parameters took from the groups is given back, so that the sum is
+ * right on average for independent points: CR2 of Bell and McCaffrey (2002),
+ * (I - H_b)^-1/2 s_b, H_b being the group's share of the information. A direction that
+ * a few groups hold loses nearly all of their scores. */
+Matrix6d
+outerProducts(const GroupSums& groups)
 {
-  std::vector<Matrix6d> shares(static_cast<std::size_t>(groups.count),
-                               Matrix6d::Zero());
-  for (Index i = 0; i < whitened.cols(); ++i)
-    shares[static_cast<std::size_t>(groups.of_point[static_cast<std::size_t>(i)])]
-        .selfadjointView<Eigen::Lower>()
-        .rankUpdate(whitened.col(i));
-  for (Index b = 0; b < sums.cols(); ++b) {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> share(
-        shares[static_cast<std::size_t>(b)]);
-    const Vector6d left = 1.0 - share.eigenvalues().array().min(max_share);
-    sums.col(b) = share.eigenvectors() * left.cwiseSqrt().cwiseInverse().asDiagonal() *
-                  share.eigenvectors().transpose() * sums.col(b);
-  }
+  Matrix6Xd scores = groups.scores;
+  const auto count = static_cast<double>(scores.cols());
+  if (groups.shares.empty())
+    scores *= std::sqrt(count / std::max(1.0, count - 1.0));
+  else
+    for (Index b = 0; b < scores.cols(); ++b)
+      scores.col(b) =
+          withoutShare(groups.shares[static_cast<std::size_t>(b)], scores.col(b));
+  return scores * scores.transpose();
 }
+
+/** Most points of a cluster, if there are to be about \p num_clusters. */
+Index
+maxPointsOf(Index num_points, int num_clusters)
+{
+  return std::max<Index>(2, num_points / std::max(1, num_clusters));
+}
+
+/** J of partitions into clusters of several sizes, and into shells. */
+class ClusteredCovariances {
+public:
+  static constexpr std::size_t num_sizes = 4;
+  static constexpr int num_clusters[num_sizes] = {12, 24, 48, 96};
+
+  ClusteredCovariances(const PointScores& points,
+                       const Matrix6d& working_information,
+                       int num_threads)
+  : points_(points)
+  , whitened_(points, working_information)
+  {
+    if (points.scores.cols() == 0)
+      return;
+    std::vector<const TreeKind*> trees;
+    for (const TreeKind& kind : tree_kinds)
+      trees.insert(trees.end(), kind.num_trees, &kind);
+    std::vector<std::array<Matrix6d, num_sizes>> of_trees(trees.size());
+    const auto num_trees = static_cast<std::ptrdiff_t>(trees.size());
+    // The last piece is the shells.
+    forEachPiece(num_trees + 1, num_threads, [&](std::ptrdiff_t piece) {
+      const auto tree = static_cast<std::size_t>(piece);
+      if (piece < num_trees)
+        of_trees[tree] = ofTree(*trees[tree], tree);
+      else
+        shells_ = outerProducts(
+            GroupSums(whitened_, shellsOf(points_.positions, num_shells)));
+    });
+    for (std::size_t size = 0; size < num_sizes; ++size) {
+      double count = 0.0;
+      for (std::size_t tree = 0; tree < trees.size(); ++tree)
+        if (trees[tree]->has_size[size]) {
+          clusters_[size] += of_trees[tree][size];
+          count += 1.0;
+        }
+      clusters_[size] /= count;
+    }
+  }
+
+  Matrix6d
+  ofClusters(std::size_t size) const
+  {
+    return whitened_.L * clusters_[size] * whitened_.L.transpose();
+  }
+
+  Matrix6d
+  ofShells() const
+  {
+    return whitened_.L * shells_ * whitened_.L.transpose();
+  }
+
+private:
+  struct TreeKind {
+    std::size_t num_trees;
+    bool has_size[num_sizes];
+  };
+
+  /** Larger clusters are fewer, so they are averaged over more trees. kappa_inf has the
+   * difference of two sizes of which one is a quarter of the other: it has less noise
+   * if they are of the same trees. */
+  static constexpr TreeKind tree_kinds[] = {{8, {true, false, true, false}},
+                                            {8, {false, true, false, true}},
+                                            {8, {true, false, false, false}},
+                                            {4, {false, true, false, false}}};
+
+  std::array<Matrix6d, num_sizes>
+  ofTree(const TreeKind& kind, std::uint64_t stream) const
+  {
+    std::vector<std::size_t> sizes;
+    std::vector<Index> max_points;
+    for (std::size_t size = 0; size < num_sizes; ++size)
+      if (kind.has_size[size]) {
+        sizes.push_back(size);
+        max_points.push_back(maxPointsOf(points_.scores.cols(), num_clusters[size]));
+      }
+    Random random(partition_seed, stream);
+    const KdSplit split(points_.positions, max_points, random);
+    const GroupSums leaves(whitened_, split.leaves());
+    std::array<Matrix6d, num_sizes> products;
+    for (std::size_t k = 0; k < sizes.size(); ++k)
+      products[sizes[k]] = outerProducts(GroupSums(leaves, split.clusters(k)));
+    return products;
+  }
+
+  const PointScores& points_;
+  WhitenedScores whitened_;
+  Matrix6d shells_ = Matrix6d::Zero();
+  std::array<Matrix6d, num_sizes> clusters_{
+      {Matrix6d::Zero(), Matrix6d::Zero(), Matrix6d::Zero(), Matrix6d::Zero()}};
+};
 
 } // namespace
 
@@ -209,31 +406,16 @@ clusteredCovariance(const PointScores& points,
   const Index num_points = points.scores.cols();
   if (num_points == 0)
     return Matrix6d::Zero();
-  const Index max_points =
-      std::max<Index>(2, num_points / std::max(1, options.num_clusters));
-  const bool is_fitted = points.jacobians.cols() == num_points;
-  Matrix6d L = Matrix6d::Identity();
-  Matrix6Xd whitened;
-  if (is_fitted) {
-    L = working_information.llt().matrixL();
-    whitened = L.triangularView<Eigen::Lower>().solve(points.jacobians);
-  }
+  const WhitenedScores whitened(points, working_information);
+  const std::vector<Index> max_points = {maxPointsOf(num_points, options.num_clusters)};
   Random random(partition_seed, options.stream);
   Matrix6d sum = Matrix6d::Zero();
-  for (int k = 0; k < options.num_partitions; ++k) {
-    const Groups groups = options.are_shells
-                              ? shellsOf(points.positions, options.num_clusters)
-                              : KdSplit(points.positions, max_points, random).leaves();
-    Matrix6Xd sums =
-        L.triangularView<Eigen::Lower>().solve(groupSums(points.scores, groups));
-    const auto num_groups = static_cast<double>(groups.count);
-    if (is_fitted)
-      undoFit(whitened, groups, sums);
-    else
-      sums *= std::sqrt(num_groups / std::max(1.0, num_groups - 1.0));
-    sum += sums * sums.transpose();
-  }
-  return L * sum * L.transpose() / options.num_partitions;
+  for (int k = 0; k < options.num_partitions; ++k)
+    sum += outerProducts(GroupSums(
+        whitened,
+        options.are_shells ? shellsOf(points.positions, options.num_clusters)
+                           : KdSplit(points.positions, max_points, random).leaves()));
+  return whitened.L * sum * whitened.L.transpose() / options.num_partitions;
 }
 
 ScoreCovariance
@@ -251,21 +433,11 @@ scoreCovariance(const PointScores& points,
   const auto kappa = [&](const Matrix6d& covariance) {
     return metric.solve(covariance).trace() / size;
   };
-  constexpr int num_sizes = 5, shells = 4;
-  constexpr int num_clusters[num_sizes] = {12, 24, 48, 96, num_shells};
-  constexpr int num_partitions[num_sizes] = {16, 12, 8, 8, 1};
-  Matrix6d clustered[num_sizes];
-  forEachPiece(num_sizes, num_threads, [&](std::ptrdiff_t i) {
-    ClusterOptions options;
-    options.num_clusters = num_clusters[i];
-    options.num_partitions = num_partitions[i];
-    options.stream = static_cast<std::uint64_t>(num_clusters[i]);
-    options.are_shells = i == shells;
-    clustered[i] = clusteredCovariance(points, working_information, options);
-  });
-  const double kappa_12 = kappa(clustered[0]), kappa_24 = kappa(clustered[1]);
-  const double kappa_96 = kappa(clustered[3]);
-  const Matrix6d& J_48 = clustered[2];
+  const ClusteredCovariances clustered(points, working_information, num_threads);
+  const double kappa_12 = kappa(clustered.ofClusters(0)),
+               kappa_24 = kappa(clustered.ofClusters(1)),
+               kappa_96 = kappa(clustered.ofClusters(3));
+  const Matrix6d J_48 = clustered.ofClusters(2);
   ScoreCovariance result;
   result.kappa_48 = kappa(J_48);
   // Points at the border of a square cluster of side a miss a part of their neighbours
@@ -275,7 +447,7 @@ scoreCovariance(const PointScores& points,
                       0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
   result.kappa_inf = std::max({1.0, kappa_24, root * root});
   result.kappa =
-      std::max(result.kappa_inf, shells_to_clusters * kappa(clustered[shells]));
+      std::max(result.kappa_inf, shells_to_clusters * kappa(clustered.ofShells()));
   // Number of independent points to which the correlated ones are equivalent.
   const double nu = static_cast<double>(points.scores.cols()) / result.kappa;
   const double correction = nu / std::max(1.0, nu - lost_degrees_of_freedom);

@@ -14,8 +14,9 @@ using Eigen::Index;
 
 namespace {
 
-/** A grid is fine enough if it yields this part of the wanted number of points. */
-constexpr double wanted_part = 0.97;
+/** A grid is fine enough if it yields this part of the wanted number of points. The
+ * next one to be tried is meant to yield the second part. */
+constexpr double wanted_part = 0.97, best_part = 0.985;
 constexpr int max_trials = 24;
 
 /** Bits of a cube's place on each axis, and so the smallest cube that is tried, in
@@ -23,10 +24,14 @@ constexpr int max_trials = 24;
 constexpr int num_bits = 21;
 constexpr double smallest_cube = 1.0 / (1 << 20);
 
-/** Numbers that have been seen, up to a certain count of them. */
-class SeenNumbers {
+/** The points that are chosen from cubes: of those in one cube that with the smallest
+ * rank, which is random. */
+class ChosenOfCubes {
 public:
-  explicit SeenNumbers(Index most)
+  /** \param[in] most cubes that it has room for
+   * \param[in] stream of the ranks */
+  ChosenOfCubes(Index most, ChoiceStream stream)
+  : first_rank_((1 + static_cast<std::uint32_t>(stream)) * 0x9e3779b9)
   {
     std::size_t size = 4;
     while (size < 2 * static_cast<std::size_t>(most))
@@ -35,62 +40,103 @@ public:
   }
 
   void
-  forget()
+  clear()
   {
-    std::fill(slots_.begin(), slots_.end(), none);
+    std::fill(slots_.begin(), slots_.end(), Slot());
+    num_cubes_ = 0;
   }
 
-  /** Whether \p number is new; it no longer is. */
-  bool
-  add(std::uint64_t number)
+  void
+  add(std::uint64_t cube, std::uint32_t point)
   {
     // Fibonacci hashing, and the next free slot.
-    constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15;
     const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = (number * golden_ratio >> 20) & mask;
-    while (slots_[slot] != none && slots_[slot] != number)
-      slot = (slot + 1) & mask;
-    const bool is_new = slots_[slot] == none;
-    slots_[slot] = number;
-    return is_new;
+    std::size_t place = (cube * golden_ratio >> 20) & mask;
+    while (slots_[place].cube != none && slots_[place].cube != cube)
+      place = (place + 1) & mask;
+    Slot& slot = slots_[place];
+    num_cubes_ += slot.cube == none;
+    const std::uint32_t rank = rankOf(point);
+    if (slot.cube == none || rank < slot.rank)
+      slot = {cube, rank, point};
+  }
+
+  Index
+  numCubes() const
+  {
+    return num_cubes_;
+  }
+
+  /** In their order.
+   * \param[in] num_points that were added */
+  std::vector<Index>
+  points(Index num_points) const
+  {
+    std::vector<char> is_chosen(static_cast<std::size_t>(num_points));
+    for (const Slot& slot : slots_)
+      if (slot.cube != none)
+        is_chosen[slot.point] = 1;
+    std::vector<Index> points;
+    points.reserve(static_cast<std::size_t>(num_cubes_));
+    for (std::size_t i = 0; i < is_chosen.size(); ++i)
+      if (is_chosen[i])
+        points.push_back(static_cast<Index>(i));
+    return points;
   }
 
 private:
   static constexpr std::uint64_t none = ~std::uint64_t(0);
-  std::vector<std::uint64_t> slots_;
+  static constexpr std::uint64_t golden_ratio = 0x9e3779b97f4a7c15;
+
+  struct Slot {
+    std::uint64_t cube = none;
+    std::uint32_t rank = 0;
+    std::uint32_t point = 0;
+  };
+
+  /** The finalizer of MurmurHash3: no two points have the same rank. */
+  std::uint32_t
+  rankOf(std::uint32_t point) const
+  {
+    std::uint32_t rank = point + first_rank_;
+    rank = (rank ^ rank >> 16) * 0x85ebca6b;
+    rank = (rank ^ rank >> 13) * 0xc2b2ae35;
+    return rank ^ rank >> 16;
+  }
+
+  std::uint32_t first_rank_;
+  std::vector<Slot> slots_;
+  Index num_cubes_ = 0;
 };
 
-/** One point of each cube of side \p cube, the first one; no more than \p most + 1 of
- * them.
- * \param[in] points relative to the corner of the first cube */
-void
-firstOfEachCube(const Eigen::Matrix3Xf& points,
-                float cube,
-                Index most,
-                SeenNumbers& seen,
-                std::vector<Index>& columns)
+/** Choose a point of each cube of side \p cube, until there are more than \p most.
+ * \param[in] corner of the first cube
+ * \return how many points were looked at */
+Index
+chooseOfCubes(const Eigen::Matrix3Xf& points,
+              const Eigen::Vector3f& corner,
+              float cube,
+              Index most,
+              ChosenOfCubes& chosen)
 {
-  columns.clear();
-  seen.forget();
+  chosen.clear();
   constexpr Index block_size = 256; // A loop without branches is vectorised.
   std::array<std::int32_t, 3 * block_size> places;
-  for (Index begin = 0; begin < points.cols(); begin += block_size) {
+  Index begin = 0;
+  for (; begin < points.cols() && chosen.numCubes() <= most; begin += block_size) {
     const Index size = std::min(block_size, points.cols() - begin);
-    for (Index k = 0; k < 3 * size; ++k)
-      places[static_cast<std::size_t>(k)] =
-          static_cast<std::int32_t>(points.data()[3 * begin + k] / cube);
-    for (Index i = 0; i < size; ++i) {
+    Eigen::Map<Eigen::Matrix<std::int32_t, 3, Eigen::Dynamic>>(places.data(), 3, size) =
+        ((points.middleCols(begin, size).colwise() - corner) / cube)
+            .cast<std::int32_t>();
+    for (Index i = 0; i < size && chosen.numCubes() <= most; ++i) {
       std::uint64_t number = 0;
       for (int k = 0; k < 3; ++k)
         number = number << num_bits | static_cast<std::uint32_t>(
                                           places[static_cast<std::size_t>(3 * i + k)]);
-      if (!seen.add(number))
-        continue;
-      columns.push_back(begin + i);
-      if (static_cast<Index>(columns.size()) > most)
-        return;
+      chosen.add(number, static_cast<std::uint32_t>(begin + i));
     }
   }
+  return std::min(begin, points.cols());
 }
 
 /** "Around" a point is in its cube and the 26 about that. A cube's side is the radius
@@ -230,45 +276,51 @@ evenlyThinned(const Eigen::Matrix3Xf& points, Index count)
 }
 
 std::vector<Index>
-evenChoice(const Eigen::Matrix3Xf& points, Index count)
+evenChoice(const Eigen::Matrix3Xf& points, Index count, ChoiceStream stream)
 {
-  std::vector<Index> order = allOf(points);
   if (points.cols() <= count)
-    return order;
-  // In a random order, the first point of a cube is a random one of it.
-  Random random(1, 3);
-  shuffle(order, random);
+    return allOf(points);
   const Eigen::Vector3f corner = points.rowwise().minCoeff();
   const double extent = double((points.rowwise().maxCoeff() - corner).maxCoeff());
-  const Eigen::Matrix3Xf placed = points(Eigen::all, order).colwise() - corner;
   double low = extent * smallest_cube, high = 2.0 * extent;
-  // A surface: the number of cubes goes with the square of their side.
-  double cube = extent / std::sqrt(static_cast<double>(count));
-  SeenNumbers seen(count + 1);
-  // Places in the order. At random, should there be no grid: all in one place, or too
-  // far apart.
-  std::vector<Index> places, best(static_cast<std::size_t>(count));
-  std::iota(best.begin(), best.end(), Index(0));
+  // On a surface the number of cubes goes with the square of their side, with a smaller
+  // power where most points have cubes of their own.
+  double cube = extent / std::sqrt(static_cast<double>(count)), exponent = -2.0;
+  double last_cube = 0.0, last_found = 0.0;
+  ChosenOfCubes chosen(count + 1, stream);
+  std::vector<Index> best;
   for (int trial = 0; trial < max_trials && low < high && std::isfinite(extent);
        ++trial) {
-    firstOfEachCube(placed, static_cast<float>(cube), count, seen, places);
-    const auto found = static_cast<Index>(places.size());
-    if (found > count) {
+    const Index num_seen =
+        chooseOfCubes(points, corner, static_cast<float>(cube), count, chosen);
+    const double found =
+        static_cast<double>(chosen.numCubes()) *
+        (static_cast<double>(points.cols()) / static_cast<double>(num_seen));
+    if (chosen.numCubes() > count) {
       low = cube;
     }
     else {
       high = cube;
-      best = places;
-      if (static_cast<double>(found) >= wanted_part * static_cast<double>(count))
+      best = chosen.points(points.cols());
+      if (found >= wanted_part * static_cast<double>(count))
         break;
     }
-    // Where too many are found, how many there are is not known.
+    if (trial > 0 && cube != last_cube)
+      exponent = std::clamp(
+          std::log(found / last_found) / std::log(cube / last_cube), -3.0, -0.1);
+    last_cube = cube;
+    last_found = found;
     const double guess =
-        found > count ? 1.3 * cube : cube * std::sqrt(double(found) / double(count));
+        cube * std::pow(best_part * static_cast<double>(count) / found, 1.0 / exponent);
     cube = guess > low && guess < high ? guess : std::sqrt(low * high);
   }
-  for (Index& place : best)
-    place = order[static_cast<std::size_t>(place)];
+  if (!best.empty())
+    return best;
+  // There is no grid: all points are in one place, or too far apart.
+  best = allOf(points);
+  Random random(1, 3);
+  shuffle(best, random);
+  best.resize(static_cast<std::size_t>(count));
   std::sort(best.begin(), best.end());
   return best;
 }

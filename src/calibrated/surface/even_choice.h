@@ -15,13 +15,20 @@ namespace bayesian_icp {
 void
 shuffle(std::vector<Eigen::Index>& columns, Random& random);
 
+/** \brief Whose points are chosen. The random choice depends on their numbers: with one
+ * stream for both clouds, the same rays of a standing sensor would be chosen from its
+ * two scans. */
+enum class ChoiceStream { Target, Source };
+
 /** \brief Columns of points that cover a cloud evenly, ascending: a random point of
  * each cube of a grid. The cubes are so large that nearly \p count of them hold points.
- * All columns if there are no more than \p count.
+ * Choices of one stream for several counts have many points in common. All columns if
+ * there are no more than \p count.
  * \param[in] points 3 x n, finite
- * \param[in] count most columns, at least 1 */
+ * \param[in] count most columns, at least 1
+ * \param[in] stream of the random choice */
 std::vector<Eigen::Index>
-evenChoice(const Eigen::Matrix3Xf& points, Eigen::Index count);
+evenChoice(const Eigen::Matrix3Xf& points, Eigen::Index count, ChoiceStream stream);
 
 /** \brief Columns of about \p count points, ascending. Each point is taken with a
  * probability that is inversely proportional to the number of points around it, but at

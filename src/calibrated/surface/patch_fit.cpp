@@ -1,9 +1,9 @@
 #include "calibrated/surface/patch_fit.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -68,11 +68,12 @@ struct PrincipalFrame {
 PrincipalFrame
 principalFrame(const PointRows& points)
 {
-  const PointRows centred = points.rowwise() - points.colwise().mean();
+  const Eigen::RowVector3d mean = points.colwise().mean();
   Matrix3d covariance;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
-      covariance(i, j) = covariance(j, i) = centred.col(i).dot(centred.col(j));
+      covariance(i, j) = covariance(j, i) =
+          ((points.col(i).array() - mean[i]) * (points.col(j).array() - mean[j])).sum();
   covariance /= static_cast<double>(points.rows());
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
   solver.computeDirect(covariance);
@@ -160,53 +161,138 @@ placeOfTerm(int degree, int power_of_y)
   return degree * (degree + 1) / 2 + power_of_y;
 }
 
-/** Normal equations of the regression of heights on the terms of the plane up to a
- * degree, 2 or 4. The plane is scaled to the unit disc. */
+/** Regression of heights on the terms of the plane up to a degree, 2 or 4. The plane is
+ * scaled to the unit disc. */
 template <int degree>
-struct Regression {
+class Regression {
+public:
   static constexpr int num_terms = placeOfTerm(degree + 1, 0);
-  Eigen::Matrix<double, num_terms, num_terms> normal_matrix;
-  Eigen::Matrix<double, num_terms, 1> moments;
+  using Terms = Eigen::Matrix<double, num_terms, 1>;
 
-  Regression(const PointRows& local, double radius)
+  /** \param[in] ridge added to the squares of the terms, for each point: a scan line
+   * leaves some terms undetermined */
+  Regression(const PointRows& local, double radius, double ridge)
   {
-    const ProductTerms terms = productTerms(local, radius);
-    moments = terms.template leftCols<num_terms>().transpose() * local.col(2);
-    fillNormalMatrix(terms.colwise().sum());
+    Terms moments;
+    fillNormalMatrix(sumOfProducts(local, radius, moments));
+    factor_.diagonal().array() += ridge * static_cast<double>(local.rows());
+    decompose();
+    reduced_moments_ = reduced(moments);
+  }
+
+  /** NaN if the points do not determine it. */
+  Terms
+  solution() const
+  {
+    return factor_.template triangularView<Eigen::Lower>().transpose().solve(
+        reduced_moments_);
+  }
+
+  /** Sum of the squared heights that the terms explain. */
+  double
+  explained() const
+  {
+    return reduced_moments_.squaredNorm();
+  }
+
+  /** Variance of a coefficient, for unit noise. */
+  double
+  varianceOf(int term) const
+  {
+    return reduced(Terms::Unit(term)).squaredNorm();
   }
 
 private:
   static constexpr int num_product_terms = placeOfTerm(2 * degree + 1, 0);
-  /** One point per row. */
-  using ProductTerms = Eigen::Matrix<double, Eigen::Dynamic, num_product_terms>;
+  using ProductTerms = Eigen::Matrix<double, num_product_terms, 1>;
 
-  /** Products of two terms: those up to twice the degree. */
+  /** Products of two terms: those up to twice the degree. Points are taken a few at a
+   * time, so that the loops over them are vectorised. */
   static ProductTerms
-  productTerms(const PointRows& local, double radius)
+  sumOfProducts(const PointRows& local, double radius, Terms& moments)
   {
-    ProductTerms terms(local.rows(), num_product_terms);
-    terms.col(0).setOnes();
-    terms.template middleCols<2>(1) = local.leftCols<2>() / radius;
-    const auto x = terms.col(1), y = terms.col(2);
-    for (int d = 2; d <= 2 * degree; ++d) {
-      const int place = placeOfTerm(d, 0), lower = placeOfTerm(d - 1, 0);
-      for (int k = 0; k < d; ++k)
-        terms.col(place + k) = x.cwiseProduct(terms.col(lower + k));
-      terms.col(place + d) = y.cwiseProduct(terms.col(place - 1));
+    constexpr Eigen::Index num_lanes = 4;
+    using Lanes = Eigen::Array<double, num_lanes, 1>;
+    std::array<Lanes, num_product_terms> terms, sums;
+    std::array<Lanes, num_terms> moment_sums;
+    sums.fill(Lanes::Zero());
+    moment_sums.fill(Lanes::Zero());
+    const double scale = 1.0 / radius;
+    for (Eigen::Index begin = 0; begin < local.rows(); begin += num_lanes) {
+      const Eigen::Index size = std::min(num_lanes, local.rows() - begin);
+      Lanes z = Lanes::Zero();
+      if (size < num_lanes)
+        terms[0] = terms[1] = terms[2] = z;
+      terms[0].head(size).setOnes();
+      terms[1].head(size) = local.col(0).segment(begin, size) * scale;
+      terms[2].head(size) = local.col(1).segment(begin, size) * scale;
+      z.head(size) = local.col(2).segment(begin, size);
+      const Lanes x = terms[1], y = terms[2];
+      for (int d = 2; d <= 2 * degree; ++d) {
+        const int place = placeOfTerm(d, 0), lower = placeOfTerm(d - 1, 0);
+        for (int k = 0; k < d; ++k)
+          at(terms, place + k) = x * at(terms, lower + k);
+        at(terms, place + d) = y * at(terms, place - 1);
+      }
+      for (int k = 0; k < num_product_terms; ++k)
+        at(sums, k) += at(terms, k);
+      for (int k = 0; k < num_terms; ++k)
+        at(moment_sums, k) += at(terms, k) * z;
     }
-    return terms;
+    for (int k = 0; k < num_terms; ++k)
+      moments[k] = at(moment_sums, k).sum();
+    ProductTerms totals;
+    for (int k = 0; k < num_product_terms; ++k)
+      totals[k] = at(sums, k).sum();
+    return totals;
+  }
+
+  template <typename Array>
+  static auto&
+  at(Array& array, int place)
+  {
+    return array[static_cast<std::size_t>(place)];
   }
 
   void
-  fillNormalMatrix(const Eigen::Matrix<double, 1, num_product_terms>& sums)
+  fillNormalMatrix(const ProductTerms& sums)
   {
     for (int p = 0; p <= degree; ++p)
       for (int q = 0; q <= degree; ++q)
         for (int j = 0; j <= p; ++j)
           for (int k = 0; k <= q; ++k)
-            normal_matrix(placeOfTerm(p, j), placeOfTerm(q, k)) =
+            factor_(placeOfTerm(p, j), placeOfTerm(q, k)) =
                 sums[placeOfTerm(p + q, j + k)];
   }
+
+  /** Cholesky's factor, in the lower triangle. If the terms are not independent, a
+   * pivot makes all that follows NaN or infinite, variances, too. */
+  void
+  decompose()
+  {
+    for (int k = 0; k < num_terms; ++k) {
+      const int below = num_terms - k - 1;
+      factor_(k, k) = std::sqrt(factor_(k, k));
+      factor_.col(k).tail(below) /= factor_(k, k);
+      for (int j = k + 1; j < num_terms; ++j)
+        factor_.col(j).tail(num_terms - j) -=
+            factor_(j, k) * factor_.col(k).tail(num_terms - j);
+    }
+  }
+
+  /** L^-1 x. */
+  Terms
+  reduced(Terms x) const
+  {
+    for (int k = 0; k < num_terms; ++k) {
+      x[k] /= factor_(k, k);
+      x.tail(num_terms - k - 1) -= x[k] * factor_.col(k).tail(num_terms - k - 1);
+    }
+    return x;
+  }
+
+  Eigen::Matrix<double, num_terms, num_terms> factor_;
+  Terms reduced_moments_;
 };
 
 /** F statistic of the quartic's extra terms. */
@@ -216,18 +302,12 @@ misfit(const PointRows& local,
        double squared_heights,
        double quadric_rss)
 {
-  const Eigen::Index num_points = local.rows();
-  Regression<4> quartic(local, radius);
-  // A scan line leaves some terms undetermined.
-  quartic.normal_matrix.diagonal().array() += 1e-9 * static_cast<double>(num_points);
-  const Eigen::Matrix<double, num_quartic_terms, 1> solution =
-      quartic.normal_matrix.ldlt().solve(quartic.moments);
-  constexpr double least_rss = 1e-18;
-  const double rss =
-      std::max(least_rss, squared_heights - solution.dot(quartic.moments));
+  constexpr double ridge = 1e-9, least_rss = 1e-18;
+  const Regression<4> quartic(local, radius, ridge);
+  const double rss = std::max(least_rss, squared_heights - quartic.explained());
   constexpr double extra_terms = num_quartic_terms - num_quadric_terms;
   return (quadric_rss - rss) / extra_terms /
-         (rss / static_cast<double>(num_points - num_quartic_terms));
+         (rss / static_cast<double>(local.rows() - num_quartic_terms));
 }
 
 /** Make a patch the quadric of the neighbours in its frame, if they lie on one. */
@@ -237,28 +317,28 @@ fitQuadric(const PointRows& local,
            const SurfaceModelOptions& options,
            SurfacePatch& patch)
 {
-  const Eigen::Index num_points = local.rows();
-  const Regression<2> quadric(local, patch.radius);
-  const auto factors = quadric.normal_matrix.ldlt();
-  const Vector6d solution = factors.solve(quadric.moments);
-  const double slope_variance =
-      static_cast<double>(num_points) * std::max(factors.solve(Vector6d::Unit(1))[1],
-                                                 factors.solve(Vector6d::Unit(2))[2]);
-  const double squared_heights = local.col(2).squaredNorm();
-  const double rss = std::max(0.0, squared_heights - solution.dot(quadric.moments));
-  const double sigma =
-      std::sqrt(rss / static_cast<double>(num_points - num_quadric_terms));
   const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
+  if (!(aspect >= min_aspect &&
+        centroid_offset < options.max_centroid_offset * patch.radius))
+    return;
+  const auto num_points = static_cast<double>(local.rows());
+  const Regression<2> quadric(local, patch.radius, 0.0);
+  const double squared_heights = local.col(2).squaredNorm();
+  const double rss = std::max(0.0, squared_heights - quadric.explained());
+  const double sigma = std::sqrt(rss / (num_points - num_quadric_terms));
+  const double slope_variance =
+      num_points * std::max(quadric.varianceOf(1), quadric.varianceOf(2));
   // The tests that cost as much as the fit are last.
   const bool is_quadric =
-      solution.allFinite() && aspect >= min_aspect &&
       slope_variance < max_slope_variance &&
-      centroid_offset < options.max_centroid_offset * patch.radius &&
       patch.radius > options.min_radius_to_noise * sigma &&
       (sigma < negligible_misfit * patch.radius ||
        misfit(local, patch.radius, squared_heights, rss) < options.max_misfit) &&
       evennessOf(local) > min_evenness;
   if (!is_quadric)
+    return;
+  const Vector6d solution = quadric.solution();
+  if (!solution.allFinite())
     return;
   const double r = 1.0 / patch.radius;
   patch.quadric = {solution[0],
@@ -306,7 +386,8 @@ gatherNeighbors(const PointNeighbors& cloud,
   cloud.find(
       point, static_cast<std::size_t>(ball_to_neighborhood * count), workspace.nearest);
   const auto& indices = workspace.nearest.indices;
-  PointRows ball(static_cast<Eigen::Index>(indices.size()), 3);
+  PointRows& ball = workspace.ball;
+  ball.resize(static_cast<Eigen::Index>(indices.size()), 3);
   for (Eigen::Index i = 0; i < ball.rows(); ++i)
     ball.row(i) = (cloud.points().col(indices[static_cast<std::size_t>(i)]) - point)
                       .cast<double>()

@@ -21,7 +21,7 @@ struct PatchFitWorkspace {
   NeighborList nearest;
   std::vector<double> ordered;
   std::vector<std::pair<double, double>> places;
-  PointRows neighbors;
+  PointRows ball, neighbors;
 };
 
 /** \brief Least-squares quadric of the neighbourhood of \p point, or its plane if no

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <vector>
 
 namespace bayesian_icp {
@@ -24,41 +23,17 @@ namespace {
  * Patches that are fitted to its noise would hold motions along it. */
 constexpr double min_width_to_noise = 3.0;
 
-/** The \p columns of different points, each the first of its kind, in their order. */
-std::vector<Index>
-distinctColumns(const Matrix3Xd& points, const std::vector<Index>& columns)
-{
-  const auto hashOf = [&points](Index column) {
-    std::size_t hash = 0; // Zeros of both signs are equal, and so are their hashes.
-    for (int k = 0; k < 3; ++k)
-      hash = (hash ^ std::hash<double>()(points(k, column))) * 0x9e3779b97f4a7c15;
-    return hash ^ hash >> 32;
-  };
-  std::size_t size = 1;
-  while (size < 2 * columns.size())
-    size *= 2;
-  constexpr Index none = -1;
-  std::vector<Index> slots(size, none), distinct;
-  for (const Index column : columns) {
-    std::size_t slot = hashOf(column) & (size - 1);
-    while (slots[slot] != none && points.col(slots[slot]) != points.col(column))
-      slot = (slot + 1) & (size - 1);
-    if (slots[slot] != none)
-      continue;
-    slots[slot] = column;
-    distinct.push_back(column);
-  }
-  return distinct;
-}
-
-/** Standard deviation of the points across the line that fits them best, where they are
- * widest [m]. */
+/** Standard deviation of the patches' points across the line that fits them best, where
+ * they are widest [m]. */
 double
-widthOf(const Matrix3Xd& points)
+widthOf(const SurfaceModel& model)
 {
-  const Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  Matrix3Xd centres(3, static_cast<Index>(model.patches().size()));
+  for (Index i = 0; i < centres.cols(); ++i)
+    centres.col(i) = model.patches()[static_cast<std::size_t>(i)].centre;
+  centres.colwise() -= centres.rowwise().mean().eval();
   const Eigen::Matrix3d covariance =
-      centred * centred.transpose() / static_cast<double>(points.cols());
+      centres * centres.transpose() / static_cast<double>(centres.cols());
   const double variance =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
           .eigenvalues()[1];
@@ -67,7 +42,7 @@ widthOf(const Matrix3Xd& points)
 
 /** Why distances to the target's surface mean nothing; empty if they do. */
 std::string
-complaintAbout(const SurfaceModel& model, const Matrix3Xd& points)
+complaintAbout(const SurfaceModel& model)
 {
   if (!(model.usableFraction() > 0.0))
     return "the target has no usable surface: its points are too noisy, too sparse or "
@@ -75,7 +50,7 @@ complaintAbout(const SurfaceModel& model, const Matrix3Xd& points)
   if (!(model.medianSigma() > 0.0))
     return "the target's points lie on their surface exactly: without noise there is "
            "no scale";
-  const double width = widthOf(points);
+  const double width = widthOf(model);
   if (width < min_width_to_noise * model.medianSigma())
     return formatted("the target has no surface: it is a line to within %.2g m, %.1f "
                      "times its noise (at least %.0f)",
@@ -102,15 +77,14 @@ prepareSurface(const Matrix3Xd& points, int num_threads)
                           "the target has " + std::to_string(finite.size()) +
                               " finite points, but preset calibrated needs " +
                               std::to_string(min_calibrated_points));
-  const Matrix3Xd distinct_points = points(Eigen::all, distinctColumns(points, finite));
-  if (distinct_points.cols() < min_calibrated_points)
+  PreparedSurface surface = {
+      SurfaceModel(points, finite, SurfaceModelOptions(), num_threads), {}, {}};
+  if (surface.model.patches().size() < std::size_t(min_calibrated_points))
     return withoutSurface(Status::TooFewCorrespondences,
                           "the target has no surface: only " +
-                              std::to_string(distinct_points.cols()) +
+                              std::to_string(surface.model.patches().size()) +
                               " of its points differ");
-  PreparedSurface surface = {
-      SurfaceModel(distinct_points, SurfaceModelOptions(), num_threads), {}, {}};
-  surface.complaint = complaintAbout(surface.model, distinct_points);
+  surface.complaint = complaintAbout(surface.model);
   if (!surface.complaint.empty())
     surface.status = Status::TooFewCorrespondences;
   return surface;

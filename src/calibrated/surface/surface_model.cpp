@@ -5,7 +5,8 @@
 #include "search/finite_columns.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace bayesian_icp {
 
@@ -19,22 +20,84 @@ namespace {
 /** Points of neighbourhoods, for each patch. */
 constexpr Index points_to_patches = 4;
 
+/** Keeps the first of equal points, in their order. */
+void
+removeRepeated(Matrix3Xf& points)
+{
+  const auto hashOf = [&points](Index column) {
+    std::uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float coordinate = points(k, column) + 0.f; // zeros of both signs are equal
+      std::uint32_t bits;
+      std::memcpy(&bits, &coordinate, sizeof(bits));
+      hash = (hash ^ bits) * 0x9e3779b97f4a7c15;
+    }
+    return hash ^ hash >> 32;
+  };
+  std::size_t size = 1;
+  while (size < 2 * static_cast<std::size_t>(points.cols()))
+    size *= 2;
+  constexpr std::uint32_t none = 0xffffffff;
+  std::vector<std::uint32_t> slots(size, none);
+  Index count = 0;
+  for (Index i = 0; i < points.cols(); ++i) {
+    std::size_t slot = hashOf(i) & (size - 1);
+    while (slots[slot] != none && points.col(slots[slot]) != points.col(i))
+      slot = (slot + 1) & (size - 1);
+    if (slots[slot] != none)
+      continue;
+    slots[slot] = static_cast<std::uint32_t>(count);
+    points.col(count++) = points.col(i);
+  }
+  points.conservativeResize(3, count);
+}
+
+/** \p columns of points, relative to \p origin. */
+Matrix3Xf
+relativeTo(const Vector3d& origin,
+           const Matrix3Xd& points,
+           const std::vector<Index>& columns)
+{
+  Matrix3Xf relative(3, static_cast<Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    relative.col(static_cast<Index>(i)) =
+        (points.col(columns[i]) - origin).cast<float>();
+  return relative;
+}
+
+/** Centroid of \p columns of points. */
+Vector3d
+centroidOf(const Matrix3Xd& points, const std::vector<Index>& columns)
+{
+  Vector3d sum = Vector3d::Zero();
+  for (const Index column : columns)
+    sum += points.col(column);
+  return sum / static_cast<double>(columns.size());
+}
+
 } // namespace
 
 SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
                            const SurfaceModelOptions& options,
                            int num_threads)
+: SurfaceModel(target_points, finiteColumns(target_points), options, num_threads)
+{}
+
+SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
+                           const std::vector<Index>& columns,
+                           const SurfaceModelOptions& options,
+                           int num_threads)
 : origin_(Vector3d::Zero())
 , tree_(Matrix3Xf(3, 0))
 {
-  Matrix3Xd finite = target_points(Eigen::all, finiteColumns(target_points));
-  if (finite.cols() == 0)
+  if (columns.empty())
     return;
-  origin_ = finite.rowwise().mean();
-  finite.colwise() -= origin_;
-  const Matrix3Xf all = finite.cast<float>();
-  const Matrix3Xf points = all(
-      Eigen::all, evenlyThinned(all, points_to_patches * Index(options.max_patches)));
+  origin_ = centroidOf(target_points, columns);
+  Matrix3Xf points = relativeTo(origin_, target_points, columns);
+  removeRepeated(points);
+  const Index max_points = points_to_patches * Index(options.max_patches);
+  if (points.cols() > max_points)
+    points = points(Eigen::all, evenlyThinned(points, max_points)).eval();
   SurfaceBuilder builder(points, options, num_threads);
   builder.fitPatches();
   builder.poolNoise();

@@ -119,12 +119,19 @@ struct SurfaceModelOptions {
  * every number of threads. */
 class SurfaceModel {
 public:
-  /** \param[in] target_points 3 x n [m]; points that are not finite are left out
+  /** \param[in] target_points 3 x n [m]; points that are not finite, or that repeat
+   * another one, are left out
    * \param[in] options of the patches
    * \param[in] num_threads 0: as OpenMP would */
   explicit SurfaceModel(const Eigen::Matrix3Xd& target_points,
                         const SurfaceModelOptions& options = SurfaceModelOptions(),
                         int num_threads = 0);
+
+  /** \brief The same of some \p columns of the points, all of them finite. */
+  SurfaceModel(const Eigen::Matrix3Xd& target_points,
+               const std::vector<Eigen::Index>& columns,
+               const SurfaceModelOptions& options,
+               int num_threads);
 
   /** \brief Origin of the model's frame, in the target frame [m]. */
   const Eigen::Vector3d&

@@ -80,6 +80,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setNumberOfThre
 #endif
   options_.chains.num_threads = static_cast<int>(nr_threads);
   this->own_tree_->seeded->num_threads = options_.chains.num_threads;
+  this->own_estimation_->num_threads = options_.chains.num_threads;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -113,21 +114,6 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
 template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
-    PointCloudSource& output, const Matrix4& guess)
-{
-  // Others may search in a ready tree meanwhile.
-  const bool may_remember = tree_ == this->own_tree_ && !force_no_recompute_;
-  if (may_remember)
-    this->own_tree_->seeded->beginAtLastAnswers(this->input_->size());
-  const bool is_finished = runInterruptibleIcp(output, guess);
-  if (may_remember)
-    this->own_tree_->seeded->beginAtLastAnswers(0);
-  return (is_finished);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-bool
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runInterruptibleIcp(
     PointCloudSource& output, const Matrix4& guess)
 {
   if (!progress_callback_) {

@@ -216,7 +216,11 @@ public:
   using Base::getClassName;
   using Base::getFitnessScore;
 
-  CheckedIterativeClosestPoint() { tree_ = own_tree_; }
+  CheckedIterativeClosestPoint()
+  {
+    tree_ = own_tree_;
+    correspondence_estimation_ = own_estimation_;
+  }
 
   static void*
   operator new(std::size_t size)
@@ -351,6 +355,10 @@ protected:
   /** The search tree of the target, unless the user installs another one. */
   const shared_ptr<SeededKdTree<PointTarget>> own_tree_ =
       pcl::make_shared<SeededKdTree<PointTarget>>();
+
+  /** The correspondence estimation, unless the user installs another one. */
+  const shared_ptr<SeededEstimation<PointSource, PointTarget, Scalar>> own_estimation_ =
+      pcl::make_shared<SeededEstimation<PointSource, PointTarget, Scalar>>();
 
 private:
   /** Says why a plug-in is not taken.
@@ -549,8 +557,10 @@ CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::hasDefaultEstima
     const
 {
   const auto& estimation = *correspondence_estimation_;
-  if (typeid(estimation) !=
-      typeid(registration::CorrespondenceEstimation<PointSource, PointTarget, Scalar>))
+  if (correspondence_estimation_ != own_estimation_ &&
+      typeid(estimation) !=
+          typeid(
+              registration::CorrespondenceEstimation<PointSource, PointTarget, Scalar>))
     return (false);
   return (isDefaultTree(*tree_) &&
           (!use_reciprocal_correspondence_ || isDefaultTree(*tree_reciprocal_)));

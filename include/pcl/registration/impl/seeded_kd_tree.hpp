@@ -1,15 +1,20 @@
 /** \file
- * \brief PCL's search tree, answered by this library's one.
+ * \brief PCL's search tree and its correspondence estimation, answered by this
+ * library's tree.
  */
 #pragma once
 
 #include <bayesian_icp/kd_tree.h>
 
 #include <pcl/kdtree/kdtree_flann.h>
+#include <pcl/registration/correspondence_estimation.h>
 #include <pcl/registration/impl/bayesian_icp_search.hpp>
 #include <pcl/search/kdtree.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -82,7 +87,8 @@ public:
                  std::vector<float>& squared_distances) const override
   {
     if (k == 1 && is_plain_) {
-      const Tree::Neighbor nearest = nearestTo(point);
+      const Tree::Neighbor nearest = builtTree()->nearest(
+          point.getVector3fMap(), std::numeric_limits<float>::max());
       // If none is found, FLANN asserts that the point is finite.
       if (nearest.index != Tree::none && !nearest.is_tied) {
         indices.assign(1, static_cast<index_t>(nearest.index));
@@ -90,6 +96,16 @@ public:
         return (1);
       }
     }
+    return (searchFlann(point, k, indices, squared_distances));
+  }
+
+  /** FLANN's own answer. */
+  int
+  searchFlann(const PointT& point,
+              unsigned int k,
+              Indices& indices,
+              std::vector<float>& squared_distances) const
+  {
     buildFlann();
     return (Base::nearestKSearch(point, k, indices, squared_distances));
   }
@@ -113,15 +129,6 @@ public:
     return (is_plain_ ? builtTree() : nullptr);
   }
 
-  /** From now on the search for a point begins at the last answer for what was at the
-   * same address. That never changes an answer.
-   * \param[in] num_points how many there are, one after the other; 0: no more */
-  void
-  beginAtLastAnswers(std::size_t num_points)
-  {
-    last_answers_ = std::vector<std::atomic<std::uint32_t>>(num_points);
-  }
-
 private:
   /** To the last bit: points that are not finite are not equal to themselves. */
   static bool
@@ -131,22 +138,6 @@ private:
     for (std::size_t i = 0; are_same && i < cloud.size(); ++i)
       are_same = std::memcmp(cloud[i].data, points.data() + 3 * i, 12) == 0;
     return (are_same);
-  }
-
-  Tree::Neighbor
-  nearestTo(const PointT& point) const
-  {
-    constexpr float no_gate = std::numeric_limits<float>::max();
-    const Tree& tree = *builtTree();
-    if (last_answers_.empty())
-      return (tree.nearest(point.getVector3fMap(), no_gate));
-    // Each point of an array has a slot of its own.
-    const std::size_t slot = reinterpret_cast<std::uintptr_t>(&point) / sizeof(PointT);
-    auto& last_answer = last_answers_[slot % last_answers_.size()];
-    const auto nearest = tree.nearest(
-        point.getVector3fMap(), no_gate, last_answer.load(std::memory_order_relaxed));
-    last_answer.store(nearest.index, std::memory_order_relaxed);
-    return (nearest);
   }
 
   const Eigen::Matrix3Xf&
@@ -206,7 +197,6 @@ private:
   mutable Eigen::Matrix3Xf points_;
   mutable std::shared_ptr<const Tree> tree_;
   mutable std::atomic<bool> is_tree_built_{false};
-  mutable std::vector<std::atomic<std::uint32_t>> last_answers_;
   mutable std::mutex building_;
   /** Without a cloud there is nothing to build. */
   mutable std::atomic<bool> is_flann_built_{true};
@@ -221,6 +211,113 @@ struct SeededKdTree : search::KdTree<PointT> {
   const shared_ptr<SeededFlann<PointT>> seeded =
       pcl::make_shared<SeededFlann<PointT>>();
 };
+
+/** PCL's correspondence estimation, which asks this library's tree for all pairs at
+ * once, by several threads. The search for a point begins at its last answer. Pairs are
+ * PCL's to the last bit. Any other tree is asked as PCL does. */
+template <typename PointSource, typename PointTarget, typename Scalar>
+class SeededEstimation
+: public registration::CorrespondenceEstimation<PointSource, PointTarget, Scalar> {
+public:
+  using Base = registration::CorrespondenceEstimation<PointSource, PointTarget, Scalar>;
+  using BasePtr = typename registration::
+      CorrespondenceEstimationBase<PointSource, PointTarget, Scalar>::Ptr;
+
+  /** 0: as OpenMP would. No pair depends on it. */
+  int num_threads = 0;
+
+  void
+  determineCorrespondences(
+      Correspondences& correspondences,
+      double max_distance = std::numeric_limits<double>::max()) override
+  {
+    const auto* own = dynamic_cast<const SeededKdTree<PointTarget>*>(tree_.get());
+    if (!own) {
+      Base::determineCorrespondences(correspondences, max_distance);
+      return;
+    }
+    if (!this->initCompute()) // which gives the target to the tree, if it is a new one
+      return;
+    const auto tree = own->seeded->get();
+    if (!tree) {
+      this->deinitCompute();
+      Base::determineCorrespondences(correspondences, max_distance);
+      return;
+    }
+    last_answers_.resize(indices_->size(), bayesian_icp::KdTree::none);
+    correspondences.resize(indices_->size());
+    bayesian_icp::searchInBlocks(
+        indices_->size(), num_threads, [&](std::size_t begin, std::size_t end) {
+          findPairs(begin, end, *tree, *own->seeded, max_distance, correspondences);
+        });
+    correspondences.erase(std::remove_if(correspondences.begin(),
+                                         correspondences.end(),
+                                         [](const Correspondence& pair) {
+                                           return (pair.index_match == no_match);
+                                         }),
+                          correspondences.end());
+    this->deinitCompute();
+  }
+
+  BasePtr
+  clone() const override
+  {
+    return (BasePtr(new SeededEstimation(*this)));
+  }
+
+protected:
+  using Base::indices_;
+  using Base::input_;
+  using Base::tree_;
+
+private:
+  static constexpr index_t no_match = static_cast<index_t>(-1);
+
+  /** The pairs of some of the indices; index_match is no_match where there is none. */
+  void
+  findPairs(std::size_t begin,
+            std::size_t end,
+            const bayesian_icp::KdTree& tree,
+            const SeededFlann<PointTarget>& flann,
+            double max_distance,
+            Correspondences& pairs)
+  {
+    constexpr float max_float = std::numeric_limits<float>::max();
+    const double max_squared_distance = max_distance * max_distance;
+    // Rounded up; the exact gate is below.
+    const float gate =
+        max_squared_distance < max_float
+            ? std::nextafter(static_cast<float>(max_squared_distance), max_float)
+            : max_float;
+    PointTarget query;
+    Indices found(1);
+    std::vector<float> squared_distance(1);
+    for (std::size_t i = begin; i < end; ++i) {
+      const index_t index = (*indices_)[i];
+      const PointSource& point = (*input_)[static_cast<std::size_t>(index)];
+      const auto nearest = tree.nearest(point.getVector3fMap(), gate, last_answers_[i]);
+      pairs[i] = Correspondence(index, no_match, 0.f);
+      if (nearest.index == bayesian_icp::KdTree::none)
+        continue;
+      last_answers_[i] = nearest.index;
+      if (nearest.squared_distance > max_squared_distance)
+        continue;
+      found[0] = static_cast<index_t>(nearest.index);
+      squared_distance[0] = nearest.squared_distance;
+      if (nearest.is_tied) {
+        copyPoint(point, query);
+        flann.searchFlann(query, 1, found, squared_distance);
+      }
+      pairs[i] = Correspondence(index, found[0], squared_distance[0]);
+    }
+  }
+
+  /** One for each of the indices. */
+  std::vector<std::uint32_t> last_answers_;
+};
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+constexpr index_t SeededEstimation<PointSource, PointTarget, Scalar>::no_match;
 
 } // namespace bayesian_icp_detail
 } // namespace pcl
