@@ -133,7 +133,7 @@ TEST(KdTree, SeveralThreadsMaySearchAtOnce)
 
 TEST(SearchInBlocks, AsksEachQueryOnceWhateverTheNumberOfThreads)
 {
-  for (const std::size_t count : {0, 1, 1000, 30001})
+  for (const std::size_t count : {0U, 1U, 1000U, 30001U})
     for (const int num_threads : {0, 1, 3}) {
       std::vector<std::atomic<int>> times(count);
       searchInBlocks(count, num_threads, [&](std::size_t begin, std::size_t end) {
