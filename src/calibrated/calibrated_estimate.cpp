@@ -61,12 +61,17 @@ constexpr int information_degrees_of_freedom = 20;
 
 /** Where the data leave a motion to the prior, the mode moves to the posterior mean if
  * that is further away than this many prior standard deviations, at most so many times.
- * It stays where it is if the mean is further away than this part of the source's root
- * mean square radius (the points meet another side of the body there, or its end), or
- * if less than half of the active points would stay active. */
-constexpr double min_distance_of_mean = 0.5, max_distance_to_radius = 0.6;
-constexpr double min_support_after_move = 0.5;
+ * It stays where it is if less than half of the active points would stay active. */
+constexpr double min_distance_of_mean = 0.5, min_support_after_move = 0.5;
 constexpr int max_moves = 2;
+
+/** Further away than this part of the source's root mean square radius, the points may
+ * meet another side of the body, or its end. The mode moves there only if the mean is
+ * so many prior standard deviations away (the fit has slid to where views overlap
+ * most), and the points that have a patch there miss it by at most so many times as
+ * much. */
+constexpr double max_distance_to_radius = 0.6;
+constexpr double min_distance_of_far_mean = 1.5, max_misfit_after_far_move = 1.15;
 
 /** Two ends of starts, and which is the mode. */
 struct Ends {
@@ -322,15 +327,40 @@ estimateAt(const SurfaceScorer& scorer,
   return e;
 }
 
+/** Of the mean from the mode, in prior standard deviations. */
+double
+priorDistanceOfMean(const CalibratedEstimate& e)
+{
+  return std::sqrt(e.mean.dot(e.prior.precision * e.mean));
+}
+
 /** Whether the mode has to move to the mean: along the way the surface may bend, and
  * another mode may be near. */
 bool
 isFarFromMean(const CalibratedEstimate& e)
 {
-  const double to_prior = std::sqrt(e.mean.dot(e.prior.precision * e.mean));
+  return e.keep.minCoeff() == 0.0 && priorDistanceOfMean(e) > min_distance_of_mean;
+}
+
+/** Mean of the cappedResiduals() of points with a patch. */
+double
+misfitOf(const Eigen::VectorXd& residuals)
+{
+  const auto has_patch = !residuals.array().isNaN();
+  return has_patch.select(residuals.array(), 0.0).sum() /
+         static_cast<double>(has_patch.count());
+}
+
+/** Whether the mode may be \p next, about the mean. */
+bool
+mayMoveTo(const RobustFit& next, const CalibratedEstimate& e)
+{
   const double length = std::sqrt(e.mean.dot(e.displacement_metric * e.mean));
-  return e.keep.minCoeff() == 0.0 && to_prior > min_distance_of_mean &&
-         length < max_distance_to_radius * radiusOf(e.displacement_metric);
+  if (length < max_distance_to_radius * radiusOf(e.displacement_metric))
+    return true;
+  return priorDistanceOfMean(e) > min_distance_of_far_mean &&
+         misfitOf(next.residuals) <
+             max_misfit_after_far_move * misfitOf(cappedResiduals(e.scores));
 }
 
 /** Precision that holds a pose along the free directions, to within \p tolerance [m].
@@ -362,9 +392,11 @@ moveToMean(const SurfaceScorer& scorer,
                      prior,
                      movedBy(e.mean, e.centre, e.mode),
                      last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
+  e.num_queries += scorer.sourcePoints().cols() * mode.num_evaluations;
+  if (!mayMoveTo(mode, e))
+    return false;
   CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
-  next.num_queries +=
-      e.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
+  next.num_queries += e.num_queries;
   const bool moves =
       next.scores.num_active >= min_support_after_move * e.scores.num_active;
   if (moves)
