@@ -66,12 +66,13 @@ constexpr double min_distance_of_mean = 0.5, min_support_after_move = 0.5;
 constexpr int max_moves = 2;
 
 /** Further away than this part of the source's root mean square radius, the points may
- * meet another side of the body, or its end. The mode moves there only if the mean is
- * so many prior standard deviations away (the fit has slid to where views overlap
- * most), and the points that have a patch there miss it by at most so many times as
- * much. */
+ * meet another side of the body, or its end. The mode moves there only if the fit may
+ * have slid to where the views overlap most: the mean is so many prior standard
+ * deviations away, a part of the points has no patch at the mode either, and those that
+ * have one at the mean miss it by at most so many times as much. */
 constexpr double max_distance_to_radius = 0.6;
-constexpr double min_distance_of_far_mean = 1.5, max_misfit_after_far_move = 1.15;
+constexpr double min_distance_of_far_mean = 1.5;
+constexpr double max_overlap_before_far_move = 0.9, max_misfit_after_far_move = 1.15;
 
 /** Two ends of starts, and which is the mode. */
 struct Ends {
@@ -342,13 +343,21 @@ isFarFromMean(const CalibratedEstimate& e)
   return e.keep.minCoeff() == 0.0 && priorDistanceOfMean(e) > min_distance_of_mean;
 }
 
-/** Mean of the cappedResiduals() of points with a patch. */
-double
-misfitOf(const Eigen::VectorXd& residuals)
+/** The points that have a patch. */
+struct Contacts {
+  /** Of all points. */
+  double share;
+  /** Mean of their cappedResiduals(). */
+  double misfit;
+};
+
+Contacts
+contactsOf(const Eigen::VectorXd& capped_residuals)
 {
-  const auto has_patch = !residuals.array().isNaN();
-  return has_patch.select(residuals.array(), 0.0).sum() /
-         static_cast<double>(has_patch.count());
+  const auto has_patch = !capped_residuals.array().isNaN();
+  const auto count = static_cast<double>(has_patch.count());
+  return {count / static_cast<double>(capped_residuals.size()),
+          has_patch.select(capped_residuals.array(), 0.0).sum() / count};
 }
 
 /** Whether the mode may be \p next, about the mean. */
@@ -358,9 +367,11 @@ mayMoveTo(const RobustFit& next, const CalibratedEstimate& e)
   const double length = std::sqrt(e.mean.dot(e.displacement_metric * e.mean));
   if (length < max_distance_to_radius * radiusOf(e.displacement_metric))
     return true;
+  const Contacts here = contactsOf(cappedResiduals(e.scores));
+  const Contacts there = contactsOf(next.residuals);
   return priorDistanceOfMean(e) > min_distance_of_far_mean &&
-         misfitOf(next.residuals) <
-             max_misfit_after_far_move * misfitOf(cappedResiduals(e.scores));
+         here.share < max_overlap_before_far_move &&
+         there.misfit < max_misfit_after_far_move * here.misfit;
 }
 
 /** Precision that holds a pose along the free directions, to within \p tolerance [m].
