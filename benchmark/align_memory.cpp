@@ -1,6 +1,7 @@
 // Peak memory of one align() in a process of its own, from /proc/self/status:
 //
-//   align_memory {none|icp|gicp|exact} source.pcd target.pcd [T_init.txt]
+//   align_memory {none|icp|gicp|paper|exact|calibrated} source.pcd target.pcd
+//   [T_init.txt]
 //
 // `none` only reads the clouds: what to subtract. Prints kB (VmHWM).
 #include "benchmark_clouds.h"
@@ -11,11 +12,17 @@
 
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <string>
 
 namespace {
 
 using Point = pcl::PointXYZ;
+
+const std::map<std::string, bayesian_icp::Preset> presets = {
+    {"paper", bayesian_icp::Preset::Paper},
+    {"exact", bayesian_icp::Preset::Exact},
+    {"calibrated", bayesian_icp::Preset::Calibrated}};
 
 template <typename Registration>
 void
@@ -46,9 +53,9 @@ main(int argc, char** argv)
     align(pcl::IterativeClosestPoint<Point, Point>(), argc, argv);
   else if (method == "gicp")
     align(pcl::GeneralizedIterativeClosestPoint<Point, Point>(), argc, argv);
-  else if (method == "exact") {
+  else if (presets.count(method) > 0) {
     pcl::BayesianIterativeClosestPoint<Point, Point> icp;
-    icp.setPreset(bayesian_icp::Preset::Exact);
+    icp.setPreset(presets.at(method));
     align(icp, argc, argv);
   }
   else if (method == "none") {
@@ -57,7 +64,8 @@ main(int argc, char** argv)
   }
   else {
     std::fprintf(stderr,
-                 "Usage: %s {none|icp|gicp|exact} source.pcd target.pcd [T_init.txt]\n",
+                 "Usage: %s {none|icp|gicp|paper|exact|calibrated} source.pcd "
+                 "target.pcd [T_init.txt]\n",
                  argv[0]);
     return 2;
   }

@@ -78,7 +78,12 @@ public:
   {
     const auto row = static_cast<int>(errors_.size());
     errors_.push_back(error);
+    common_.emplace_back(Vector6d::Zero());
     for (const auto& [noise, factor] : terms) {
+      if (noise.of == Noise::Of::Common) {
+        common_.back() = factor.transpose() * direction;
+        continue;
+      }
       const int column =
           6 *
           columns_.try_emplace(noise, static_cast<int>(columns_.size())).first->second;
@@ -102,13 +107,24 @@ public:
     const Eigen::SparseMatrix<double> covariance = factors * factors.transpose();
     const Eigen::Map<const Eigen::VectorXd> errors(errors_.data(), size());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(covariance);
-    return errors.dot(solver.solve(errors));
+    // The common noise would fill the covariance, so it is added by Woodbury's
+    // identity.
+    Eigen::MatrixXd common(size(), 6);
+    for (int row = 0; row < size(); ++row)
+      common.row(row) = common_[static_cast<std::size_t>(row)];
+    const Eigen::VectorXd weighted = solver.solve(errors);
+    const Vector6d seen = common.transpose() * weighted;
+    const Matrix6d rest =
+        Matrix6d::Identity() + common.transpose() * solver.solve(common);
+    return errors.dot(weighted) - seen.dot(rest.ldlt().solve(seen));
   }
 
 private:
   std::vector<double> errors_;
   std::map<Noise, int> columns_;
   std::vector<Eigen::Triplet<double>> factors_;
+  /** Those of the noise that all edges have in common. */
+  std::vector<Vector6d> common_;
 };
 
 CycleStatistics

@@ -85,7 +85,7 @@ struct JointClosure {
 };
 
 /** \brief Test all cycles at once, but for those that are sums of shorter ones.
- * \param[in] edges with shares below 1
+ * \param[in] edges whose own noise is above 0
  * \param[in] cycles closedCycles() of them */
 JointClosure
 jointClosureOf(const std::vector<GraphEdge>& edges,

@@ -94,8 +94,9 @@ addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms
   const auto add = [&terms](const Noise& noise, const Matrix6d& factor) {
     terms.try_emplace(noise, Matrix6d::Zero()).first->second += factor;
   };
-  add({Noise::Of::Edge, static_cast<long>(k)}, std::sqrt(1.0 - edge.share) * root);
-  add({Noise::Of::Source, edge.source}, std::sqrt(edge.share) * root);
+  add({Noise::Of::Edge, static_cast<long>(k)}, std::sqrt(edge.shared.own()) * root);
+  add({Noise::Of::Source, edge.source}, std::sqrt(edge.shared.source) * root);
+  add({Noise::Of::Common, 0}, std::sqrt(edge.shared.common) * root);
 }
 
 /** \param[in] S covariance of the difference */
@@ -133,21 +134,45 @@ cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length)
   return {cycles.rbegin(), cycles.rend()};
 }
 
+Way::Way(int begin) : edge_{begin, begin, Eigen::Matrix4d::Identity(), Matrix6d::Zero()}
+{}
+
+void
+Way::append(const GraphEdge& edge)
+{
+  const bool is_forward = edge.target == edge_.source;
+  const GraphEdge step = is_forward ? edge : inverted(edge);
+  const Matrix6d carry = adjointOf(step.T_target_source.inverse());
+  const Matrix6d root =
+      Eigen::SelfAdjointEigenSolver<Matrix6d>(edge.covariance).operatorSqrt();
+  // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi)
+  const Matrix6d of_step =
+      is_forward ? root : Matrix6d(-adjointOf(edge.T_target_source) * root);
+  common_ = (carry * common_ + std::sqrt(edge.shared.common) * of_step).eval();
+  edge_.covariance = (carry * edge_.covariance * carry.transpose() +
+                      (1.0 - edge.shared.common) * step.covariance)
+                         .eval();
+  edge_.T_target_source = (edge_.T_target_source * step.T_target_source).eval();
+  edge_.source = step.source;
+}
+
+GraphEdge
+Way::edge() const
+{
+  GraphEdge whole = edge_;
+  whole.covariance += common_ * common_.transpose();
+  return whole;
+}
+
 GraphEdge
 wayAlong(const std::vector<GraphEdge>& edges,
          int begin,
          const std::vector<std::size_t>& path)
 {
-  GraphEdge way{begin, begin, Eigen::Matrix4d::Identity(), Matrix6d::Zero()};
-  for (const std::size_t k : path) {
-    const GraphEdge edge =
-        edges[k].target == way.source ? edges[k] : inverted(edges[k]);
-    const Matrix6d carry = adjointOf(edge.T_target_source.inverse());
-    way.covariance = carry * way.covariance * carry.transpose() + edge.covariance;
-    way.T_target_source = way.T_target_source * edge.T_target_source;
-    way.source = edge.source;
-  }
-  return way;
+  Way way(begin);
+  for (const std::size_t k : path)
+    way.append(edges[k]);
+  return way.edge();
 }
 
 Closure

@@ -26,8 +26,28 @@ struct Cycle {
 std::vector<Cycle>
 cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length);
 
-/** \brief One edge in place of several, to first order, as if their errors were
- * independent.
+/** \brief A way along edges, to first order. */
+class Way {
+public:
+  explicit Way(int begin);
+
+  /** \brief Go on along an edge from the end of the way; it may be taken backwards. Its
+   * error is independent of those before but for what all edges have in common. */
+  void
+  append(const GraphEdge& edge);
+
+  /** \brief From the begin to the end. */
+  GraphEdge
+  edge() const;
+
+private:
+  /** With the covariance of what is not common to all edges. */
+  GraphEdge edge_;
+  /** Factor of the noise that is. */
+  Matrix6d common_ = Matrix6d::Zero();
+};
+
+/** \brief One edge in place of several, to first order.
  * \param[in] path positions in \p edges, from vertex \p begin on; an edge may be taken
  *            backwards */
 GraphEdge
@@ -57,12 +77,12 @@ constexpr double max_deviation = 3.0;
 Closure
 closureOf(const GraphEdge& direct, const GraphEdge& way);
 
-/** \brief Six independent standard normal numbers: the noise of an edge alone, or that
- * of all edges with one source. */
+/** \brief Six independent standard normal numbers: the noise of an edge alone, that of
+ * all edges with one source, or that of all edges. */
 struct Noise {
-  enum class Of { Edge, Source };
+  enum class Of { Edge, Source, Common };
   Of of;
-  /** Position of the edge, or vertex. */
+  /** Position of the edge, vertex, or 0. */
   long number;
 
   bool
@@ -83,8 +103,8 @@ errorTermsOf(const std::vector<GraphEdge>& edges, const Cycle& cycle);
 Matrix6d
 covarianceOf(const ErrorTerms& terms);
 
-/** \brief Close a cycle, to first order. Errors are independent but for those of edges
- * with the same source: GraphEdge::share. */
+/** \brief Close a cycle, to first order. Errors have in common what
+ * GraphEdge::shared says. */
 Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle);
 

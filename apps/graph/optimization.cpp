@@ -30,9 +30,15 @@ constexpr double border_of_95_percent = 3.548462;
 constexpr int max_iterations = 100;
 /** Relative to the sum of squared errors. */
 constexpr double tolerance = 1e-12;
+/** Of a noise that counts in the covariances and is not estimated: so small that edges
+ * do not move it. */
+constexpr double considered_deviation = 1e-4;
 
 /** Position [m] and quaternion x y z w: how Ceres sees a pose. */
 using Parameters = std::array<double, 7>;
+
+/** Six independent numbers. */
+using NoiseNumbers = std::array<double, 6>;
 
 template <typename T>
 struct PoseView {
@@ -84,21 +90,23 @@ struct RightTwists {
   }
 };
 
-/** log(T_edge^-1 T_0_target^-1 T_0_source), whitened, less what comes of the source's
- * noise. */
+/** log(T_edge^-1 T_0_target^-1 T_0_source), whitened, less what comes of noises that
+ * other edges have, too: the edge's own part of the error, of variance 1. */
 struct EdgeError {
   Eigen::Vector3d position;
   Eigen::Quaterniond rotation;
   /** S^-1/2, symmetric. */
   Matrix6d whitening;
-  double share;
+  SharedNoise shared;
 
-  /** \param[in] noise of the source, 6 independent numbers with variance 1 */
+  /** \param[in] source_noise 6 independent numbers with variance 1
+   * \param[in] common_noise of all edges, as well */
   template <typename T>
   bool
   operator()(const T* target_pose,
              const T* source_pose,
-             const T* noise,
+             const T* source_noise,
+             const T* common_noise,
              T* residual) const
   {
     using Vector3 = Eigen::Matrix<T, 3, 1>;
@@ -113,21 +121,26 @@ struct EdgeError {
     const Vector3 turned = w.cross(shift);
     Eigen::Matrix<T, 6, 1> error;
     error << shift - T(0.5) * turned + T(1.0 / 12.0) * w.cross(turned), w;
-    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> shared(noise);
+    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_source(source_noise);
+    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_all(common_noise);
     Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} =
-        (whitening.cast<T>() * error - T(std::sqrt(share)) * shared) /
-        T(std::sqrt(1.0 - share));
+        (whitening.cast<T>() * error - T(std::sqrt(shared.source)) * of_source -
+         T(std::sqrt(shared.common)) * of_all) /
+        T(std::sqrt(shared.own()));
     return true;
   }
 };
 
-/** Of one source: as likely as a standard normal number each. */
+/** Of numbers that are 0 to a deviation. */
 struct NoiseError {
+  double deviation;
+
   template <typename T>
   bool
   operator()(const T* noise, T* residual) const
   {
-    std::copy_n(noise, 6, residual);
+    for (int k = 0; k < 6; ++k)
+      residual[k] = noise[k] / T(deviation);
     return true;
   }
 };
@@ -165,7 +178,7 @@ errorOf(const GraphEdge& edge)
   return {pose.translation(),
           Eigen::Quaterniond(pose.linear()).normalized(),
           solver.operatorInverseSqrt(),
-          edge.share};
+          edge.shared};
 }
 
 /** Whether edges lead from each vertex to vertex 0. */
@@ -193,13 +206,14 @@ requireConnected(std::size_t num_poses, const std::vector<GraphEdge>& edges)
                                   " to scan 0");
 }
 
-/** Of the part of an edge's error that is not its source's. Where that is \p share of
- * the variance, the error as a whole is larger by 1 / sqrt(1 - share). The problem owns
- * the result. */
+/** Of an edge's own part of its error, in units of its deviation. Of an error of d
+ * deviations of S the source takes its share, and d sqrt(own) / (1 - common) is left.
+ * The problem owns the result. */
 ceres::LossFunction*
-lossOf(RobustLoss loss, double share)
+lossOf(RobustLoss loss, const SharedNoise& shared)
 {
-  const double border = border_of_95_percent * std::sqrt(1.0 - share);
+  const double border =
+      border_of_95_percent * std::sqrt(shared.own()) / (1.0 - shared.common);
   if (loss == RobustLoss::Huber)
     return new ceres::HuberLoss(border);
   if (loss == RobustLoss::Cauchy)
@@ -214,19 +228,16 @@ public:
          const std::vector<GraphEdge>& edges,
          RobustLoss loss)
   : loss_(loss)
-  , noises_(poses.size())
+  , unknowns_(poses.size() + 1)
   , problem_(borrowing())
   {
-    for (const Eigen::Matrix4d& pose : poses)
-      parameters_.push_back(parametersOf(pose));
     for (std::size_t k = 0; k < poses.size(); ++k) {
-      problem_.AddParameterBlock(parameters_[k].data(), 7, &twists_);
-      problem_.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<NoiseError, 6, 6>(new NoiseError),
-          nullptr,
-          noises_[k].data());
+      unknowns_[k].pose = parametersOf(poses[k]);
+      problem_.AddParameterBlock(unknowns_[k].pose.data(), 7, &twists_);
+      addNoise(1.0, unknowns_[k].noise);
     }
-    problem_.SetParameterBlockConstant(parameters_.front().data());
+    addNoise(considered_deviation, commonNoise());
+    problem_.SetParameterBlockConstant(unknowns_.front().pose.data());
     for (const GraphEdge& edge : edges)
       addEdge(edge);
   }
@@ -245,8 +256,9 @@ public:
     OptimizedPoses result;
     if (summary.termination_type != ceres::CONVERGENCE)
       result.complaint = "the poses have not converged: " + summary.message;
-    for (const Parameters& parameters : parameters_)
-      result.poses.push_back({poseOf(transformOf(parameters)), Matrix6d::Zero()});
+    for (std::size_t k = 0; k < numPoses(); ++k)
+      result.poses.push_back(
+          {poseOf(transformOf(unknowns_[k].pose)), Matrix6d::Zero()});
     for (const PlacedEdge& edge : edges_)
       result.squared_errors.push_back(squaredErrorOf(edge));
     addCovariances(result);
@@ -259,31 +271,61 @@ private:
     const double *target, *source;
   };
 
+  /** Of one scan: its pose, and its noise as a source in units of the deviations of its
+   * edges. */
+  struct Unknowns {
+    Parameters pose{};
+    NoiseNumbers noise{};
+  };
+
+  std::size_t
+  numPoses() const
+  {
+    return unknowns_.size() - 1;
+  }
+
+  /** Of all edges, held at 0. */
+  NoiseNumbers&
+  commonNoise()
+  {
+    return unknowns_.back().noise;
+  }
+
+  void
+  addNoise(double deviation, NoiseNumbers& noise)
+  {
+    problem_.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<NoiseError, 6, 6>(new NoiseError{deviation}),
+        nullptr,
+        noise.data());
+  }
+
   void
   addEdge(const GraphEdge& edge)
   {
     const EdgeError error = errorOf(edge);
-    const auto source = static_cast<std::size_t>(edge.source);
+    Unknowns& source = unknowns_[static_cast<std::size_t>(edge.source)];
     double* const target_pose =
-        parameters_[static_cast<std::size_t>(edge.target)].data();
-    double* const source_pose = parameters_[source].data();
-    edges_.push_back({error, target_pose, source_pose});
+        unknowns_[static_cast<std::size_t>(edge.target)].pose.data();
+    edges_.push_back({error, target_pose, source.pose.data()});
     problem_.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6>(new EdgeError(error)),
-        lossOf(loss_, edge.share),
+        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6, 6>(new EdgeError(error)),
+        lossOf(loss_, edge.shared),
         target_pose,
-        source_pose,
-        noises_[source].data());
+        source.pose.data(),
+        source.noise.data(),
+        commonNoise().data());
   }
 
-  /** Whatever part of the error is the source's. */
+  /** Whatever parts of the error other edges have, too. */
   static double
   squaredErrorOf(const PlacedEdge& edge)
   {
-    const std::array<double, 6> no_noise{};
+    const NoiseNumbers no_noise{};
     Vector6d residual;
-    edge.error(edge.target, edge.source, no_noise.data(), residual.data());
-    return (1.0 - edge.error.share) * residual.squaredNorm();
+    edge.error(
+        edge.target, edge.source, no_noise.data(), no_noise.data(), residual.data());
+    return edge.error.shared.own() * residual.squaredNorm();
   }
 
   static ceres::Problem::Options
@@ -298,26 +340,34 @@ private:
   addCovariances(OptimizedPoses& result)
   {
     std::vector<std::pair<const double*, const double*>> blocks;
-    for (std::size_t k = 1; k < parameters_.size(); ++k)
-      blocks.emplace_back(parameters_[k].data(), parameters_[k].data());
+    for (std::size_t k = 1; k < numPoses(); ++k)
+      for (const double* other : {unknowns_[k].pose.data(), commonNoise().data()})
+        blocks.emplace_back(unknowns_[k].pose.data(), other);
     ceres::Covariance covariance({});
     if (!blocks.empty() && !covariance.Compute(blocks, &problem_)) {
       result.complaint = "the edges leave a motion of a pose free";
       return;
     }
-    for (std::size_t k = 1; k < parameters_.size(); ++k) {
+    for (std::size_t k = 1; k < numPoses(); ++k) {
+      const double* const block = unknowns_[k].pose.data();
+      Matrix6d& sum = result.poses[k].covariance;
       // Row by row; symmetric, so that the order is of no importance.
-      const double* const block = parameters_[k].data();
+      covariance.GetCovarianceBlockInTangentSpace(block, block, sum.data());
+      Eigen::Matrix<double, 6, 6, Eigen::RowMajor> with_common;
       covariance.GetCovarianceBlockInTangentSpace(
-          block, block, result.poses[k].covariance.data());
+          block, commonNoise().data(), with_common.data());
+      // How far the common noise moves the pose, by its unit.
+      const Matrix6d motion =
+          with_common / (considered_deviation * considered_deviation);
+      sum += motion * motion.transpose();
     }
   }
 
   ceres::AutoDiffManifold<RightTwists, 7, 6> twists_;
   RobustLoss loss_;
-  std::vector<Parameters> parameters_;
-  /** Of each scan as a source, in units of the deviations of its edges. */
-  std::vector<std::array<double, 6>> noises_;
+  /** Of the scans, and the common noise; in one piece, because Ceres sorts them by
+   * their addresses, and the order decides about the last bits. */
+  std::vector<Unknowns> unknowns_;
   std::vector<PlacedEdge> edges_;
   ceres::Problem problem_;
 };

@@ -56,10 +56,17 @@ isContradiction(double squared_error)
  * (Grisetti et al. 2010, eq. 3), by Ceres. One thread; the same input gives the same
  * bits.
  *
- * Errors are independent but for those of edges with the same source: GraphEdge::share.
+ * Errors have in common what GraphEdge::shared says. What all edges have in common
+ * counts in the covariances of the poses and does not move them, because how it adds up
+ * over edges is not known well enough to be estimated: edges are weighed without it,
+ * and the covariances are those of these poses (Tapley, Schutz and Born 2004,
+ * Statistical Orbit Determination, chapter 6: consider covariance).
+ *
  * \param[in] poses to begin with, T_0_k of vertex k; at least 1
  * \param[in] edges between vertices 0 to poses.size() - 1, with positive definite
  *            covariances
+ * \param[in] loss how edges that contradict the others are treated
+ *
  * \throws std::invalid_argument if an edge is of other vertices, or its covariance is
  * not positive definite, or if no edges join a vertex to vertex 0; std::bad_alloc */
 OptimizedPoses

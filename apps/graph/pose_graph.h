@@ -18,11 +18,27 @@ struct GaussianPose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
-/** \brief Part of the variance of registrations that all those with the same source
- * have in common: the noise of its points. Measured on simulated drives with three
- * sensors (docs/track.md); a target's noise is averaged over its surface, and
- * registrations with the same target have less in common. */
-constexpr double source_share = 0.6;
+/** \brief Parts of the variance of an edge that it has in common with others. Measured
+ * on simulated drives with three sensors (docs/track.md); a target's noise is averaged
+ * over its surface, and registrations with the same target have less in common. From 0,
+ * and together below 1. */
+struct SharedNoise {
+  /** With all edges that have the same source: the noise of its points. */
+  double source = 0.5;
+  /** With all edges of the graph: what a sensor does wrong in each scan, such as the
+   * offsets of its rings. */
+  double common = 0.1;
+
+  /** \brief The part that an edge has for itself. */
+  constexpr double
+  own() const
+  {
+    return 1.0 - source - common;
+  }
+};
+
+/** \brief An edge that is no registration of scans. */
+constexpr SharedNoise independent_noise{0.0, 0.0};
 
 /** \brief Factor of the variances of a registration with status Doubtful: its standard
  * deviations become three times as large. */
@@ -35,10 +51,10 @@ struct GraphEdge {
   Eigen::Matrix4d T_target_source = Eigen::Matrix4d::Identity();
   /** CovarianceConvention::RightSE3 [m, rad]. */
   Matrix6d covariance = Matrix6d::Identity();
-  /** Errors S^1/2 z of two edges with the same source are correlated: z of one and of
-   * the other have the covariance sqrt(share share) times the identity. From 0,
-   * independent of all others, to below 1. */
-  double share = source_share;
+  /** What its error S^1/2 z has in common with other errors: the covariance of the z of
+   * two edges is sqrt(common common') times the identity, and sqrt(source source') more
+   * if both have the same source. */
+  SharedNoise shared = SharedNoise();
 };
 
 } // namespace bayesian_icp::app

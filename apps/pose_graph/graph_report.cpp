@@ -228,8 +228,9 @@ uncertaintySection(const PathData& path)
   section.heading = "How sure is that?";
   section.above_html =
       html::paragraphHtml(
-          "Registrations with the same source share the noise of its points; other "
-          "errors are taken as independent.") +
+          "Registrations with the same source share the noise of its points, and all "
+          "of them share what the sensor does wrong in each scan. Other errors are "
+          "taken as independent.") +
       html::legendHtml({{path_colour, "optimized poses"},
                         {before_colour, "the chain of scans alone"}});
   section.charts = deviationCharts(numbers, "scan", path);

@@ -93,7 +93,8 @@ ScanGraph::pairOf(const ScanEdge& edge) const
   pair.source_file = request_.scans.at(static_cast<std::size_t>(scans.source));
   pair.settings = request_.settings;
   if (edge.kind != EdgeKind::Chain) {
-    const GraphEdge way = wayBetween(scans.target, scans.source);
+    const GraphEdge way =
+        wayAlong(steps_, scans.target, pathBetween(scans.target, scans.source));
     const Matrix6d wide = PriorOptions().variance.asDiagonal();
     double widening = 1.0;
     pair.settings.guess = way.T_target_source;
@@ -108,8 +109,10 @@ ScanGraph::pairOf(const ScanEdge& edge) const
 void
 ScanGraph::closeLoop(ScanEdge& edge) const
 {
-  const Closure closure =
-      closureOf(edge.edge, wayBetween(edge.edge.target, edge.edge.source));
+  std::vector<GraphEdge> edges = steps_;
+  edges.push_back(edge.edge);
+  const Closure closure = closureOf(
+      edges, {steps_.size(), pathBetween(edge.edge.target, edge.edge.source)});
   edge.closure = closure;
   if (closure.probability >= min_loop_probability)
     return;
@@ -154,7 +157,7 @@ ScanGraph::take(const BatchResult& result, ScanEdge& edge) const
   edge.is_in_graph = edge.kind == EdgeKind::Chain && request_.has_weak_edges &&
                      result.run != nullptr &&
                      setEdge(estimateOf(priorOf(*result.run)), edge.edge).empty();
-  edge.edge.share = 0.0; // a prior has no noise of a scan
+  edge.edge.shared = independent_noise; // a prior has no noise of a scan
   edge.complaint = (edge.is_in_graph ? "the prior only, " : left_out) + reason;
 }
 
@@ -207,29 +210,31 @@ ScanGraph::chainPoses()
       prior.mean.allFinite() ? prior.mean : poseOf(request_.settings.guess);
   const Prior assumed(expected,
                       prior.variance.allFinite() ? prior.variance : usual.variance);
-  GraphEdge way{0, 0, Eigen::Matrix4d::Identity(), Matrix6d::Zero()};
+  Way way(0);
   chain_.assign(1, GaussianPose());
   for (const ScanEdge& edge : registrations_) {
     steps_.push_back(edge.edge);
     if (!edge.is_in_graph) {
       const PoseEstimate estimate = estimateOf(assumed);
+      steps_.back().shared = independent_noise;
       steps_.back().T_target_source = matrixOf(estimate.mean);
       steps_.back().covariance = estimate.covariance(CovarianceConvention::RightSE3);
     }
-    way = wayAlong({way, steps_.back()}, 0, {0, 1});
-    chain_.push_back({poseOf(way.T_target_source), way.covariance});
+    way.append(steps_.back());
+    const GraphEdge whole = way.edge();
+    chain_.push_back({poseOf(whole.T_target_source), whole.covariance});
   }
 }
 
-GraphEdge
-ScanGraph::wayBetween(int target, int source) const
+std::vector<std::size_t>
+ScanGraph::pathBetween(int target, int source) const
 {
   std::vector<std::size_t> path;
   for (int k = std::min(target, source); k < std::max(target, source); ++k)
     path.push_back(static_cast<std::size_t>(k));
   if (target > source)
     std::reverse(path.begin(), path.end());
-  return wayAlong(steps_, target, path);
+  return path;
 }
 
 std::vector<ScanEdge>

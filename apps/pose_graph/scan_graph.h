@@ -129,9 +129,9 @@ private:
   void
   chainPoses();
 
-  /** The edge along the chain. */
-  GraphEdge
-  wayBetween(int target, int source) const;
+  /** Along the chain, positions in steps_. */
+  std::vector<std::size_t>
+  pathBetween(int target, int source) const;
 
   /** All that are not of the chain. */
   std::vector<ScanEdge>

@@ -31,7 +31,7 @@ constexpr std::size_t max_lines = 20;
 
 struct CyclesOptions {
   int max_length = 4;
-  double share = app::source_share;
+  app::SharedNoise shared;
   std::string result_file = "results/cycles.csv";
   bool has_report = false;
 };
@@ -130,15 +130,16 @@ cycle of edges the product of the poses should be the identity, within the
 sum of the covariances. The normalised squared error of closures (NEES) is
 then 1 per degree of freedom on average, and 50 % and 95 % of the closures
 are in their regions. Edges with the same source (the second vertex) share its
-noise: --source-share says how much of their variance. Larger errors mean
-that covariances are too small, or that an edge is wrong. Directions in which
-a closure is less certain than 3 m or 3 rad are not counted: no cloud has
-seen them.
+noise, and all edges share what the sensor does wrong in each scan:
+--source-share and --common-share say how much of their variance. Larger
+errors mean that covariances are too small, or that an edge is wrong.
+Directions in which a closure is less certain than 3 m or 3 rad are not
+counted: no cloud has seen them.
 
 Make the graph with pcl_bayesian_icp_track --span 3; edges that contain a
 prior close too well.
 
-It cannot see errors that all edges share: if each registration is drawn
+Errors that all edges share nearly cancel: if each registration is drawn
 towards no motion in the same proportion, every cycle still closes.
 
 A table goes to the standard output; every cycle is a row of a CSV file.
@@ -152,6 +153,16 @@ file.
   return help.str();
 }
 
+po::typed_value<double>*
+share(double& part)
+{
+  return po::value<double>()->default_value(part)->notifier([&part](double value) {
+    if (!(value >= 0.0 && value < 1.0))
+      io::refuseValue(io::textOf(value), "from 0 to below 1");
+    part = value;
+  });
+}
+
 } // namespace
 
 int
@@ -162,14 +173,11 @@ runCyclesCommand(int argc, const char* const* argv)
   // clang-format off
   description.add_options()
     ("max-length", integer(options.max_length, 3, 100), "most edges of a cycle")
-    ("source-share", po::value<double>()->default_value(options.share)->notifier(
-       [&options](double share) {
-         if (!(share >= 0.0 && share < 1.0))
-           io::refuseValue(io::textOf(share), "from 0 to below 1");
-         options.share = share;
-       }),
-     "part of the variance that edges with the same source have in common, its noise; 0 "
-     "for edges that are independent")
+    ("source-share", share(options.shared.source),
+     "part of the variance that edges with the same source have in common, its noise")
+    ("common-share", share(options.shared.common),
+     "part of the variance that all edges have in common; together with --source-share "
+     "below 1. Both are 0 for edges that are independent")
     ("output", outputName("file", options.result_file), "CSV file of the closures")
     ("report", io::flag(options.has_report),
      "also make a report, with figures, of all results in that folder")
@@ -184,9 +192,12 @@ runCyclesCommand(int argc, const char* const* argv)
   const std::vector<std::string> files = io::optionTexts(given, "graph");
   if (files.size() != 1)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
+  constexpr double rounding = 1e-6;
+  if (!(options.shared.own() > rounding))
+    throw io::UsageError("--source-share and --common-share: together below 1");
   std::vector<GraphEdge> edges = app::readGraph(files[0]);
   for (GraphEdge& edge : edges)
-    edge.share = options.share;
+    edge.shared = options.shared;
   const std::vector<ClosedCycle> cycles =
       app::closedCycles(edges, static_cast<std::size_t>(options.max_length));
   if (cycles.empty())

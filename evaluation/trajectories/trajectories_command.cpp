@@ -238,7 +238,7 @@ the next, the same for all methods.
 The table has the error of positions after alignment (ATE), of relative poses
 of neighbours (RPE), of the last pose (drift), the normalised squared error of
 all poses per degree of freedom (NEES/6) and that of closures of cycles of up
-to four edges (1 if covariances are right and errors of edges independent).
+to four edges (1 if covariances are right).
 Errors include those of the true poses ("of": exact, or quality A, B, C).
 
 Each registration is a row of a second CSV file, FILE_edges.csv, in which an

@@ -110,7 +110,7 @@ odometryOf(const RegisteredRecording& registered)
          source,
          guessOf(registered.recording, registered.seed, source - 1, source).matrix(),
          covarianceOf(guess_sd),
-         0.0});
+         app::independent_noise});
   return edges;
 }
 

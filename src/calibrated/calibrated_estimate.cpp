@@ -68,8 +68,9 @@ constexpr int max_moves = 2;
 /** Further away than this part of the source's root mean square radius, the points may
  * meet another side of the body, or its end. The mode moves there only if the fit may
  * have slid to where the views overlap most: the mean is so many prior standard
- * deviations away, a part of the points has no patch at the mode either, and those that
- * have one at the mean miss it by at most so many times as much. */
+ * deviations away, at most this part of the points has a patch at the mode, and where
+ * the fit from the mean ends, points miss their patches by at most so many times as
+ * much as at the mode. */
 constexpr double max_distance_to_radius = 0.6;
 constexpr double min_distance_of_far_mean = 1.5;
 constexpr double max_overlap_before_far_move = 0.9, max_misfit_after_far_move = 1.15;
@@ -335,14 +336,6 @@ priorDistanceOfMean(const CalibratedEstimate& e)
   return std::sqrt(e.mean.dot(e.prior.precision * e.mean));
 }
 
-/** Whether the mode has to move to the mean: along the way the surface may bend, and
- * another mode may be near. */
-bool
-isFarFromMean(const CalibratedEstimate& e)
-{
-  return e.keep.minCoeff() == 0.0 && priorDistanceOfMean(e) > min_distance_of_mean;
-}
-
 /** The points that have a patch. */
 struct Contacts {
   /** Of all points. */
@@ -360,18 +353,25 @@ contactsOf(const Eigen::VectorXd& capped_residuals)
           has_patch.select(capped_residuals.array(), 0.0).sum() / count};
 }
 
-/** Whether the mode may be \p next, about the mean. */
+/** Whether the body is as wide as the way to the mean. */
 bool
-mayMoveTo(const RobustFit& next, const CalibratedEstimate& e)
+isMeanWithinReach(const CalibratedEstimate& e)
 {
-  const double length = std::sqrt(e.mean.dot(e.displacement_metric * e.mean));
-  if (length < max_distance_to_radius * radiusOf(e.displacement_metric))
-    return true;
-  const Contacts here = contactsOf(cappedResiduals(e.scores));
-  const Contacts there = contactsOf(next.residuals);
-  return priorDistanceOfMean(e) > min_distance_of_far_mean &&
-         here.share < max_overlap_before_far_move &&
-         there.misfit < max_misfit_after_far_move * here.misfit;
+  return std::sqrt(e.mean.dot(e.displacement_metric * e.mean)) <
+         max_distance_to_radius * radiusOf(e.displacement_metric);
+}
+
+/** Whether the mode has to move to the mean: along the way the surface may bend, and
+ * another mode may be near. */
+bool
+isFarFromMean(const CalibratedEstimate& e)
+{
+  const double distance = priorDistanceOfMean(e);
+  if (e.keep.minCoeff() > 0.0 || distance <= min_distance_of_mean)
+    return false;
+  return isMeanWithinReach(e) ||
+         (distance > min_distance_of_far_mean &&
+          contactsOf(cappedResiduals(e.scores)).share < max_overlap_before_far_move);
 }
 
 /** Precision that holds a pose along the free directions, to within \p tolerance [m].
@@ -404,7 +404,9 @@ moveToMean(const SurfaceScorer& scorer,
                      movedBy(e.mean, e.centre, e.mode),
                      last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
   e.num_queries += scorer.sourcePoints().cols() * mode.num_evaluations;
-  if (!mayMoveTo(mode, e))
+  if (!isMeanWithinReach(e) &&
+      !(contactsOf(mode.residuals).misfit <
+        max_misfit_after_far_move * contactsOf(cappedResiduals(e.scores)).misfit))
     return false;
   CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
   next.num_queries += e.num_queries;

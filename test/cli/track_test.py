@@ -103,6 +103,12 @@ class TrackOfSimulatedScans(TrackTest):
         # A cycle for each edge that the chain of scans does not need.
         self.assertEqual(len(rows), len(expected) - 4)
         self.assertRegex(result.stdout, r"(?m)^all +5 +6\.00 ")
+        # Noise that all edges have in common nearly cancels around a triangle.
+        words = ["cycles", self.track / "graph.g2o", "--output", csv, "--common-share"]
+        self.assertNotEqual(call(EVALUATE, *words, "0").stdout, result.stdout)
+        refused = call(EVALUATE, *words, "0.5")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("together below 1", refused.stderr)
         # An edge that is 3 cm off.
         lines = (self.track / "graph.g2o").read_text().splitlines()
         (place,) = [k for k, line in enumerate(lines) if line.startswith("EDGE_SE3:QUAT 1 2 ")]

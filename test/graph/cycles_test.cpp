@@ -49,14 +49,14 @@ TEST(Cycles, CloseWithinTheSumOfTheCovariances)
 
 TEST(Cycles, TogetherAreChiSquareWhateverTheyHaveInCommon)
 {
-  constexpr int num_runs = 300, num_poses = 8;
-  constexpr double share = 0.6;
+  constexpr int num_runs = 1500, num_poses = 8;
+  constexpr app::SharedNoise shared{0.6, 0.1};
   Random random(6, 0);
   double squared_error = 0.0;
   int num_rare = 0, num_rare_if_independent = 0;
   for (int run = 0; run < num_runs; ++run) {
     const Poses poses = somePoses(num_poses, random);
-    const std::vector<GraphEdge> edges = drawnSpan(poses, 3, share, random);
+    const std::vector<GraphEdge> edges = drawnSpan(poses, 3, shared, random);
     const auto cycles = app::closedCycles(edges, 4);
     const app::JointClosure joint = app::jointClosureOf(edges, cycles);
     // An edge more than the chain needs is a cycle more.

@@ -44,6 +44,18 @@ somePoses(std::size_t count, Random& random)
   return poses;
 }
 
+/** \brief On a bent way, each a step of 1 m from the one before, the same each time. */
+inline Poses
+steadyPoses(std::size_t count)
+{
+  Vector6d step;
+  step << 1.0, 0.0, 0.05, 0.0, 0.02, 0.1;
+  Poses poses(1, Eigen::Matrix4d::Identity());
+  while (poses.size() < count)
+    poses.push_back(poses.back() * expSE3(step));
+  return poses;
+}
+
 /** \brief Between two of \p poses, independent of all others. */
 inline app::GraphEdge
 drawnEdge(const Poses& poses, int target, int source, Random& random)
@@ -55,26 +67,27 @@ drawnEdge(const Poses& poses, int target, int source, Random& random)
           poses[std::size_t(target)].inverse() * poses[std::size_t(source)] *
               expSE3(-error),
           covariance,
-          0.0};
+          app::independent_noise};
 }
 
-/** \brief From each pose to up to \p span before it; those with the same source have
- * the share \p share of their variance in common. */
+/** \brief From each pose to up to \p span before it. */
 inline std::vector<app::GraphEdge>
-drawnSpan(const Poses& poses, int span, double share, Random& random)
+drawnSpan(const Poses& poses, int span, const app::SharedNoise& shared, Random& random)
 {
+  const Vector6d common = random.normal6();
   std::vector<app::GraphEdge> edges;
   for (int source = 1; source < static_cast<int>(poses.size()); ++source) {
     const Vector6d noise = random.normal6();
     for (int target = source - 1; target >= std::max(0, source - span); --target) {
       app::GraphEdge edge = drawnEdge(poses, target, source, random);
-      const Vector6d z =
-          std::sqrt(share) * noise + std::sqrt(1.0 - share) * random.normal6();
+      const Vector6d z = std::sqrt(shared.source) * noise +
+                         std::sqrt(shared.common) * common +
+                         std::sqrt(shared.own()) * random.normal6();
       const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
       edge.T_target_source = poses[std::size_t(target)].inverse() *
                              poses[std::size_t(source)] *
                              expSE3(Vector6d(-solver.operatorSqrt() * z));
-      edge.share = share;
+      edge.shared = shared;
       edges.push_back(edge);
     }
   }

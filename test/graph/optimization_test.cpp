@@ -132,27 +132,63 @@ TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
   EXPECT_GT(of_chain, 2.0);
 }
 
-TEST(OptimizedPosesOf, EdgesThatShareTheNoiseOfASourceAreAsFarOffAsStated)
+TEST(OptimizedPosesOf, EdgesThatShareNoiseAreAsFarOffAsStated)
 {
-  constexpr int num_runs = 300, num_poses = 8;
-  constexpr double share = 0.6;
+  constexpr int num_runs = 300, num_poses = 16;
+  constexpr app::SharedNoise shared{0.5, 0.1}, without_common{0.6, 0.0};
   Random random(7, 0);
-  double shared = 0.0, independent = 0.0;
+  double as_drawn = 0.0, without = 0.0, alone = 0.0;
   for (int run = 0; run < num_runs; ++run) {
-    const Poses truth = somePoses(num_poses, random);
-    std::vector<GraphEdge> edges = drawnSpan(truth, 3, share, random);
-    const auto squaredErrorFor = [&](double assumed_share) {
+    const Poses truth = steadyPoses(num_poses);
+    std::vector<GraphEdge> edges = drawnSpan(truth, 3, shared, random);
+    const auto squaredErrorFor = [&](const app::SharedNoise& assumed) {
       for (GraphEdge& edge : edges)
-        edge.share = assumed_share;
+        edge.shared = assumed;
       const OptimizedPoses found = optimizedPoses(truth, edges, RobustLoss::None);
+      EXPECT_EQ(found.complaint, "");
       const Vector6d error = errorOf(found.poses.back(), truth.back());
       return error.dot(found.poses.back().covariance.ldlt().solve(error));
     };
-    shared += squaredErrorFor(share) / num_runs;
-    independent += squaredErrorFor(0.0) / num_runs;
+    const auto meanFor = [&](const app::SharedNoise& assumed) {
+      for (GraphEdge& edge : edges)
+        edge.shared = assumed;
+      return optimizedPoses(truth, edges, RobustLoss::None).poses.back().mean;
+    };
+    as_drawn += squaredErrorFor(shared) / num_runs;
+    without += squaredErrorFor(without_common) / num_runs;
+    // The common noise has no part in the weights.
+    const Vector6d with_common = meanFor(shared);
+    const double scale = 1.0 / (1.0 - shared.common);
+    EXPECT_LT((meanFor({shared.source * scale, 0.0}) - with_common).norm(), 1e-6);
+    alone += squaredErrorFor(app::independent_noise) / num_runs;
   }
-  EXPECT_NEAR(shared, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
-  EXPECT_GT(independent, 9.0);
+  EXPECT_NEAR(as_drawn, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
+  EXPECT_GT(without, 7.5);
+  EXPECT_GT(alone, 9.0);
+}
+
+TEST(OptimizedPosesOf, WhatAllEdgesHaveInCommonAddsUpAlongAChain)
+{
+  // Ten steps along x, each off by 1 mm: 9 parts in 10 each for itself, one in 10
+  // alike.
+  std::vector<GraphEdge> edges;
+  for (int k = 0; k < 10; ++k) {
+    edges.emplace_back();
+    edges.back().target = k;
+    edges.back().source = k + 1;
+    edges.back().T_target_source(0, 3) = 1.0;
+    edges.back().covariance = 1e-6 * Matrix6d::Identity();
+    edges.back().shared = {0.0, 0.1};
+  }
+  const OptimizedPoses found =
+      optimizedPoses(chained(edges, 11), edges, RobustLoss::None);
+  EXPECT_EQ(found.complaint, "");
+  EXPECT_NEAR(found.poses[10].mean[0], 10.0, 1e-9);
+  EXPECT_NEAR(found.poses[10].covariance(0, 0),
+              1e-6 * (0.9 * 10.0 + 0.1 * 100.0),
+              1e-6 * 19.0 * 1e-3);
+  for (const double squared_error : found.squared_errors)
+    EXPECT_LT(squared_error, 1e-9);
 }
 
 TEST(OptimizedPosesOf, AGraphWithAWrongEdgeHardlyMoveWithARobustLoss)
@@ -185,23 +221,26 @@ TEST(OptimizedPosesOf, AGraphWithAWrongEdgeHardlyMoveWithARobustLoss)
 
 TEST(OptimizedPosesOf, AnEdgePullsNoHarderThanAtItsBorder)
 {
-  // Two edges, one wrong, join two poses: one of 1 m and one of 11 m, both with
+  // Three edges, one wrong, join two poses: two of 1 m and one of 11 m, all with
   // deviations of 0.1 m. Huber's loss lets the wrong one pull as one would that is as
   // far off as the border of its 95 % region, 3.548 deviations.
-  for (const double share : {0.0, app::source_share}) {
+  for (const app::SharedNoise& shared :
+       {app::independent_noise, app::SharedNoise{0.6, 0.0}, app::SharedNoise()}) {
     GraphEdge right;
     right.source = 1;
     right.T_target_source(0, 3) = 1.0;
     right.covariance = 0.01 * Matrix6d::Identity();
-    right.share = 0.0;
+    right.shared = app::independent_noise;
     GraphEdge wrong = right;
     wrong.T_target_source(0, 3) = 11.0;
-    wrong.share = share;
-    const std::vector<GraphEdge> edges = {right, wrong};
+    wrong.shared = shared;
+    const std::vector<GraphEdge> edges = {right, right, wrong};
     const OptimizedPoses found =
         optimizedPoses(chained({right}, 2), edges, RobustLoss::Huber);
     EXPECT_EQ(found.complaint, "");
-    EXPECT_NEAR(found.poses[1].mean[0], 1.0 + 0.1 * 3.548, 0.001) << share;
+    EXPECT_NEAR(
+        found.poses[1].mean[0], 1.0 + 0.05 * 3.548 / (1.0 - shared.common), 0.001)
+        << shared.source << ' ' << shared.common;
   }
 }
 
@@ -219,7 +258,7 @@ TEST(DisagreementsOf, AnEdgeThatPullsThePosesAlongShowsInItsCycles)
       edges.back().source = source;
       edges.back().T_target_source(0, 3) = source - target;
       edges.back().covariance = 0.01 * Matrix6d::Identity();
-      edges.back().share = 0.0;
+      edges.back().shared = app::independent_noise;
     }
   const auto disagreements = [&edges] {
     Poses poses(5, Eigen::Matrix4d::Identity());
