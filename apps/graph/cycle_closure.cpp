@@ -99,22 +99,6 @@ addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms
   add({Noise::Of::Common, 0}, std::sqrt(edge.shared.common) * root);
 }
 
-/** \param[in] S covariance of the difference */
-Closure
-closureWith(const GraphEdge& direct, const GraphEdge& way, const Matrix6d& S)
-{
-  Closure closure;
-  closure.error = logSE3(direct.T_target_source.inverse() * way.T_target_source);
-  closure.squared_error = closure.error.dot(S.ldlt().solve(closure.error));
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
-  closure.num_degrees = static_cast<int>(
-      (solver.eigenvalues().array() < max_deviation * max_deviation).count());
-  if (closure.num_degrees > 0)
-    closure.probability = boost::math::cdf(boost::math::complement(
-        boost::math::chi_squared(closure.num_degrees), closure.squared_error));
-  return closure;
-}
-
 } // namespace
 
 std::vector<Cycle>
@@ -175,12 +159,6 @@ wayAlong(const std::vector<GraphEdge>& edges,
   return way.edge();
 }
 
-Closure
-closureOf(const GraphEdge& direct, const GraphEdge& way)
-{
-  return closureWith(direct, way, way.covariance + direct.covariance);
-}
-
 ErrorTerms
 errorTermsOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
 {
@@ -220,9 +198,18 @@ Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
 {
   const GraphEdge& direct = edges[cycle.direct];
-  return closureWith(direct,
-                     wayAlong(edges, direct.target, cycle.path),
-                     covarianceOf(errorTermsOf(edges, cycle)));
+  const GraphEdge way = wayAlong(edges, direct.target, cycle.path);
+  const Matrix6d S = covarianceOf(errorTermsOf(edges, cycle));
+  Closure closure;
+  closure.error = logSE3(direct.T_target_source.inverse() * way.T_target_source);
+  closure.squared_error = closure.error.dot(S.ldlt().solve(closure.error));
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
+  closure.num_degrees = static_cast<int>(
+      (solver.eigenvalues().array() < max_deviation * max_deviation).count());
+  if (closure.num_degrees > 0)
+    closure.probability = boost::math::cdf(boost::math::complement(
+        boost::math::chi_squared(closure.num_degrees), closure.squared_error));
+  return closure;
 }
 
 } // namespace bayesian_icp::app

@@ -72,11 +72,6 @@ struct Closure {
  * rad]: there an edge has no information of the clouds. */
 constexpr double max_deviation = 3.0;
 
-/** \brief Close a cycle of two edges between the same vertices, to first order, as if
- * their errors were independent. */
-Closure
-closureOf(const GraphEdge& direct, const GraphEdge& way);
-
 /** \brief Six independent standard normal numbers: the noise of an edge alone, that of
  * all edges with one source, or that of all edges. */
 struct Noise {
