@@ -37,15 +37,17 @@ predict(const State& state, const State& motion)
 }
 
 /** A registration measures the pose itself. It must not contain what the state already
- * knows: see withoutPrior(). */
+ * knows: see withoutPrior(). The two are fused at the measurement, because it is far
+ * from the state only along motions that the clouds hardly see, such as the turn of a
+ * can about its axis, and there exp() follows that motion. */
 inline State
 update(const State& state, const State& measured)
 {
-  const Vector6d xi = logSE3(state.T.inverse() * measured.T);
-  const Matrix6d gain = state.P * (state.P + measured.P).inverse();
+  const Vector6d xi = logSE3(measured.T.inverse() * state.T);
+  const Matrix6d gain = measured.P * (state.P + measured.P).inverse();
   const Matrix6d rest = Matrix6d::Identity() - gain;
-  return {state.T * expSE3(gain * xi),
-          rest * state.P * rest.transpose() + gain * measured.P * gain.transpose()};
+  return {measured.T * expSE3(gain * xi),
+          rest * measured.P * rest.transpose() + gain * state.P * gain.transpose()};
 }
 
 /** The normalised innovation squared. If both covariances are right, its mean is the

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
@@ -194,4 +195,27 @@ TEST(KalmanExample, HasAPriorInTheAxesOfTheTarget)
   const Prior prior = kalman::priorAbout({matrixOf(mean), variances.asDiagonal()});
   EXPECT_TRUE(prior.mean().isApprox(mean, 1e-12)) << prior.mean();
   EXPECT_TRUE(prior.variance().isApprox(25.0 * expected, 1e-9)) << prior.variance();
+}
+
+TEST(KalmanExample, FollowsATurnThatTheCloudsHardlySee)
+{
+  // A can whose axis is 70 mm from the origin; the clouds know its turn to 0.15 rad and
+  // the rest to a tenth of a millimetre. Their mean is two deviations off.
+  constexpr double turn_deviation = 0.15, deviation = 1e-4;
+  Vector6d turn;
+  turn << 0.0, -0.07, 0.0, 0.0, 0.0, 1.0; // exp() turns about (0.07 m, 0, 0)
+  const Eigen::Matrix4d truth = matrixOf(somePose());
+  kalman::State measured, state;
+  measured.T = truth * expSE3(2.0 * turn_deviation * turn);
+  measured.P = deviation * deviation * Matrix6d::Identity() +
+               turn_deviation * turn_deviation * turn * turn.transpose();
+  Vector6d odometry_error;
+  odometry_error << 0.015, 0.02, -0.01, 0.01, 0.008, -0.009;
+  state.T = truth * expSE3(odometry_error);
+  state.P = 0.02 * 0.02 * Matrix6d::Identity();
+  const kalman::State fused = update(state, measured);
+  const Vector6d error = logSE3(fused.T.inverse() * truth);
+  // 99 % quantile of chi-square with six degrees of freedom.
+  EXPECT_LT(error.dot(fused.P.ldlt().solve(error)), 16.812) << error.transpose();
+  EXPECT_NEAR(std::sqrt(fused.P(5, 5)), 0.02, 0.001);
 }
