@@ -12,6 +12,9 @@ namespace {
 /** Where the errors of the parts are. */
 constexpr Eigen::Index of_target = 0, of_scan = 6, of_velocity = 12;
 
+/** Times that an update is linearised. */
+constexpr int num_iterations = 5;
+
 /** J with exp(xi + d) = exp(xi) exp(J d) to first order in d: the sum of
  * (-ad(xi))^k / (k + 1)! (Barfoot 2017, eq. 7.77). */
 Matrix6d
@@ -73,22 +76,40 @@ MotionFilter::predict(double seconds)
 double
 MotionFilter::update(const GaussianPose& measured)
 {
-  const Vector6d innovation =
-      logSE3(scan_in_target_.inverse() * matrixOf(measured.mean));
-  const Eigen::LDLT<Matrix6d> S(covariance_.block<6, 6>(of_scan, of_scan) +
-                                measured.covariance);
+  const Eigen::Matrix4d to_measured =
+      matrixOf(measured.mean).inverse() * scan_in_target_;
   const Eigen::Matrix<double, 18, 6> cross = covariance_.middleCols<6>(of_scan);
-  const Eigen::Matrix<double, 18, 6> gain = S.solve(cross.transpose()).transpose();
-  const Eigen::Matrix<double, 18, 1> correction = gain * innovation;
+  const Matrix6d P = covariance_.block<6, 6>(of_scan, of_scan);
+  double squared_innovation = 0.0;
+  Eigen::Matrix<double, 18, 1> correction = Eigen::Matrix<double, 18, 1>::Zero();
+  Eigen::Matrix<double, 18, 6> gain;
+  Matrix6d H;
+  for (int iteration = 0; iteration < num_iterations; ++iteration) {
+    const Vector6d xi = correction.segment<6>(of_scan);
+    const Vector6d difference = logSE3(to_measured * expSE3(xi));
+    H = rightJacobian(difference).inverse() * rightJacobian(xi);
+    const Eigen::LDLT<Matrix6d> S(H * P * H.transpose() + measured.covariance);
+    if (iteration == 0)
+      squared_innovation = difference.dot(S.solve(difference));
+    gain = S.solve(H * cross.transpose()).transpose();
+    correction = gain * (H * xi - difference);
+  }
   target_ = target_ * expSE3(correction.segment<6>(of_target));
   scan_in_target_ = scan_in_target_ * expSE3(correction.segment<6>(of_scan));
   velocity_ += correction.segment<6>(of_velocity);
   // Joseph's form stays positive semi-definite.
   State rest = State::Identity();
-  rest.middleCols<6>(of_scan) -= gain;
+  rest.middleCols<6>(of_scan) -= gain * H;
+  State to_corrected = State::Identity();
+  to_corrected.block<6, 6>(of_target, of_target) =
+      rightJacobian(correction.segment<6>(of_target));
+  to_corrected.block<6, 6>(of_scan, of_scan) =
+      rightJacobian(correction.segment<6>(of_scan));
+  rest = to_corrected * rest;
+  gain = to_corrected * gain;
   covariance_ = symmetric(State(rest * covariance_ * rest.transpose() +
                                 gain * measured.covariance * gain.transpose()));
-  return innovation.dot(S.solve(innovation));
+  return squared_innovation;
 }
 
 void

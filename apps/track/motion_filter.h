@@ -42,7 +42,9 @@ public:
   void
   predict(double seconds);
 
-  /** \brief Take in what a registration says without its prior.
+  /** \brief Take in what a registration says without its prior. The update is
+   * iterated (Bell and Cathey 1993): along a motion that the clouds hardly see, the
+   * measurement may be far away, and a line to it would leave that motion.
    * \param[in] measured the scan in the target's frame
    * \return normalised innovation squared: chi-square of as many degrees of freedom as
    *         the registration sees, if the model and both covariances are right */

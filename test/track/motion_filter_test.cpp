@@ -167,3 +167,25 @@ TEST(MotionFilter, GivesBackTheRegistrationWhereNothingElseIsKnown)
   EXPECT_LT((filter.pose().mean - motion).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_LT((filter.pose().covariance - covariance).cwiseAbs().maxCoeff(), 1e-8);
 }
+
+TEST(MotionFilter, FollowsATurnThatTheCloudsHardlySee)
+{
+  // As KalmanExample.FollowsATurnThatTheCloudsHardlySee: an axis 70 mm from the origin.
+  constexpr double turn_deviation = 0.15, deviation = 1e-4;
+  Vector6d turn, off;
+  turn << 0.0, -0.07, 0.0, 0.0, 0.0, 1.0;
+  off << 0.015, 0.02, -0.01, 0.01, 0.008, -0.009;
+  MotionModel still;
+  still.velocity_covariance = 0.02 * 0.02 * Matrix6d::Identity();
+  still.velocity = off;
+  MotionFilter filter(still);
+  filter.predict(1.0);
+  const Matrix6d covariance = deviation * deviation * Matrix6d::Identity() +
+                              turn_deviation * turn_deviation * turn * turn.transpose();
+  const double squared_innovation =
+      filter.update({poseOf(expSE3(2.0 * turn_deviation * turn)), covariance});
+  // 99 % quantile of chi-square with six degrees of freedom.
+  EXPECT_LT(squared_innovation, 16.812);
+  EXPECT_LT(squaredError(filter.pose(), Eigen::Matrix4d::Identity()), 16.812);
+  EXPECT_NEAR(std::sqrt(filter.pose().covariance(5, 5)), 0.02, 0.001);
+}
