@@ -5,7 +5,6 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -89,8 +88,7 @@ inverted(const GraphEdge& edge)
 void
 addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms& terms)
 {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
-  const Matrix6d root = carry * solver.operatorSqrt();
+  const Matrix6d root = carry * squareRootOf(edge.covariance);
   const auto add = [&terms](const Noise& noise, const Matrix6d& factor) {
     terms.try_emplace(noise, Matrix6d::Zero()).first->second += factor;
   };
@@ -127,8 +125,7 @@ Way::append(const GraphEdge& edge)
   const bool is_forward = edge.target == edge_.source;
   const GraphEdge step = is_forward ? edge : inverted(edge);
   const Matrix6d carry = adjointOf(step.T_target_source.inverse());
-  const Matrix6d root =
-      Eigen::SelfAdjointEigenSolver<Matrix6d>(edge.covariance).operatorSqrt();
+  const Matrix6d root = squareRootOf(edge.covariance);
   // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi)
   const Matrix6d of_step =
       is_forward ? root : Matrix6d(-adjointOf(edge.T_target_source) * root);

@@ -37,6 +37,11 @@ struct SharedNoise {
   }
 };
 
+/** \brief The symmetric S^1/2. Eigenvalues below 0, which are rounding next to the
+ * variance of a motion that the clouds do not see, count as 0. */
+Matrix6d
+squareRootOf(const Matrix6d& covariance);
+
 /** \brief An edge that is no registration of scans. */
 constexpr SharedNoise independent_noise{0.0, 0.0};
 

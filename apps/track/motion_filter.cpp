@@ -5,12 +5,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <cmath>
+
 namespace bayesian_icp::app {
 
 namespace {
 
-/** Where the errors of the parts are. */
-constexpr Eigen::Index of_target = 0, of_scan = 6, of_velocity = 12;
+/** Where the errors of the parts are, and what registrations have in common. */
+constexpr Eigen::Index of_target = 0, of_scan = 6, of_velocity = 12, of_common = 18;
 
 /** Times that an update is linearised. */
 constexpr int num_iterations = 5;
@@ -47,6 +49,7 @@ MotionFilter::MotionFilter(const MotionModel& model)
 , velocity_(model.velocity)
 {
   covariance_.block<6, 6>(of_velocity, of_velocity) = model.velocity_covariance;
+  covariance_.block<6, 6>(of_common, of_common).setIdentity();
 }
 
 void
@@ -74,41 +77,40 @@ MotionFilter::predict(double seconds)
 }
 
 double
-MotionFilter::update(const GaussianPose& measured)
+MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
 {
   const Eigen::Matrix4d to_measured =
       matrixOf(measured.mean).inverse() * scan_in_target_;
-  const Eigen::Matrix<double, 18, 6> cross = covariance_.middleCols<6>(of_scan);
-  const Matrix6d P = covariance_.block<6, 6>(of_scan, of_scan);
+  const Matrix6d own = (1.0 - shared.common) * measured.covariance;
+  Eigen::Matrix<double, 6, num_errors> H = Eigen::Matrix<double, 6, num_errors>::Zero();
+  H.middleCols<6>(of_common) =
+      -std::sqrt(shared.common) * squareRootOf(measured.covariance);
+  Eigen::Matrix<double, num_errors, 6> gain;
+  Errors correction = Errors::Zero();
   double squared_innovation = 0.0;
-  Eigen::Matrix<double, 18, 1> correction = Eigen::Matrix<double, 18, 1>::Zero();
-  Eigen::Matrix<double, 18, 6> gain;
-  Matrix6d H;
   for (int iteration = 0; iteration < num_iterations; ++iteration) {
     const Vector6d xi = correction.segment<6>(of_scan);
     const Vector6d difference = logSE3(to_measured * expSE3(xi));
-    H = rightJacobian(difference).inverse() * rightJacobian(xi);
-    const Eigen::LDLT<Matrix6d> S(H * P * H.transpose() + measured.covariance);
+    const Matrix6d of_xi = rightJacobian(difference).inverse() * rightJacobian(xi);
+    H.middleCols<6>(of_scan) = of_xi;
+    const Eigen::LDLT<Matrix6d> S(H * covariance_ * H.transpose() + own);
     if (iteration == 0)
       squared_innovation = difference.dot(S.solve(difference));
-    gain = S.solve(H * cross.transpose()).transpose();
-    correction = gain * (H * xi - difference);
+    gain = S.solve(H * covariance_).transpose();
+    gain.middleRows<6>(of_common).setZero();
+    correction = gain * (of_xi * xi - difference);
   }
   target_ = target_ * expSE3(correction.segment<6>(of_target));
   scan_in_target_ = scan_in_target_ * expSE3(correction.segment<6>(of_scan));
   velocity_ += correction.segment<6>(of_velocity);
-  // Joseph's form stays positive semi-definite.
-  State rest = State::Identity();
-  rest.middleCols<6>(of_scan) -= gain * H;
-  State to_corrected = State::Identity();
-  to_corrected.block<6, 6>(of_target, of_target) =
-      rightJacobian(correction.segment<6>(of_target));
-  to_corrected.block<6, 6>(of_scan, of_scan) =
-      rightJacobian(correction.segment<6>(of_scan));
-  rest = to_corrected * rest;
-  gain = to_corrected * gain;
-  covariance_ = symmetric(State(rest * covariance_ * rest.transpose() +
-                                gain * measured.covariance * gain.transpose()));
+  // Joseph's form stays positive semi-definite. Errors are then about the new poses.
+  State about_new = State::Identity();
+  for (const Eigen::Index part : {of_target, of_scan})
+    about_new.block<6, 6>(part, part) = rightJacobian(correction.segment<6>(part));
+  const State rest = about_new * (State::Identity() - gain * H);
+  const Eigen::Matrix<double, num_errors, 6> taken = about_new * gain;
+  covariance_ = symmetric(
+      State(rest * covariance_ * rest.transpose() + taken * own * taken.transpose()));
   return squared_innovation;
 }
 

@@ -45,11 +45,17 @@ public:
   /** \brief Take in what a registration says without its prior. The update is
    * iterated (Bell and Cathey 1993): along a motion that the clouds hardly see, the
    * measurement may be far away, and a line to it would leave that motion.
+   *
+   * What all registrations have in common makes covariances wider and is not estimated
+   * (a considered parameter, Schmidt 1966), because how it depends on the motion is not
+   * known well enough.
    * \param[in] measured the scan in the target's frame
-   * \return normalised innovation squared: chi-square of as many degrees of freedom as
-   *         the registration sees, if the model and both covariances are right */
+   * \param[in] shared of its noise, only SharedNoise::common: each scan is the source
+   * of one registration \return normalised innovation squared: chi-square of as many
+   * degrees of freedom as the registration sees, if the model and both covariances are
+   * right */
   double
-  update(const GaussianPose& measured);
+  update(const GaussianPose& measured, const SharedNoise& shared = SharedNoise());
 
   /** \brief From now on the scan is the target. */
   void
@@ -64,14 +70,17 @@ public:
   pose() const;
 
 private:
-  using State = Eigen::Matrix<double, 18, 18>;
+  static constexpr int num_errors = 24;
+  using Errors = Eigen::Matrix<double, num_errors, 1>;
+  using State = Eigen::Matrix<double, num_errors, num_errors>;
 
   MotionModel model_;
   bool has_moved_ = false;
   Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();
   Eigen::Matrix4d scan_in_target_ = Eigen::Matrix4d::Identity();
   Vector6d velocity_;
-  /** Of the errors of target_, scan_in_target_ and velocity_. */
+  /** Of the errors of target_, scan_in_target_ and velocity_, and of the noise that
+   * registrations have in common, in units of its standard deviations. */
   State covariance_ = State::Zero();
 };
 

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <unistd.h>
 
 #include <cmath>
@@ -205,4 +207,22 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
   }
   write("FIX 0\n");
   EXPECT_THROW(app::readGraph(file_), io::FileError);
+}
+
+TEST(SquareRoot, IsFiniteBesideAMotionThatNothingSees)
+{
+  // The deviation of a motion that the clouds do not see is 100 times the prior's. A
+  // solver finds some of the other eigenvalues below 0.
+  Random random(31, 0);
+  int num_negative = 0;
+  for (int k = 0; k < 20; ++k) {
+    const Vector6d unseen = 100.0 * random.normal6();
+    const Matrix6d covariance =
+        unseen * unseen.transpose() + 1e-14 * Matrix6d::Identity();
+    num_negative +=
+        Eigen::SelfAdjointEigenSolver<Matrix6d>(covariance).eigenvalues()[0] < 0.0;
+    const Matrix6d root = app::squareRootOf(covariance);
+    EXPECT_TRUE((root * root).isApprox(covariance, 1e-12)) << k;
+  }
+  EXPECT_GT(num_negative, 0);
 }

@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <cmath>
+#include <tuple>
 
 using namespace bayesian_icp;
 using app::GaussianPose;
@@ -69,10 +71,11 @@ struct RunOfTrack {
   int num_updates = 0;
 };
 
-/** Truth from the model, registrations from their covariance: to the scan before, or to
- * every third; scans 4, 5 and 11 cannot be registered. */
+/** Truth from the model, registrations from their covariance, of which they have
+ * \p shared in common: to the scan before, or to every third; scans 4, 5 and 11 cannot
+ * be registered. */
 RunOfTrack
-runOf(std::uint64_t seed, int scans_on_target)
+runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
 {
   Random random(seed, 0);
   const MotionModel given = model();
@@ -80,6 +83,9 @@ runOf(std::uint64_t seed, int scans_on_target)
   MotionFilter filter(given);
   Vector6d velocity = given.velocity + drawnFrom(given.velocity_covariance, random);
   Eigen::Matrix4d truth = Eigen::Matrix4d::Identity(), target = truth;
+  const Matrix6d root =
+      Eigen::SelfAdjointEigenSolver<Matrix6d>(covariance).operatorSqrt();
+  const Vector6d common = std::sqrt(shared.common) * random.normal6();
   RunOfTrack run;
   int num_on_target = 0;
   for (int scan = 1; scan <= num_steps; ++scan) {
@@ -93,9 +99,11 @@ runOf(std::uint64_t seed, int scans_on_target)
       continue;
     // Along x the registration says what the prediction says, as withoutPrior() does.
     const Eigen::Matrix4d in_target = target.inverse() * truth;
-    Vector6d error = drawnFrom(covariance, random);
+    Vector6d error =
+        -root * (common + std::sqrt(1.0 - shared.common) * random.normal6());
     error[0] = logSE3(in_target.inverse() * matrixOf(filter.poseInTarget().mean))[0];
-    run.innovation += filter.update({poseOf(in_target * expSE3(error)), covariance});
+    run.innovation +=
+        filter.update({poseOf(in_target * expSE3(error)), covariance}, shared);
     ++run.num_updates;
     if (++num_on_target == scans_on_target) {
       filter.makeScanTheTarget();
@@ -107,26 +115,33 @@ runOf(std::uint64_t seed, int scans_on_target)
   return run;
 }
 
-class MotionFilterOnTracks : public ::testing::TestWithParam<int> {};
+/** Scans on a target, and the part of the noise that all registrations share. */
+class MotionFilterOnTracks : public ::testing::TestWithParam<std::tuple<int, double>> {
+};
 
 } // namespace
 
 TEST_P(MotionFilterOnTracks, KnowsHowFarItIsOff)
 {
-  double squared_error = 0.0, innovation = 0.0;
-  int num_updates = 0;
+  const auto [scans_on_target, common] = GetParam();
+  Eigen::ArrayXd squared_errors(num_runs), innovations(num_runs);
   for (int k = 0; k < num_runs; ++k) {
-    const RunOfTrack run = runOf(static_cast<std::uint64_t>(k + 1), GetParam());
-    squared_error += run.squared_error / num_runs;
-    innovation += run.innovation;
-    num_updates += run.num_updates;
+    const RunOfTrack run =
+        runOf(static_cast<std::uint64_t>(k + 1), scans_on_target, {0.5, common});
+    squared_errors[k] = run.squared_error;
+    innovations[k] = run.innovation / run.num_updates;
   }
   // Means of chi-square with 6 degrees of freedom, and with the 5 that are seen.
-  EXPECT_NEAR(squared_error, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
-  EXPECT_NEAR(innovation / num_updates, 5.0, 4.0 * std::sqrt(10.0 / num_updates));
+  EXPECT_NEAR(squared_errors.mean(), 6.0, 4.0 * std::sqrt(12.0 / num_runs));
+  // Innovations of one run share the common noise.
+  const double variance = (innovations - innovations.mean()).square().mean();
+  EXPECT_NEAR(innovations.mean(), 5.0, 4.0 * std::sqrt(variance / num_runs));
 }
 
-INSTANTIATE_TEST_SUITE_P(ScansOnATarget, MotionFilterOnTracks, ::testing::Values(1, 3));
+INSTANTIATE_TEST_SUITE_P(ScansOnATarget,
+                         MotionFilterOnTracks,
+                         ::testing::Combine(::testing::Values(1, 3),
+                                            ::testing::Values(0.0, 0.1)));
 
 TEST(MotionFilter, CarriesTheVelocitysErrorAsTheMotionDoes)
 {
@@ -163,7 +178,7 @@ TEST(MotionFilter, GivesBackTheRegistrationWhereNothingElseIsKnown)
   covariance(0, 0) = 1e-4;
   Vector6d motion;
   motion << 0.4, -0.1, 0.2, 0.02, 0.05, -0.1;
-  filter.update({motion, covariance});
+  filter.update({motion, covariance}, app::independent_noise);
   EXPECT_LT((filter.pose().mean - motion).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_LT((filter.pose().covariance - covariance).cwiseAbs().maxCoeff(), 1e-8);
 }
