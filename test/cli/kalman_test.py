@@ -41,7 +41,9 @@ class KalmanFusion(ToolTest):
         folder = DATA / "can"
         lines = (folder / "T_target_source.txt").read_text().splitlines()
         true = pose_of_matrix([list(map(float, line.split())) for line in lines])
-        # Errors of the odometry of about its standard deviation, 0.02.
+        # Errors of the odometry of about its standard deviation, 0.02. The deviation of the
+        # draws is off by 1.5 %, so that in one case of four or five they seem to say a
+        # little of the turn; this is one of the others.
         error = [0.015, 0.02, -0.01, 0.01, 0.008, -0.009]
         odometry = composed(true, inverted(small_pose(error)))
         rows = [*rows_of(odometry), [0.0, 0.0, 0.0, 1.0]]
@@ -49,13 +51,11 @@ class KalmanFusion(ToolTest):
         matrix = self.file("odometry.txt", text)
         result = call(KALMAN_FUSION, folder / "source.pcd", folder / "target.pcd", matrix)
         self.assertEqual(result.returncode, 0, result.stderr)
-        # The prior is five times as wide as the odometry. In it the noise of the clouds may
-        # seem to say a little of the turn.
-        self.assertRegex(result.stdout, "directions that they do not see: [01]\n")
+        self.assertIn("directions that they do not see: 1", result.stdout)
         fused = result.stdout[result.stdout.index("fused") :]
         numbers = [list(map(float, line.split(":")[1].split())) for line in fused.splitlines()[1:3]]
         deviations = numbers[1]
-        # If the odometry counted twice: 0.014.
+        # Half of the information about the axis would be 0.014: the odometry twice.
         self.assertAlmostEqual(deviations[5], 0.02, delta=0.001)
         for k in range(5):
             self.assertLess(deviations[k], 0.005)
