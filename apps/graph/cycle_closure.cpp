@@ -84,6 +84,23 @@ inverted(const GraphEdge& edge)
   return {edge.source, edge.target, back, carry * edge.covariance * carry.transpose()};
 }
 
+/** Of the end of a path in the frame of vertex \p begin. */
+Eigen::Matrix4d
+poseAlong(const std::vector<GraphEdge>& edges,
+          int begin,
+          const std::vector<std::size_t>& path)
+{
+  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+  for (const std::size_t k : path) {
+    const GraphEdge& edge = edges[k];
+    const bool is_forward = edge.target == begin;
+    pose = pose * (is_forward ? edge.T_target_source
+                              : Eigen::Matrix4d(edge.T_target_source.inverse()));
+    begin = is_forward ? edge.source : edge.target;
+  }
+  return pose;
+}
+
 /** \param[in] carry of twists at the edge's source to the frame of the errors */
 void
 addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms& terms)
@@ -195,10 +212,10 @@ Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
 {
   const GraphEdge& direct = edges[cycle.direct];
-  const GraphEdge way = wayAlong(edges, direct.target, cycle.path);
+  const Eigen::Matrix4d way = poseAlong(edges, direct.target, cycle.path);
   const Matrix6d S = covarianceOf(errorTermsOf(edges, cycle));
   Closure closure;
-  closure.error = logSE3(direct.T_target_source.inverse() * way.T_target_source);
+  closure.error = logSE3(direct.T_target_source.inverse() * way);
   closure.squared_error = closure.error.dot(S.ldlt().solve(closure.error));
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
   closure.num_degrees = static_cast<int>(

@@ -50,10 +50,10 @@ public:
    * (a considered parameter, Schmidt 1966), because how it depends on the motion is not
    * known well enough.
    * \param[in] measured the scan in the target's frame
-   * \param[in] shared of its noise, only SharedNoise::common: each scan is the source
-   * of one registration \return normalised innovation squared: chi-square of as many
-   * degrees of freedom as the registration sees, if the model and both covariances are
-   * right */
+   * \param[in] shared only its part common counts: each scan is the source of one
+   *            registration
+   * \return normalised innovation squared: chi-square of as many degrees of freedom as
+   *         the registration sees, if the model and both covariances are right */
   double
   update(const GaussianPose& measured, const SharedNoise& shared = SharedNoise());
 

@@ -141,26 +141,26 @@ TEST(OptimizedPosesOf, EdgesThatShareNoiseAreAsFarOffAsStated)
   for (int run = 0; run < num_runs; ++run) {
     const Poses truth = steadyPoses(num_poses);
     std::vector<GraphEdge> edges = drawnSpan(truth, 3, shared, random);
-    const auto squaredErrorFor = [&](const app::SharedNoise& assumed) {
+    const auto lastPoseFor = [&](const app::SharedNoise& assumed) {
       for (GraphEdge& edge : edges)
         edge.shared = assumed;
       const OptimizedPoses found = optimizedPoses(truth, edges, RobustLoss::None);
       EXPECT_EQ(found.complaint, "");
-      const Vector6d error = errorOf(found.poses.back(), truth.back());
-      return error.dot(found.poses.back().covariance.ldlt().solve(error));
+      return found.poses.back();
     };
-    const auto meanFor = [&](const app::SharedNoise& assumed) {
-      for (GraphEdge& edge : edges)
-        edge.shared = assumed;
-      return optimizedPoses(truth, edges, RobustLoss::None).poses.back().mean;
+    const auto squaredErrorOf = [&](const GaussianPose& pose) {
+      const Vector6d error = errorOf(pose, truth.back());
+      return error.dot(pose.covariance.ldlt().solve(error));
     };
-    as_drawn += squaredErrorFor(shared) / num_runs;
-    without += squaredErrorFor(without_common) / num_runs;
+    const GaussianPose with_common = lastPoseFor(shared);
+    as_drawn += squaredErrorOf(with_common) / num_runs;
+    without += squaredErrorOf(lastPoseFor(without_common)) / num_runs;
+    alone += squaredErrorOf(lastPoseFor(app::independent_noise)) / num_runs;
     // The common noise has no part in the weights.
-    const Vector6d with_common = meanFor(shared);
     const double scale = 1.0 / (1.0 - shared.common);
-    EXPECT_LT((meanFor({shared.source * scale, 0.0}) - with_common).norm(), 1e-6);
-    alone += squaredErrorFor(app::independent_noise) / num_runs;
+    EXPECT_LT(
+        (lastPoseFor({shared.source * scale, 0.0}).mean - with_common.mean).norm(),
+        1e-6);
   }
   EXPECT_NEAR(as_drawn, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
   EXPECT_GT(without, 7.5);
