@@ -115,8 +115,10 @@ trackReportHtml(const TrackCommand& command, const Track& track)
   uncertainty.id = "uncertainty";
   uncertainty.heading = "How sure is that?";
   uncertainty.above_html = html::paragraphHtml(
-      "Errors add up along the trajectory. The covariances take the errors of two "
-      "registrations as independent, although they have a scan or a map in common.");
+      "Errors add up along the trajectory. The covariances take a tenth of the "
+      "variance "
+      "of all registrations as the same error of the sensor, and the rest as "
+      "independent, although two registrations have a scan or a map in common.");
   uncertainty.charts = uncertaintyCharts(track);
   repeat.id = "repeat";
   repeat.heading = "To repeat the run";
