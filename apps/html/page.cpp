@@ -59,6 +59,20 @@ tableHtml(const Table& table)
 }
 
 std::string
+limitedTableHtml(Table table, std::size_t max_rows, const std::string& more)
+{
+  const std::size_t num_rows = table.rows.size();
+  if (num_rows > max_rows)
+    table.rows.resize(max_rows);
+  return num_rows == 0
+             ? ""
+             : tableHtml(table) +
+                   paragraphHtml(num_rows > max_rows
+                                     ? std::to_string(num_rows - max_rows) + ' ' + more
+                                     : "");
+}
+
+std::string
 paragraphHtml(const std::string& text)
 {
   return text.empty() ? "" : element("p", escaped(text)) + '\n';

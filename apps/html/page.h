@@ -26,6 +26,11 @@ struct Table {
 std::string
 tableHtml(const Table& table);
 
+/** \brief The first \p max_rows of a table; nothing if it has none.
+ * \param[in] more follows the number of rows that are left out */
+std::string
+limitedTableHtml(Table table, std::size_t max_rows, const std::string& more);
+
 /** \brief `<p>`; nothing for an empty text. */
 std::string
 paragraphHtml(const std::string& text);

@@ -124,6 +124,12 @@ OutputFolder::add(const std::string& name,
 }
 
 void
+OutputFolder::add(const std::string& name, const std::string& text)
+{
+  add(name, [&text](std::ostream& stream) { stream << text; });
+}
+
+void
 OutputFolder::leaveOut(const std::string& name)
 {
   left_out_.push_back((fs::path(folder_) / name).string());

@@ -27,6 +27,10 @@ public:
   void
   add(const std::string& name, const std::function<void(std::ostream&)>& write);
 
+  /** \brief Write a file that consists of \p text. */
+  void
+  add(const std::string& name, const std::string& text);
+
   /** \brief Let \p write fill the file of the name that it is given.
    * \throws FileError if that fails */
   void
