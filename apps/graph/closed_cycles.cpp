@@ -2,8 +2,6 @@
 
 #include "io/numbers.h"
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -80,7 +78,7 @@ public:
     errors_.push_back(error);
     common_.emplace_back(Vector6d::Zero());
     for (const auto& [noise, factor] : terms) {
-      if (noise.of == Noise::Of::Common) {
+      if (noise.first == NoiseOf::Common) {
         common_.back() = factor.transpose() * direction;
         continue;
       }
@@ -178,18 +176,17 @@ statisticsOf(const std::vector<ClosedCycle>& cycles)
 }
 
 std::vector<ClosedCycle>
-openCycles(std::vector<ClosedCycle> cycles)
+openCycles(const std::vector<ClosedCycle>& cycles)
 {
-  cycles.erase(
-      std::remove_if(cycles.begin(),
-                     cycles.end(),
-                     [](const ClosedCycle& closed) { return closed.closes(); }),
-      cycles.end());
-  std::sort(
-      cycles.begin(), cycles.end(), [](const ClosedCycle& a, const ClosedCycle& b) {
-        return a.closure.probability < b.closure.probability;
-      });
-  return cycles;
+  std::vector<ClosedCycle> open;
+  std::copy_if(cycles.begin(),
+               cycles.end(),
+               std::back_inserter(open),
+               [](const ClosedCycle& closed) { return !closed.closes(); });
+  std::sort(open.begin(), open.end(), [](const ClosedCycle& a, const ClosedCycle& b) {
+    return a.closure.probability < b.closure.probability;
+  });
+  return open;
 }
 
 std::vector<Suspect>
@@ -226,11 +223,9 @@ jointClosureOf(const std::vector<GraphEdge>& edges,
     ++joint.num_cycles;
   }
   joint.num_degrees = rows.size();
-  if (joint.num_degrees > 0) {
+  if (joint.num_degrees > 0)
     joint.squared_error = rows.squaredError();
-    joint.probability = boost::math::cdf(boost::math::complement(
-        boost::math::chi_squared(joint.num_degrees), joint.squared_error));
-  }
+  joint.probability = chanceOf(joint.squared_error, joint.num_degrees);
   return joint;
 }
 

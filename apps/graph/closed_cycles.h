@@ -59,7 +59,7 @@ statisticsOf(const std::vector<ClosedCycle>& cycles);
 
 /** \brief Cycles that do not close, the least probable first. */
 std::vector<ClosedCycle>
-openCycles(std::vector<ClosedCycle> cycles);
+openCycles(const std::vector<ClosedCycle>& cycles);
 
 /** \brief An edge none of whose cycles closes. */
 struct Suspect {
@@ -79,8 +79,7 @@ struct JointClosure {
    * their covariance with all that they have in common. */
   double squared_error = 0.0;
   int num_degrees = 0;
-  /** That a larger squared_error would come of chance: chi-square with num_degrees, to
-   * first order; 1 without degrees. */
+  /** chanceOf() both, to first order. */
   double probability = 1.0;
 };
 

@@ -1,10 +1,9 @@
 #include "graph/cycle_closure.h"
 
-#include "graph/adjoint.h"
-
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -74,31 +73,35 @@ shortestPath(const std::vector<GraphEdge>& edges,
   return path;
 }
 
-/** The edge as seen from its source. */
-GraphEdge
-inverted(const GraphEdge& edge)
+/** An edge as it is gone along: from one of its vertices to the other. */
+struct Step {
+  int end;
+  /** The end in the frame of the vertex before. */
+  Eigen::Matrix4d T;
+  /** Of the edge's error, which is on the right of T_target_source, to the right of T.
+   */
+  Matrix6d carry;
+};
+
+Step
+stepFrom(int begin, const GraphEdge& edge)
 {
+  const Eigen::Matrix4d& T = edge.T_target_source;
+  if (edge.target == begin)
+    return {edge.source, T, Matrix6d::Identity()};
   // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi)
-  const Eigen::Matrix4d back = edge.T_target_source.inverse();
-  const Matrix6d carry = adjointOf(edge.T_target_source);
-  return {edge.source, edge.target, back, carry * edge.covariance * carry.transpose()};
+  return {edge.target, T.inverse(), -adjointOf(T)};
 }
 
-/** Of the end of a path in the frame of vertex \p begin. */
-Eigen::Matrix4d
-poseAlong(const std::vector<GraphEdge>& edges,
-          int begin,
-          const std::vector<std::size_t>& path)
+std::vector<Step>
+stepsAlong(const std::vector<GraphEdge>& edges,
+           int begin,
+           const std::vector<std::size_t>& path)
 {
-  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
-  for (const std::size_t k : path) {
-    const GraphEdge& edge = edges[k];
-    const bool is_forward = edge.target == begin;
-    pose = pose * (is_forward ? edge.T_target_source
-                              : Eigen::Matrix4d(edge.T_target_source.inverse()));
-    begin = is_forward ? edge.source : edge.target;
-  }
-  return pose;
+  std::vector<Step> steps;
+  for (const std::size_t k : path)
+    steps.push_back(stepFrom(steps.empty() ? begin : steps.back().end, edges[k]));
+  return steps;
 }
 
 /** \param[in] carry of twists at the edge's source to the frame of the errors */
@@ -109,9 +112,9 @@ addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms
   const auto add = [&terms](const Noise& noise, const Matrix6d& factor) {
     terms.try_emplace(noise, Matrix6d::Zero()).first->second += factor;
   };
-  add({Noise::Of::Edge, static_cast<long>(k)}, std::sqrt(edge.shared.own()) * root);
-  add({Noise::Of::Source, edge.source}, std::sqrt(edge.shared.source) * root);
-  add({Noise::Of::Common, 0}, std::sqrt(edge.shared.common) * root);
+  add({NoiseOf::Edge, static_cast<long>(k)}, std::sqrt(edge.shared.own()) * root);
+  add({NoiseOf::Source, edge.source}, std::sqrt(edge.shared.source) * root);
+  add({NoiseOf::Common, 0}, std::sqrt(edge.shared.common) * root);
 }
 
 } // namespace
@@ -139,19 +142,16 @@ Way::Way(int begin) : edge_{begin, begin, Eigen::Matrix4d::Identity(), Matrix6d:
 void
 Way::append(const GraphEdge& edge)
 {
-  const bool is_forward = edge.target == edge_.source;
-  const GraphEdge step = is_forward ? edge : inverted(edge);
-  const Matrix6d carry = adjointOf(step.T_target_source.inverse());
-  const Matrix6d root = squareRootOf(edge.covariance);
-  // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi)
-  const Matrix6d of_step =
-      is_forward ? root : Matrix6d(-adjointOf(edge.T_target_source) * root);
-  common_ = (carry * common_ + std::sqrt(edge.shared.common) * of_step).eval();
+  const Step step = stepFrom(edge_.source, edge);
+  const Matrix6d carry = adjointOf(step.T.inverse());
+  const Matrix6d covariance = step.carry * edge.covariance * step.carry.transpose();
+  const Matrix6d root = step.carry * squareRootOf(edge.covariance);
+  common_ = (carry * common_ + std::sqrt(edge.shared.common) * root).eval();
   edge_.covariance = (carry * edge_.covariance * carry.transpose() +
-                      (1.0 - edge.shared.common) * step.covariance)
+                      (1.0 - edge.shared.common) * covariance)
                          .eval();
-  edge_.T_target_source = (edge_.T_target_source * step.T_target_source).eval();
-  edge_.source = step.source;
+  edge_.T_target_source = (edge_.T_target_source * step.T).eval();
+  edge_.source = step.end;
 }
 
 GraphEdge
@@ -179,22 +179,13 @@ errorTermsOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
   const GraphEdge& direct = edges[cycle.direct];
   ErrorTerms terms;
   addError(cycle.direct, direct, Matrix6d::Identity(), terms);
-  GraphEdge rest;
-  rest.target = direct.source;
-  for (auto k = cycle.path.rbegin(); k != cycle.path.rend(); ++k) {
-    const GraphEdge& edge = edges[*k];
-    const bool is_forward = edge.source == rest.target;
-    const Eigen::Matrix4d T = edge.T_target_source;
-    // The closure's error is that of the direct edge less those of the path; backwards,
-    // (T exp(xi))^-1 = T^-1 exp(-Ad(T) xi).
-    const Matrix6d carry = adjointOf(rest.T_target_source.inverse());
-    addError(*k,
-             edge,
-             is_forward ? Matrix6d(-carry) : Matrix6d(carry * adjointOf(T)),
-             terms);
-    rest.T_target_source =
-        (is_forward ? T : Eigen::Matrix4d(T.inverse())) * rest.T_target_source;
-    rest.target = is_forward ? edge.target : edge.source;
+  const std::vector<Step> steps = stepsAlong(edges, direct.target, cycle.path);
+  Eigen::Matrix4d rest = Eigen::Matrix4d::Identity();
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    // The closure's error is that of the direct edge less those of the path.
+    const Matrix6d carry = -adjointOf(rest.inverse()) * steps[k].carry;
+    addError(cycle.path[k], edges[cycle.path[k]], carry, terms);
+    rest = steps[k].T * rest;
   }
   return terms;
 }
@@ -208,11 +199,21 @@ covarianceOf(const ErrorTerms& terms)
   return sum;
 }
 
+double
+chanceOf(double squared_error, int num_degrees)
+{
+  return num_degrees == 0 ? 1.0
+                          : boost::math::cdf(boost::math::complement(
+                                boost::math::chi_squared(num_degrees), squared_error));
+}
+
 Closure
 closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
 {
   const GraphEdge& direct = edges[cycle.direct];
-  const Eigen::Matrix4d way = poseAlong(edges, direct.target, cycle.path);
+  Eigen::Matrix4d way = Eigen::Matrix4d::Identity();
+  for (const Step& step : stepsAlong(edges, direct.target, cycle.path))
+    way = way * step.T;
   const Matrix6d S = covarianceOf(errorTermsOf(edges, cycle));
   Closure closure;
   closure.error = logSE3(direct.T_target_source.inverse() * way);
@@ -220,9 +221,7 @@ closureOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(S, Eigen::EigenvaluesOnly);
   closure.num_degrees = static_cast<int>(
       (solver.eigenvalues().array() < max_deviation * max_deviation).count());
-  if (closure.num_degrees > 0)
-    closure.probability = boost::math::cdf(boost::math::complement(
-        boost::math::chi_squared(closure.num_degrees), closure.squared_error));
+  closure.probability = chanceOf(closure.squared_error, closure.num_degrees);
   return closure;
 }
 

@@ -6,7 +6,7 @@
 #include "graph/pose_graph.h"
 
 #include <map>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp::app {
@@ -63,29 +63,26 @@ struct Closure {
   double squared_error = 0.0;
   /** Directions in which S is below max_deviation^2. */
   int num_degrees = 6;
-  /** That a larger squared_error would come of chance: chi-square with num_degrees; 1
-   * without degrees. */
+  /** chanceOf() both. */
   double probability = 1.0;
 };
+
+/** \brief That a larger \p squared_error comes of chance: chi-square with
+ * \p num_degrees; 1 without degrees. */
+double
+chanceOf(double squared_error, int num_degrees);
 
 /** \brief Standard deviation of a closure from which on a direction says nothing [m,
  * rad]: there an edge has no information of the clouds. */
 constexpr double max_deviation = 3.0;
 
-/** \brief Six independent standard normal numbers: the noise of an edge alone, that of
- * all edges with one source, or that of all edges. */
-struct Noise {
-  enum class Of { Edge, Source, Common };
-  Of of;
-  /** Position of the edge, vertex, or 0. */
-  long number;
+/** \brief Whose a noise is: of an edge alone, of all edges with one source, or of all
+ * edges. */
+enum class NoiseOf { Edge, Source, Common };
 
-  bool
-  operator<(const Noise& other) const
-  {
-    return std::tie(of, number) < std::tie(other.of, other.number);
-  }
-};
+/** \brief Six independent standard normal numbers; and the position of the edge, the
+ * vertex, or 0. */
+using Noise = std::pair<NoiseOf, long>;
 
 /** \brief An error as a sum over noises, each times its factor. */
 using ErrorTerms = std::map<Noise, Matrix6d>;

@@ -2,6 +2,8 @@
 
 #include "graph/closed_cycles.h"
 
+#include <boost/pending/disjoint_sets.hpp>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -9,6 +11,7 @@
 #include <ceres/autodiff_manifold.h>
 #include <ceres/covariance.h>
 #include <ceres/loss_function.h>
+#include <ceres/normal_prior.h>
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
@@ -131,20 +134,6 @@ struct EdgeError {
   }
 };
 
-/** Of numbers that are 0 to a deviation. */
-struct NoiseError {
-  double deviation;
-
-  template <typename T>
-  bool
-  operator()(const T* noise, T* residual) const
-  {
-    for (int k = 0; k < 6; ++k)
-      residual[k] = noise[k] / T(deviation);
-    return true;
-  }
-};
-
 Parameters
 parametersOf(const Eigen::Matrix4d& pose)
 {
@@ -185,23 +174,17 @@ errorOf(const GraphEdge& edge)
 void
 requireConnected(std::size_t num_poses, const std::vector<GraphEdge>& edges)
 {
-  std::vector<std::size_t> parents(num_poses);
-  for (std::size_t k = 0; k < num_poses; ++k)
-    parents[k] = k;
-  const auto rootOf = [&](int vertex) {
-    if (vertex < 0 || static_cast<std::size_t>(vertex) >= num_poses)
-      throw std::invalid_argument("vertex " + std::to_string(vertex) + " has no pose");
-    auto root = static_cast<std::size_t>(vertex);
-    while (parents[root] != root)
-      root = parents[root] = parents[parents[root]];
-    return root;
-  };
+  boost::disjoint_sets_with_storage<> parts(num_poses);
   for (const GraphEdge& edge : edges) {
-    const std::size_t a = rootOf(edge.target), b = rootOf(edge.source);
-    parents[std::max(a, b)] = std::min(a, b);
+    for (const int vertex : {edge.target, edge.source})
+      if (vertex < 0 || static_cast<std::size_t>(vertex) >= num_poses)
+        throw std::invalid_argument("vertex " + std::to_string(vertex) +
+                                    " has no pose");
+    parts.union_set(static_cast<std::size_t>(edge.target),
+                    static_cast<std::size_t>(edge.source));
   }
-  for (std::size_t k = 0; k < num_poses; ++k)
-    if (rootOf(static_cast<int>(k)) != 0)
+  for (std::size_t k = 1; k < num_poses; ++k)
+    if (parts.find_set(k) != parts.find_set(std::size_t(0)))
       throw std::invalid_argument("no edges join scan " + std::to_string(k) +
                                   " to scan 0");
 }
@@ -291,11 +274,13 @@ private:
     return unknowns_.back().noise;
   }
 
+  /** Of numbers that are 0 to a deviation. */
   void
   addNoise(double deviation, NoiseNumbers& noise)
   {
     problem_.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<NoiseError, 6, 6>(new NoiseError{deviation}),
+        new ceres::NormalPrior(ceres::Matrix::Identity(6, 6) / deviation,
+                               ceres::Vector::Zero(6)),
         nullptr,
         noise.data());
   }

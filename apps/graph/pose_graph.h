@@ -5,6 +5,9 @@
 
 #include <bayesian_icp/pose.h>
 
+#include <utility>
+#include <vector>
+
 namespace bayesian_icp::app {
 
 /** \brief In a radian. */
@@ -41,6 +44,19 @@ struct SharedNoise {
  * variance of a motion that the clouds do not see, count as 0. */
 Matrix6d
 squareRootOf(const Matrix6d& covariance);
+
+/** \brief Ad(T) of twists (v, w): T exp(xi) = exp(Ad(T) xi) T. With T.inverse() it
+ * carries them from the left to the right. */
+Matrix6d
+adjointOf(const Eigen::Matrix4d& T);
+
+/** \brief Where a trajectory comes back to where it was: for each pose the nearest
+ * earlier one within \p radius, if in between the trajectory was more than twice the
+ * radius away. Near neighbours in the sequence are no loops by that.
+ * \param[in] radius [m]
+ * \return pairs (earlier, later), in the order of the later ones */
+std::vector<std::pair<int, int>>
+loopCandidates(const std::vector<GaussianPose>& poses, double radius);
 
 /** \brief An edge that is no registration of scans. */
 constexpr SharedNoise independent_noise{0.0, 0.0};

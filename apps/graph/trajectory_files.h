@@ -1,5 +1,5 @@
 /** \file
- * \brief Trajectories and pose graphs as files for other software.
+ * \brief Trajectories and pose graphs in the files of other software.
  */
 #pragma once
 
@@ -24,6 +24,13 @@ tumCovarianceText(const std::vector<double>& times,
  * of each edge, with invertibleCovariance(). */
 std::string
 g2oText(const std::vector<GaussianPose>& poses, const std::vector<GraphEdge>& edges);
+
+/** \brief Read the EDGE_SE3:QUAT of a file in g2o's format, in their order. Other lines
+ * are left out. The information of g2o is that of half angles.
+ * \throws io::FileError if the file cannot be read, has no edges, or has one that is
+ *         not complete, not finite, or without a positive definite information */
+std::vector<GraphEdge>
+readGraph(const std::string& file);
 
 /** \brief The covariance, if it can be inverted. Where a motion oblique to the axes is
  * not seen, and others are seen well, it is made wider: all variances by a little.

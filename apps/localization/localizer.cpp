@@ -265,12 +265,11 @@ Localizer::localize(const pcl::PCLPointCloud2& cloud,
                     " than the cloud, but max_prior_age is " +
                     shortly(options_.max_prior_age) + " s");
     requireFrame("prior", stated.frame, options_.map_frame);
-    double widening = 1.0;
-    const PriorOptions prior = priorFrom(stated, options_.prior_floor, widening);
+    const StatedPrior prior = priorFrom(stated, options_.prior_floor);
     result.values.emplace_back("factor of the prior's variances for its correlations",
-                               shortly(widening));
-    sample(source, prior, progress);
-    report(icp_.getSummary(), icp_.getSamples(), prior, result);
+                               shortly(prior.widening));
+    sample(source, prior.options, progress);
+    report(icp_.getSummary(), icp_.getSamples(), prior.options, result);
   }
   catch (const Refusal& refusal) {
     result.message = refusal.what();

@@ -116,8 +116,8 @@ statedPoseOf(const Vector6d& mean, const Matrix6d& right_se3)
   return stated;
 }
 
-PriorOptions
-priorFrom(const StatedPose& pose, const PriorFloor& floor, double& widening)
+StatedPrior
+priorFrom(const StatedPose& pose, const PriorFloor& floor)
 {
   PriorOptions prior;
   prior.mean = meanOf(pose);
@@ -129,9 +129,8 @@ priorFrom(const StatedPose& pose, const PriorFloor& floor, double& widening)
   // By Gershgorin's theorem, the difference to the stated covariance has no negative
   // eigenvalue.
   const Vector6d factors = correlationsOf(covariance).cwiseAbs().rowwise().sum();
-  widening = std::max(1.0, factors.maxCoeff());
   prior.variance = covariance.diagonal().cwiseProduct(factors);
-  return prior;
+  return {prior, std::max(1.0, factors.maxCoeff())};
 }
 
 } // namespace bayesian_icp::app

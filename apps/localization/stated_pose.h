@@ -44,6 +44,13 @@ struct PriorFloor {
   double rotation = 0.0;    // [rad]
 };
 
+/** \brief A prior that is made of a stated pose. */
+struct StatedPrior {
+  PriorOptions options;
+  /** Largest factor of a variance for its correlations, at least 1. */
+  double widening = 1.0;
+};
+
 /** \brief The prior that a stated pose makes.
  *
  * The library's priors have independent x, y, z, roll, pitch, yaw. The covariance is
@@ -51,11 +58,10 @@ struct PriorFloor {
  * the prior's. If it has, each variance is multiplied by the sum of the absolute
  * correlations in its row, which makes the prior wider than the stated one in every
  * direction.
- * \param[out] widening largest of these six factors, at least 1
  * \throws Refusal with the reason if the pose is not finite, the quaternion has no
  * length of 1, pitch is within 0.01 rad of +-pi/2, or the covariance is not positive
  * semi-definite or has a variance that is not positive and has no floor */
-PriorOptions
-priorFrom(const StatedPose& pose, const PriorFloor& floor, double& widening);
+StatedPrior
+priorFrom(const StatedPose& pose, const PriorFloor& floor = PriorFloor());
 
 } // namespace bayesian_icp::app

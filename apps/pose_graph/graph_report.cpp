@@ -2,7 +2,7 @@
 
 #include "graph/closed_cycles.h"
 #include "report/path_charts.h"
-#include "report/report_html.h"
+#include "report/section.h"
 
 #include <Eigen/LU>
 
@@ -22,63 +22,35 @@ shortText(double value)
   return io::textOf(value, num_digits);
 }
 
-bool
-isLoop(const ScanEdge& edge)
-{
-  return edge.kind == EdgeKind::Named || edge.kind == EdgeKind::Found;
-}
-
-/** The table, if it has rows, with a word about those that there is no room for. */
 std::string
-limitedTableHtml(html::Table table)
+shortTableHtml(const html::Table& table)
 {
-  if (table.rows.empty())
-    return "";
-  const std::size_t num_rows = table.rows.size();
-  table.rows.resize(std::min(num_rows, max_rows));
-  return html::tableHtml(table) +
-         html::paragraphHtml(
-             num_rows > max_rows ? io::textOf(num_rows - max_rows) + " more." : "");
+  return html::limitedTableHtml(table, max_rows, "more.");
 }
 
-/** What the verdict counts. */
-struct Counts {
-  std::size_t num_complaints = 0; // refused loops are none
-  std::size_t num_refused = 0;
+std::string
+verdictHtml(const ScanGraph& graph, std::size_t num_contradictions)
+{
+  std::size_t num_complaints = 0, num_refused = 0;
   std::array<std::size_t, 4> num_taken{}; // by EdgeKind
-};
-
-Counts
-countsOf(const ScanGraph& graph)
-{
-  Counts counts;
-  for (const ScanEdge& edge : graph.registrations()) {
+  for (const ScanEdge& edge : graph.registrations) {
     if (edge.is_in_graph)
-      ++counts.num_taken[static_cast<std::size_t>(edge.kind)];
-    if (edge.kind == EdgeKind::Found)
-      counts.num_refused += edge.is_in_graph ? 0 : 1;
+      ++num_taken[static_cast<std::size_t>(edge.kind)];
+    if (edge.kind == EdgeKind::Found) // a refused one is no complaint
+      num_refused += edge.is_in_graph ? 0 : 1;
     else
-      counts.num_complaints += edge.complaint.empty() ? 0 : 1;
+      num_complaints += edge.complaint.empty() ? 0 : 1;
   }
-  return counts;
-}
-
-std::string
-verdictHtml(const ScanGraph& graph, const OptimizedPoses& optimum)
-{
-  const Counts counts = countsOf(graph);
-  const std::size_t num_contradictions =
-      disagreementsOf(edgesOf(graph.taken()), optimum).size();
-  const bool is_good = num_contradictions == 0 && counts.num_complaints == 0;
+  const bool is_good = num_contradictions == 0 && num_complaints == 0;
   std::string sentence = "Edges in the graph";
-  for (std::size_t k = 0; k < counts.num_taken.size(); ++k)
+  for (std::size_t k = 0; k < num_taken.size(); ++k)
     sentence += (k == 0 ? ": " : ", ") +
                 std::string(toString(static_cast<EdgeKind>(k))) + ' ' +
-                io::textOf(counts.num_taken[k]);
-  sentence +=
-      ". Candidates for loops that were refused: " + io::textOf(counts.num_refused) +
-      ". Other registrations that are not ok: " + io::textOf(counts.num_complaints) +
-      ". Edges that contradict the others: " + io::textOf(num_contradictions) + '.';
+                io::textOf(num_taken[k]);
+  sentence += ". Candidates for loops that were refused: " + io::textOf(num_refused) +
+              ". Other registrations that are not ok: " + io::textOf(num_complaints) +
+              ". Edges that contradict the others: " + io::textOf(num_contradictions) +
+              '.';
   return html::boxHtml(is_good ? html::Tone::Good : html::Tone::Caution,
                        is_good ? "All edges agree"
                        : num_contradictions > 0
@@ -101,8 +73,8 @@ loopsHtml(const ScanGraph& graph)
                   "in the graph",
                   "complaint"};
   table.first_column_of_words = 6;
-  for (const ScanEdge& edge : graph.registrations()) {
-    if (!isLoop(edge))
+  for (const ScanEdge& edge : graph.registrations) {
+    if (!edge.isLoop())
       continue;
     std::vector<std::string> row = {nameOf(edge.edge), "", "", "", "", ""};
     if (edge.closure) {
@@ -118,7 +90,7 @@ loopsHtml(const ScanGraph& graph)
     row.push_back(edge.complaint);
     table.rows.push_back(row);
   }
-  return limitedTableHtml(table);
+  return shortTableHtml(table);
 }
 
 std::string
@@ -128,13 +100,13 @@ complaintsHtml(const ScanGraph& graph)
   table.caption = "Registrations that are not ok";
   table.header = {"edge", "kind", "in the graph", "complaint"};
   table.first_column_of_words = 1;
-  for (const ScanEdge& edge : graph.registrations())
-    if (!isLoop(edge) && !edge.complaint.empty())
+  for (const ScanEdge& edge : graph.registrations)
+    if (!edge.isLoop() && !edge.complaint.empty())
       table.rows.push_back({nameOf(edge.edge),
                             toString(edge.kind),
                             edge.is_in_graph ? "yes" : "no",
                             edge.complaint});
-  return limitedTableHtml(table);
+  return shortTableHtml(table);
 }
 
 std::string
@@ -165,11 +137,13 @@ cyclesHtml(const std::vector<ClosedCycle>& cycles)
                          shortText(degrees * cycle.closure.error.tail<3>().norm()),
                          io::fixedTextOf(cycle.closure.squared_error, 1),
                          shortText(cycle.closure.probability)});
-  return limitedTableHtml(table) + limitedTableHtml(open);
+  return shortTableHtml(table) + shortTableHtml(open);
 }
 
 std::string
-contradictionsHtml(const std::vector<ScanEdge>& edges, const OptimizedPoses& optimum)
+contradictionsHtml(const std::vector<ScanEdge>& edges,
+                   const OptimizedPoses& optimum,
+                   const std::vector<Disagreement>& disagreements)
 {
   html::Table table;
   table.caption = "Edges that contradict the others: squared error above the 99.9 % "
@@ -181,7 +155,7 @@ contradictionsHtml(const std::vector<ScanEdge>& edges, const OptimizedPoses& opt
                   "cycles of which none closes",
                   "kind"};
   table.first_column_of_words = 5;
-  for (const Disagreement& found : disagreementsOf(edgesOf(edges), optimum)) {
+  for (const Disagreement& found : disagreements) {
     const GraphEdge& edge = edges[found.edge].edge;
     const auto poseOfVertex = [&optimum](int vertex) {
       return matrixOf(optimum.poses[static_cast<std::size_t>(vertex)].mean);
@@ -196,67 +170,7 @@ contradictionsHtml(const std::vector<ScanEdge>& edges, const OptimizedPoses& opt
                           io::textOf(found.num_open_cycles),
                           toString(edges[found.edge].kind)});
   }
-  return limitedTableHtml(table);
-}
-
-Section
-trajectorySection(const ScanGraph& graph, const PathData& path)
-{
-  Section section;
-  section.id = "trajectory";
-  section.heading = "Where was the sensor?";
-  std::vector<std::pair<std::string, std::string>> colours = {
-      {path_colour, "optimized poses"},
-      {ellipse_colour, "their 95 % regions"},
-      {before_colour, "the chain of scans alone"}};
-  if (!path.loops.empty())
-    colours.emplace_back(loop_colour, "loops");
-  section.above_html = html::legendHtml(colours);
-  section.charts = {pathChart(path)};
-  section.below_html = loopsHtml(graph) + complaintsHtml(graph);
-  return section;
-}
-
-Section
-uncertaintySection(const PathData& path)
-{
-  std::vector<double> numbers;
-  for (std::size_t k = 0; k < path.poses.size(); ++k)
-    numbers.push_back(static_cast<double>(k));
-  Section section;
-  section.id = "uncertainty";
-  section.heading = "How sure is that?";
-  section.above_html =
-      html::paragraphHtml(
-          "Registrations with the same source share the noise of its points, and all "
-          "of them share what the sensor does wrong in each scan. Other errors are "
-          "taken as independent.") +
-      html::legendHtml({{path_colour, "optimized poses"},
-                        {before_colour, "the chain of scans alone"}});
-  section.charts = deviationCharts(numbers, "scan", path);
-  return section;
-}
-
-Section
-agreementSection(const std::vector<ScanEdge>& edges, const OptimizedPoses& optimum)
-{
-  const std::vector<GraphEdge> plain = edgesOf(edges);
-  const std::vector<ClosedCycle> cycles = closedCycles(plain, plain.size() + 1);
-  Section section;
-  section.id = "agreement";
-  section.heading = "Do the edges agree?";
-  section.above_html =
-      cycles.empty()
-          ? html::paragraphHtml("No cycle: nothing tests the edges. --span and --loops "
-                                "make some.")
-          : html::paragraphHtml(
-                "The product of the poses around a cycle should be the identity, "
-                "within the sum of the covariances. The squared error per degree of "
-                "freedom is 1 on average if the covariances are right; larger ones "
-                "mean that they are too small, or that an edge is wrong.") +
-                cyclesHtml(cycles);
-  section.below_html = contradictionsHtml(edges, optimum);
-  return section;
+  return shortTableHtml(table);
 }
 
 } // namespace
@@ -267,20 +181,58 @@ graphReportHtml(const GraphCommand& command,
                 const OptimizedPoses& optimum)
 {
   const std::vector<ScanEdge> edges = graph.taken();
-  PathData path{optimum.poses, graph.chain(), {}};
+  const std::vector<GraphEdge> plain_edges = edgesOf(edges);
+  const std::vector<ClosedCycle> cycles =
+      closedCycles(plain_edges, plain_edges.size() + 1);
+  const std::vector<Disagreement> disagreements = disagreementsOf(plain_edges, optimum);
+  PathData path{optimum.poses, graph.chain, {}};
   for (const ScanEdge& edge : edges)
-    if (isLoop(edge))
+    if (edge.isLoop())
       path.loops.emplace_back(edge.edge.target, edge.edge.source);
-  Section repeat;
-  repeat.id = "repeat";
-  repeat.heading = "To repeat the run";
-  repeat.above_html = html::codeHtml(command.command);
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < path.poses.size(); ++k)
+    numbers.push_back(static_cast<double>(k));
+
+  std::vector<std::pair<std::string, std::string>> colours = {
+      {path_colour, "optimized poses"},
+      {ellipse_colour, "their 95 % regions"},
+      {before_colour, "the chain of scans alone"}};
+  if (!path.loops.empty())
+    colours.emplace_back(loop_colour, "loops");
+  const Section trajectory = {"trajectory",
+                              "Where was the sensor?",
+                              html::legendHtml(colours),
+                              {pathChart(path)},
+                              loopsHtml(graph) + complaintsHtml(graph)};
+  const Section uncertainty = {
+      "uncertainty",
+      "How sure is that?",
+      html::paragraphHtml(
+          "Registrations with the same source share the noise of its points, and all "
+          "of them share what the sensor does wrong in each scan. Other errors are "
+          "taken as independent.") +
+          html::legendHtml({{path_colour, "optimized poses"},
+                            {before_colour, "the chain of scans alone"}}),
+      deviationCharts(numbers, "scan", path)};
+  const Section agreement = {
+      "agreement",
+      "Do the edges agree?",
+      cycles.empty()
+          ? html::paragraphHtml("No cycle: nothing tests the edges. --span and --loops "
+                                "make some.")
+          : html::paragraphHtml(
+                "The product of the poses around a cycle should be the identity, "
+                "within the sum of the covariances. The squared error per degree of "
+                "freedom is 1 on average if the covariances are right; larger ones "
+                "mean that they are too small, or that an edge is wrong.") +
+                cyclesHtml(cycles),
+      {},
+      contradictionsHtml(edges, optimum, disagreements)};
+  const Section repeat = {
+      "repeat", "To repeat the run", html::codeHtml(command.command)};
   return html::pageHtml("Pose graph of " + io::textOf(optimum.poses.size()) + " scans",
-                        verdictHtml(graph, optimum) +
-                            sectionsHtml({trajectorySection(graph, path),
-                                          uncertaintySection(path),
-                                          agreementSection(edges, optimum),
-                                          repeat}));
+                        verdictHtml(graph, disagreements.size()) +
+                            sectionsHtml({trajectory, uncertainty, agreement, repeat}));
 }
 
 } // namespace bayesian_icp::app

@@ -15,7 +15,7 @@
 
 #include <filesystem>
 #include <iostream>
-#include <memory>
+#include <optional>
 #include <stdexcept>
 
 namespace bayesian_icp::app {
@@ -30,18 +30,16 @@ tell(const std::string& message)
   std::cerr << "pcl_bayesian_icp_pose_graph: " + message + '\n';
 }
 
-/** The most likely poses, if they are asked for and can be found. */
+/** The most likely poses, if they can be found. */
 std::optional<OptimizedPoses>
-optimized(const GraphCommand& command, const ScanGraph& graph)
+optimized(const ScanGraph& graph, RobustLoss loss)
 {
-  if (command.optimized_folder.empty())
-    return std::nullopt;
   std::vector<Eigen::Matrix4d> poses;
-  for (const GaussianPose& pose : graph.chain())
+  for (const GaussianPose& pose : graph.chain)
     poses.push_back(matrixOf(pose.mean));
   std::string complaint;
   try {
-    OptimizedPoses found = optimizedPoses(poses, edgesOf(graph.taken()), command.loss);
+    OptimizedPoses found = optimizedPoses(poses, edgesOf(graph.taken()), loss);
     if (found.complaint.empty())
       return found;
     complaint = found.complaint;
@@ -69,29 +67,26 @@ tellDisagreements(const ScanGraph& graph, const OptimizedPoses& optimum)
   return all.empty();
 }
 
-/** Files of --optimize. */
+/** Files of --optimize but for the graph; without an optimum there are none. */
 void
 addOptimum(const GraphCommand& command,
            const ScanGraph& graph,
-           const OptimizedPoses* optimum,
+           const std::optional<OptimizedPoses>& optimum,
            io::OutputFolder& folder)
 {
-  const auto add = [&](const std::string& name, const auto& textOf) {
-    if (optimum == nullptr)
+  if (!optimum) {
+    for (const char* name :
+         {"trajectory_tum.txt", "trajectory_covariance.txt", "report.html"})
       folder.leaveOut(name);
-    else
-      folder.add(name, [&](std::ostream& stream) { stream << textOf(); });
-  };
+    return;
+  }
   std::vector<double> numbers;
-  for (std::size_t k = 0; k < graph.chain().size(); ++k)
+  for (std::size_t k = 0; k < graph.chain.size(); ++k)
     numbers.push_back(static_cast<double>(k));
-  add("trajectory_tum.txt", [&] { return tumText(numbers, optimum->poses); });
-  add("trajectory_covariance.txt",
-      [&] { return tumCovarianceText(numbers, optimum->poses); });
+  folder.add("trajectory_tum.txt", tumText(numbers, optimum->poses));
+  folder.add("trajectory_covariance.txt", tumCovarianceText(numbers, optimum->poses));
   try {
-    const std::string report =
-        optimum != nullptr ? graphReportHtml(command, graph, *optimum) : std::string();
-    add("report.html", [&] { return report; });
+    folder.add("report.html", graphReportHtml(command, graph, *optimum));
   }
   catch (const plot::GnuplotError& error) {
     tell(std::string(error.what()) + "; report.html is left out");
@@ -105,44 +100,39 @@ makeGraph(const GraphCommand& command)
   if (!command.note.empty() && !command.is_quiet)
     tell("note: " + command.note);
   io::silencePcl();
-  std::vector<std::unique_ptr<io::OutputFolder>> folders;
   const std::filesystem::path file(command.output_file);
+  std::optional<io::OutputFolder> folder_of_file, optimized_folder;
   if (!file.empty())
-    folders.push_back(std::make_unique<io::OutputFolder>(io::folderOf(file)));
+    folder_of_file.emplace(io::folderOf(file));
   if (!command.optimized_folder.empty())
-    folders.push_back(std::make_unique<io::OutputFolder>(command.optimized_folder));
+    optimized_folder.emplace(command.optimized_folder);
   bool is_good = true;
-  ScanGraph graph(command.request, [&](bool is_ok, const std::string& line) {
-    is_good = is_good && is_ok;
-    if (!is_ok || !command.is_quiet)
-      tell(line);
-  });
   io::catchInterrupt();
-  graph.registerScans();
+  const ScanGraph graph =
+      registerScans(command.request, [&](bool is_ok, const std::string& line) {
+        is_good = is_good && is_ok;
+        if (!is_ok || !command.is_quiet)
+          tell(line);
+      });
   if (io::wasInterrupted())
     return Interrupted;
-  const std::optional<OptimizedPoses> optimum = optimized(command, graph);
-  if (!command.optimized_folder.empty()) {
+  std::optional<OptimizedPoses> optimum;
+  if (optimized_folder) {
+    optimum = optimized(graph, command.loss);
     is_good = optimum && tellDisagreements(graph, *optimum) && is_good;
-    addOptimum(command, graph, optimum ? &*optimum : nullptr, *folders.back());
+    addOptimum(command, graph, optimum, *optimized_folder);
   }
   const std::string text =
-      g2oText(optimum ? optimum->poses : graph.chain(), edgesOf(graph.taken()));
-  for (const auto& folder : folders) {
-    const bool is_of_file = folder == folders.front() && !file.empty();
-    folder->add(is_of_file ? file.filename().string() : "graph.g2o",
-                [&](std::ostream& stream) { stream << text; });
-  }
-  for (const auto& folder : folders)
-    folder->commit();
+      g2oText(optimum ? optimum->poses : graph.chain, edgesOf(graph.taken()));
+  if (folder_of_file)
+    folder_of_file->add(file.filename().string(), text);
+  if (optimized_folder)
+    optimized_folder->add("graph.g2o", text);
+  if (folder_of_file)
+    folder_of_file->commit();
+  if (optimized_folder)
+    optimized_folder->commit();
   return is_good ? Good : NotAllOk;
-}
-
-int
-runTool(int argc, char** argv)
-{
-  const std::optional<GraphCommand> command = parseGraphCommand(argc, argv);
-  return command ? makeGraph(*command) : Good;
 }
 
 } // namespace
@@ -152,6 +142,8 @@ int
 main(int argc, char** argv)
 {
   using namespace bayesian_icp;
-  return io::runProgram("pcl_bayesian_icp_pose_graph",
-                        [&] { return app::runTool(argc, argv); });
+  return io::runProgram("pcl_bayesian_icp_pose_graph", [&] {
+    const auto command = app::parseGraphCommand(argc, argv);
+    return command ? app::makeGraph(*command) : app::Good;
+  });
 }

@@ -6,6 +6,7 @@
 #include "batch/batch_run.h"
 #include "graph/cycle_closure.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,6 +58,13 @@ struct ScanEdge {
   /** Of a loop and the chain between its scans. */
   std::optional<Closure> closure;
   double seconds = 0.0;
+
+  /** \brief Whether it is to join distant parts of the chain. */
+  bool
+  isLoop() const
+  {
+    return kind == EdgeKind::Named || kind == EdgeKind::Found;
+  }
 };
 
 /** \brief The edges without their stories. */
@@ -71,78 +79,29 @@ nameOf(const GraphEdge& edge);
 std::string
 sizeOf(const Vector6d& twist);
 
-/** \brief Registrations on their way to a graph. Vertex k is the pose of scan k in the
- * frame of scan 0. */
-class ScanGraph {
-public:
-  /** \param[in] tell gets, for each edge, whether all is well and a line of text, by
-   * one thread at a time */
-  ScanGraph(const GraphRequest& request,
-            const std::function<void(bool, const std::string&)>& tell);
+/** \brief Registrations, and the graph that they make. Vertex k is the pose of scan k
+ * in the frame of scan 0. */
+struct ScanGraph {
+  /** All: the chain, then the others. */
+  std::vector<ScanEdge> registrations;
+  /** The poses along the chain. Where an edge is missing, the prior takes its place. */
+  std::vector<GaussianPose> chain;
 
-  /** \brief Register each scan to the one before, then all others, whose priors are
-   * from the chain of mean poses. Both may end early after an interrupt.
-   *
-   * An edge of the chain has the posterior, prior included; another one has it without
-   * the prior, which is about what the chain says already. A loop that was found is in
-   * the graph only if its status is ok and it closes with the chain. */
-  void
-  registerScans();
-
-  /** \brief All registrations: the chain, then the others. */
-  const std::vector<ScanEdge>&
-  registrations() const
-  {
-    return registrations_;
-  }
-
-  /** \brief Those that are in the graph. */
+  /** \brief The registrations that are in the graph. */
   std::vector<ScanEdge>
   taken() const;
-
-  /** \brief The poses along the chain. Where an edge is missing, the prior takes its
-   * place. */
-  const std::vector<GaussianPose>&
-  chain() const
-  {
-    return chain_;
-  }
-
-private:
-  /** The pair of an edge as it is to be registered. \throws Refusal */
-  BatchPair
-  pairOf(const ScanEdge& edge) const;
-
-  void
-  registerEdges(std::vector<ScanEdge> edges);
-
-  void
-  take(const BatchResult& result, ScanEdge& edge) const;
-
-  /** See whether a loop contradicts the chain. */
-  void
-  closeLoop(ScanEdge& edge) const;
-
-  void
-  report(const ScanEdge& edge) const;
-
-  void
-  chainPoses();
-
-  /** Along the chain, positions in steps_. */
-  std::vector<std::size_t>
-  pathBetween(int target, int source) const;
-
-  /** All that are not of the chain. */
-  std::vector<ScanEdge>
-  moreEdges() const;
-
-  const GraphRequest& request_;
-  std::function<void(bool, const std::string&)> tell_;
-  std::vector<ScanEdge> registrations_;
-  /** From each scan to the next, all of them. */
-  std::vector<GraphEdge> steps_;
-  std::vector<GaussianPose> chain_;
 };
+
+/** \brief Register each scan to the one before, then all others, whose priors are from
+ * the chain of mean poses. Both may end early after an interrupt.
+ *
+ * An edge of the chain has the posterior, prior included; another one has it without
+ * the prior, which is about what the chain says already. A loop that was found is in
+ * the graph only if its status is ok and it closes with the chain. \param[in] tell
+ * gets, for each edge, whether all is well and a line of text, by one thread at a time
+ */
+ScanGraph
+registerScans(const GraphRequest& request,
+              const std::function<void(bool, const std::string&)>& tell);
 
 } // namespace bayesian_icp::app

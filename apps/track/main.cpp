@@ -12,7 +12,6 @@
 #include "track/track_command.h"
 #include "track/track_line.h"
 #include "track/track_report.h"
-#include "track/tracker.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -67,14 +66,12 @@ tellStep(const TrackCommand& command, const TrackStep& step)
 void
 writeFiles(const TrackCommand& command, const Track& track, io::OutputFolder& folder)
 {
-  const auto write = [&folder](const std::string& name, const std::string& text) {
-    folder.add(name, [&text](std::ostream& stream) { stream << text; });
-  };
-  write("trajectory_tum.txt", tumText(track.times(), track.poses()));
-  write("trajectory_covariance.txt", tumCovarianceText(track.times(), track.poses()));
-  write("graph.g2o", g2oText(track.poses(), track.edges()));
+  folder.add("trajectory_tum.txt", tumText(track.times(), track.poses()));
+  folder.add("trajectory_covariance.txt",
+             tumCovarianceText(track.times(), track.poses()));
+  folder.add("graph.g2o", g2oText(track.poses(), track.edges()));
   try {
-    write("report.html", trackReportHtml(command, track));
+    folder.add("report.html", trackReportHtml(command, track));
   }
   catch (const plot::GnuplotError& error) {
     tell(std::string(error.what()) + "; report.html is left out");
@@ -137,13 +134,6 @@ makeTrack(const TrackCommand& command)
   return are_all_good ? Good : NotAllOk;
 }
 
-int
-runTool(int argc, char** argv)
-{
-  const std::optional<TrackCommand> command = parseTrackCommand(argc, argv);
-  return command ? makeTrack(*command) : Good;
-}
-
 } // namespace
 } // namespace bayesian_icp::app
 
@@ -151,6 +141,8 @@ int
 main(int argc, char** argv)
 {
   using namespace bayesian_icp;
-  return io::runProgram("pcl_bayesian_icp_track",
-                        [&] { return app::runTool(argc, argv); });
+  return io::runProgram("pcl_bayesian_icp_track", [&] {
+    const auto command = app::parseTrackCommand(argc, argv);
+    return command ? app::makeTrack(*command) : app::Good;
+  });
 }

@@ -1,7 +1,5 @@
 #include "track/motion_filter.h"
 
-#include "graph/adjoint.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 

@@ -1,35 +1,18 @@
 #include "track/track.h"
 
-#include "graph/adjoint.h"
-
 #include <Eigen/LU>
 
 #include <array>
 #include <limits>
-#include <stdexcept>
 
 namespace bayesian_icp::app {
-
-namespace {
-
-constexpr std::array<const char*, 4> step_kinds = {
-    "registered", "widened", "predicted", "split"};
-
-} // namespace
 
 const char*
 toString(StepKind kind)
 {
-  return step_kinds[static_cast<std::size_t>(kind)];
-}
-
-StepKind
-readStepKind(const std::string& name)
-{
-  for (std::size_t k = 0; k < step_kinds.size(); ++k)
-    if (name == step_kinds[k])
-      return static_cast<StepKind>(k);
-  throw std::invalid_argument(name + " is no kind of step");
+  static constexpr std::array<const char*, 4> names = {
+      "registered", "widened", "predicted", "split"};
+  return names[static_cast<std::size_t>(kind)];
 }
 
 Track::Track(const MotionModel& model, std::vector<double> times, int map_scans)

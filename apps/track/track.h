@@ -5,6 +5,7 @@
 
 #include "track/motion_filter.h"
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,9 +29,13 @@ enum class StepKind {
 const char*
 toString(StepKind kind);
 
-/** \throws std::invalid_argument if \p name is none of a StepKind */
-StepKind
-readStepKind(const std::string& name);
+/** \brief All of them, for register/choices.h. */
+inline std::array<StepKind, 4>
+choicesOf(StepKind)
+{
+  return {
+      StepKind::Registered, StepKind::Widened, StepKind::Predicted, StepKind::Split};
+}
 
 /** \brief If so many scans in a row could not be registered, the last one that can be
  * read is the new target. */

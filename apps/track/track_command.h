@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "track/track_request.h"
+#include "track/tracker.h"
 
 #include <optional>
 #include <string>

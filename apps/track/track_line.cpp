@@ -2,6 +2,7 @@
 
 #include "io/coordinates.h"
 #include "io/text_hash.h"
+#include "register/choices.h"
 #include "register/json_values.h"
 #include "register/posterior_json.h"
 #include "register/settings_json.h"
@@ -121,7 +122,8 @@ readTrackLine(const std::string& line, const TrackRequest& request, int scan)
                              " is another file here, or has another time");
   TrackStep step;
   step.scan = scan;
-  step.kind = readStepKind(document.at("kind"));
+  if (!readChoice(document.at("kind").get<std::string>(), step.kind))
+    throw std::runtime_error("its kind is none");
   step.status = document.at("status");
   step.message = document.at("message");
   step.edge = readEdge(document.at("edge"));

@@ -3,8 +3,7 @@
  */
 #pragma once
 
-#include "track/track.h"
-#include "track/track_request.h"
+#include "track/tracker.h"
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #include "track/track_report.h"
 
 #include "report/path_charts.h"
-#include "report/report_html.h"
+#include "report/section.h"
 
 #include <array>
 #include <filesystem>
@@ -43,19 +43,12 @@ uncertaintyCharts(const Track& track)
   return charts;
 }
 
-std::array<std::size_t, 4>
-countKinds(const Track& track)
-{
-  std::array<std::size_t, 4> counts{};
-  for (const TrackStep& step : track.steps())
-    ++counts[static_cast<std::size_t>(step.kind)];
-  return counts;
-}
-
 std::string
 verdictHtml(const Track& track)
 {
-  const std::array<std::size_t, 4> counts = countKinds(track);
+  std::array<std::size_t, 4> counts{}; // by StepKind
+  for (const TrackStep& step : track.steps())
+    ++counts[static_cast<std::size_t>(step.kind)];
   const std::size_t num_steps = track.steps().size();
   const bool is_good = counts[0] == num_steps;
   std::string sentence = io::textOf(num_steps) + " scans after scan 0";
@@ -77,29 +70,18 @@ tableOfProblems(const TrackCommand& command, const Track& track)
   table.caption = "Scans that are not registered with status ok";
   table.header = {"scan", "file", "target", "became", "status", "message"};
   table.first_column_of_words = 1;
-  std::size_t num_left_out = 0;
-  for (const TrackStep& step : track.steps()) {
-    if (step.kind == StepKind::Registered)
-      continue;
-    if (table.rows.size() == max_rows_of_table) {
-      ++num_left_out;
-      continue;
+  for (const TrackStep& step : track.steps())
+    if (step.kind != StepKind::Registered) {
+      const std::filesystem::path file =
+          command.request.scans.at(static_cast<std::size_t>(step.scan));
+      table.rows.push_back({io::textOf(step.scan),
+                            file.filename().string(),
+                            io::textOf(step.edge.target),
+                            toString(step.kind),
+                            step.status,
+                            step.message});
     }
-    const std::filesystem::path file =
-        command.request.scans.at(static_cast<std::size_t>(step.scan));
-    table.rows.push_back({io::textOf(step.scan),
-                          file.filename().string(),
-                          io::textOf(step.edge.target),
-                          toString(step.kind),
-                          step.status,
-                          step.message});
-  }
-  if (table.rows.empty())
-    return "";
-  return html::tableHtml(table) +
-         html::paragraphHtml(num_left_out == 0 ? ""
-                                               : io::textOf(num_left_out) +
-                                                     " more are in edges.jsonl.");
+  return html::limitedTableHtml(table, max_rows_of_table, "more are in edges.jsonl.");
 }
 
 } // namespace
@@ -107,22 +89,21 @@ tableOfProblems(const TrackCommand& command, const Track& track)
 std::string
 trackReportHtml(const TrackCommand& command, const Track& track)
 {
-  Section path, uncertainty, repeat;
-  path.id = "trajectory";
-  path.heading = "Where was the sensor?";
-  path.charts = {pathChart({track.poses(), {}, {}})};
-  path.below_html = tableOfProblems(command, track);
-  uncertainty.id = "uncertainty";
-  uncertainty.heading = "How sure is that?";
-  uncertainty.above_html = html::paragraphHtml(
-      "Errors add up along the trajectory. The covariances take a tenth of the "
-      "variance "
-      "of all registrations as the same error of the sensor, and the rest as "
-      "independent, although two registrations have a scan or a map in common.");
-  uncertainty.charts = uncertaintyCharts(track);
-  repeat.id = "repeat";
-  repeat.heading = "To repeat the run";
-  repeat.above_html = html::codeHtml(command.command);
+  const Section path = {"trajectory",
+                        "Where was the sensor?",
+                        "",
+                        {pathChart({track.poses(), {}, {}})},
+                        tableOfProblems(command, track)};
+  const Section uncertainty = {
+      "uncertainty",
+      "How sure is that?",
+      html::paragraphHtml(
+          "Errors add up along the trajectory. The covariances take a tenth of the "
+          "variance of all registrations as the same error of the sensor, and the rest "
+          "as independent, although two registrations have a scan or a map in common."),
+      uncertaintyCharts(track)};
+  const Section repeat = {
+      "repeat", "To repeat the run", html::codeHtml(command.command)};
   return html::pageHtml("Track of " + io::textOf(track.poses().size()) + " scans",
                         verdictHtml(track) + sectionsHtml({path, uncertainty, repeat}));
 }

@@ -3,7 +3,6 @@
  */
 #pragma once
 
-#include "track/track.h"
 #include "track/track_command.h"
 
 #include <string>

@@ -5,10 +5,12 @@
 #include "localization/stated_pose.h"
 #include "track/registration.h"
 
+#include <boost/functional/hash.hpp>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
+#include <unordered_set>
 
 namespace bayesian_icp::app {
 
@@ -19,20 +21,13 @@ Eigen::Matrix3Xd
 thinned(const Eigen::Matrix3Xd& points, double voxel_size)
 {
   using Voxel = std::array<double, 3>;
-  std::vector<std::pair<Voxel, Eigen::Index>> voxels;
-  voxels.reserve(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Voxel voxel;
-    for (int axis = 0; axis < 3; ++axis)
-      voxel[static_cast<std::size_t>(axis)] = std::floor(points(axis, i) / voxel_size);
-    voxels.emplace_back(voxel, i);
-  }
-  std::sort(voxels.begin(), voxels.end());
+  std::unordered_set<Voxel, boost::hash<Voxel>> voxels;
   std::vector<Eigen::Index> kept;
-  for (std::size_t i = 0; i < voxels.size(); ++i)
-    if (i == 0 || voxels[i].first != voxels[i - 1].first)
-      kept.push_back(voxels[i].second);
-  std::sort(kept.begin(), kept.end());
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d place = (points.col(i) / voxel_size).array().floor();
+    if (voxels.insert({place.x(), place.y(), place.z()}).second)
+      kept.push_back(i);
+  }
   return points(Eigen::all, kept);
 }
 
@@ -70,23 +65,15 @@ Tracker::preparedScan(int scan)
 PreparedTarget
 Tracker::mapOfTarget()
 {
-  std::vector<Eigen::Matrix3Xd> parts;
-  Eigen::Index size = 0;
+  Eigen::Matrix3Xd map(3, 0), part;
   for (const auto& [scan, T_target_scan] : track_.targetScans()) {
-    parts.emplace_back();
-    movePoints(poseOf(T_target_scan),
-               thinned(pointsOf(scan), request_.voxel_size),
-               parts.back());
+    movePoints(
+        poseOf(T_target_scan), thinned(pointsOf(scan), request_.voxel_size), part);
     points_.erase(scan);
-    size += parts.back().cols();
+    map.conservativeResize(3, map.cols() + part.cols());
+    map.rightCols(part.cols()) = part;
   }
-  Eigen::Matrix3Xd all(3, size);
-  size = 0;
-  for (const auto& part : parts) {
-    all.middleCols(size, part.cols()) = part;
-    size += part.cols();
-  }
-  return thinned(all, request_.voxel_size);
+  return thinned(map, request_.voxel_size);
 }
 
 void
@@ -110,9 +97,8 @@ Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
     GaussianPose prediction = track_.prediction(is_velocity_doubted);
     prediction.covariance += track_.targetCovariance(matrixOf(prediction.mean));
     Options options = request_.settings.options;
-    double widening = 1.0;
-    options.prior = priorFrom(
-        statedPoseOf(prediction.mean, prediction.covariance), PriorFloor(), widening);
+    options.prior =
+        priorFrom(statedPoseOf(prediction.mean, prediction.covariance)).options;
     Registration result = registered(points, *target_, options, progress);
     result.edge.pose.covariance +=
         track_.targetCovariance(matrixOf(result.edge.pose.mean));

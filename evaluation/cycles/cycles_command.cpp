@@ -1,11 +1,11 @@
 #include "commands.h"
 #include "graph/closed_cycles.h"
-#include "graph/graph_file.h"
+#include "graph/trajectory_files.h"
 #include "io/coordinates.h"
 #include "io/folders.h"
 #include "io/output_folder.h"
 #include "io/program.h"
-#include "study/csv_fields.h"
+#include "study/csv_row.h"
 #include "study/formatted_text.h"
 #include "study/option_values.h"
 #include "study/report_program.h"
@@ -206,7 +206,7 @@ runCyclesCommand(int argc, const char* const* argv)
                             " edges that the clouds have seen");
   io::OutputFolder folder(io::folderOf(options.result_file));
   folder.add(std::filesystem::path(options.result_file).filename().string(),
-             [&](std::ostream& stream) { stream << csvOf(cycles); });
+             csvOf(cycles));
   folder.commit();
   const app::JointClosure joint = app::jointClosureOf(edges, cycles);
   io::print(tableOf(cycles) + jointText(joint) + failuresText(cycles) +

@@ -112,15 +112,12 @@ drives()
 
 } // namespace
 
-const std::vector<std::string>&
+std::vector<std::string>
 driveNames()
 {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const Drive& drive : drives())
-      all.push_back(drive.name);
-    return all;
-  }();
+  std::vector<std::string> names;
+  for (const Drive& drive : drives())
+    names.push_back(drive.name);
   return names;
 }
 

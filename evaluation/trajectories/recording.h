@@ -38,7 +38,7 @@ struct Recording {
  * street; a robot with one of 16 rings around a block of corridors, and to and fro on a
  * floor of offices; a depth camera that is carried around in a room. All but the street
  * come back to where they have been. */
-const std::vector<std::string>&
+std::vector<std::string>
 driveNames();
 
 /** \brief A simulated drive. Scans are of one instant each, ten per second.

@@ -1,7 +1,6 @@
 #include "trajectories/registered_edge.h"
 
 #include "algebra/decompositions.h"
-#include "graph/adjoint.h"
 #include "io/text_hash.h"
 #include "methods/published_covariances.h"
 #include "track/registration.h"
@@ -23,23 +22,6 @@ namespace {
 constexpr int min_closure_gap = 10, scans_between_closures = 5;
 constexpr Eigen::Index max_baseline_points = 5000;
 
-Eigen::Matrix<double, 21, 1>
-upperTriangleOf(const Matrix6d& matrix)
-{
-  Eigen::Matrix<double, 21, 1> numbers;
-  Eigen::Index next = 0;
-  for (int row = 0; row < 6; ++row)
-    for (int column = row; column < 6; ++column)
-      numbers[next++] = matrix(row, column);
-  return numbers;
-}
-
-bool
-isPositiveDefinite(const Matrix6d& matrix)
-{
-  return matrix.allFinite() && matrix.llt().info() == Eigen::Success;
-}
-
 /** \throws std::runtime_error if the method has no covariance */
 void
 take(const TwistGaussian& posterior, EdgeRun& run)
@@ -49,10 +31,10 @@ take(const TwistGaussian& posterior, EdgeRun& run)
       posterior.mean.inverse() * Eigen::Translation3d(posterior.centre);
   const Matrix6d carry = app::adjointOf(into_source.matrix());
   const Matrix6d covariance = carry * posterior.covariance * carry.transpose();
-  if (!isPositiveDefinite(covariance))
+  if (!covariance.allFinite() || covariance.llt().info() != Eigen::Success)
     throw std::runtime_error("no covariance");
   run.mean = poseOf(posterior.mean.matrix());
-  run.covariance = upperTriangleOf(covariance);
+  run.covariance = covariance;
 }
 
 /** As pcl_bayesian_icp_track does.
@@ -69,7 +51,7 @@ registerCalibrated(const CoverageCase& problem, EdgeRun& run)
   if (registration.quality == app::Quality::Useless)
     throw std::runtime_error(registration.message);
   run.mean = registration.edge.pose.mean;
-  run.covariance = upperTriangleOf(registration.edge.pose.covariance);
+  run.covariance = registration.edge.pose.covariance;
 }
 
 void
@@ -110,11 +92,7 @@ graphEdgeOf(const EdgeRun& run)
   edge.target = run.name.target;
   edge.source = run.name.source;
   edge.T_target_source = matrixOf(run.mean);
-  Eigen::Index next = 0;
-  for (int row = 0; row < 6; ++row)
-    for (int column = row; column < 6; ++column)
-      edge.covariance(row, column) = edge.covariance(column, row) =
-          run.covariance[next++];
+  edge.covariance = run.covariance.selfadjointView<Eigen::Upper>();
   return edge;
 }
 

@@ -42,8 +42,8 @@ struct EdgeRun {
   std::string complaint;
   /** T_target_source (x, y, z, roll, pitch, yaw) [m, rad]. */
   Vector6d mean = Vector6d::Zero();
-  /** The upper triangle, row by row, of CovarianceConvention::RightSE3 [m, rad]. */
-  Eigen::Matrix<double, 21, 1> covariance = Eigen::Matrix<double, 21, 1>::Zero();
+  /** CovarianceConvention::RightSE3 [m, rad]; its upper triangle counts. */
+  Matrix6d covariance = Matrix6d::Zero();
   double seconds = 0.0;
 
   template <typename Run, typename Column>
@@ -53,8 +53,9 @@ struct EdgeRun {
     EdgeName::columns(run.name, column);
     column("complaint", run.complaint);
     coordinateColumns("mean_", run.mean, column);
-    for (Eigen::Index k = 0; k < run.covariance.size(); ++k)
-      column("covariance_" + io::textOf(k), run.covariance[k]);
+    for (int row = 0, k = 0; row < 6; ++row)
+      for (int place = row; place < 6; ++place, ++k)
+        column("covariance_" + io::textOf(k), run.covariance(row, place));
     column("seconds", run.seconds);
   }
 };

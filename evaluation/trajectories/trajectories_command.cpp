@@ -22,7 +22,7 @@ namespace po = boost::program_options;
 
 namespace {
 
-constexpr double milli = 1e3, degrees = 57.29577951308232;
+constexpr double milli = 1e3;
 
 struct TrajectoriesOptions {
   std::vector<std::string> names;
@@ -205,7 +205,7 @@ tableOf(const std::vector<TrajectoryRun>& runs)
                    run.num_edges,
                    milli * run.score.ate,
                    milli * run.score.rpe_translation,
-                   degrees * run.score.rpe_rotation,
+                   app::degrees * run.score.rpe_rotation,
                    milli * run.score.drift_translation,
                    run.score.nees,
                    run.cycle_nees);
@@ -227,8 +227,9 @@ recordings, the inverse Hessian of GICP, Censi's closed form), and with the
 means of GICP and of point-to-plane ICP and their own.
 
 Without FOLDER, the recordings are simulated drives: )";
-  for (const std::string& name : driveNames())
-    help << name << (name == driveNames().back() ? ".\n" : ", ");
+  const std::vector<std::string> drives = driveNames();
+  for (const std::string& name : drives)
+    help << name << (name == drives.back() ? ".\n" : ", ");
   help << R"(FOLDER has recordings with true poses, a folder each, as for
 coverage --real. All methods begin at the true pose with errors of 0.1 m and
 0.03 rad on each axis. Edges do not contain that guess (the closed form keeps

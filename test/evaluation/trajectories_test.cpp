@@ -75,9 +75,7 @@ drawnRecording(const std::string& name, std::uint64_t seed)
       run.name = {name, seed, target, source, method, ""};
       run.complaint = method == "closed-form" ? "none" : "";
       const double scale = method == "gicp" ? 0.1 : 1.0;
-      run.covariance.setZero();
-      for (Eigen::Index k = 0, place = 0; k < 6; place += 6 - k, ++k)
-        run.covariance[place] = std::pow(scale * deviations[k], 2);
+      run.covariance = (scale * deviations).cwiseAbs2().asDiagonal();
       registered.edges.push_back(run);
     }
   }

@@ -1,8 +1,9 @@
 // Closures of cycles of a graph whose errors are drawn from its covariances.
 #include "graph/closed_cycles.h"
-#include "graph/graph_file.h"
 #include "graph/graph_support.h"
+#include "graph/trajectory_files.h"
 #include "io/errors.h"
+#include "support/command_helpers.h"
 
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/measurement.h>
@@ -11,12 +12,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <tuple>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::test;
@@ -118,17 +115,10 @@ TEST(Cycles, AreTheShortestAndEachIsThereOnce)
 
 TEST(Cycles, DoNotSeeWhatDrawsAllEdgesAlike)
 {
-  Random random(3, 0);
-  std::vector<GraphEdge> edges;
-  for (const auto& [target, source, way] :
-       {std::tuple(0, 1, 1.0), std::tuple(1, 2, 2.0), std::tuple(0, 2, 3.0)}) {
-    GraphEdge edge;
-    edge.target = target;
-    edge.source = source;
-    edge.covariance = 1e-6 * Matrix6d::Identity();
-    edge.T_target_source(0, 3) = 0.9 * way; // 0.1 to 0.3 m, 100 deviations and more
-    edges.push_back(edge);
-  }
+  // Steps of 1, 2 and 3 m are a tenth too short: 100 deviations and more.
+  const std::vector<GraphEdge> edges = {edgeAlongX(0, 1, 0.9, 1e-6),
+                                        edgeAlongX(1, 2, 1.8, 1e-6),
+                                        edgeAlongX(0, 2, 2.7, 1e-6)};
   const Closure closure = app::closureOf(edges, app::cyclesOf(edges, 3).at(0));
   EXPECT_LT(closure.squared_error, 1e-9);
 }
@@ -145,23 +135,19 @@ TEST(Cycles, DoNotCountWhatNoCloudHasSeen)
   EXPECT_EQ(closure.num_degrees, 5);
 }
 
-class GraphFile : public ::testing::Test {
+class GraphFile : public FolderTest {
 protected:
   void
   write(const std::string& text) const
   {
-    std::ofstream(file_) << text;
+    std::ofstream(file()) << text;
   }
 
-  void
-  TearDown() override
+  std::string
+  file() const
   {
-    std::filesystem::remove(file_);
+    return (folder_ / "graph.g2o").string();
   }
-
-  std::string file_ = (std::filesystem::temp_directory_path() /
-                       ("graph_file_test_" + std::to_string(::getpid()) + ".g2o"))
-                          .string();
 };
 
 TEST_F(GraphFile, GivesBackWhatWasExported)
@@ -175,7 +161,7 @@ TEST_F(GraphFile, GivesBackWhatWasExported)
   options.target_vertex = 3;
   options.source_vertex = 7;
   write("VERTEX_SE3:QUAT 3 0 0 0 0 0 0 1\nFIX 3\n\n" + g2oEdge(estimate, options));
-  const std::vector<GraphEdge> edges = app::readGraph(file_);
+  const std::vector<GraphEdge> edges = app::readGraph(file());
   ASSERT_EQ(edges.size(), 1u);
   EXPECT_EQ(edges[0].target, 3);
   EXPECT_EQ(edges[0].source, 7);
@@ -188,7 +174,7 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
   const std::string pose = "EDGE_SE3:QUAT 0 1 0 0 0 0 0 0 1 ";
   const std::string good = "1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1";
   write(pose + good + '\n');
-  EXPECT_NO_THROW(app::readGraph(file_));
+  EXPECT_NO_THROW(app::readGraph(file()));
   for (const std::string& bad : {pose + "1 2 3",
                                  pose + good + " 1",
                                  pose + "-" + good,
@@ -197,7 +183,7 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
                                  "EDGE_SE3:QUAT 1 1 0 0 0 0 0 0 1 " + good}) {
     write("FIX 0\n" + bad + '\n');
     try {
-      app::readGraph(file_);
+      app::readGraph(file());
       ADD_FAILURE() << bad;
     }
     catch (const io::FileError& error) {
@@ -206,7 +192,7 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
     }
   }
   write("FIX 0\n");
-  EXPECT_THROW(app::readGraph(file_), io::FileError);
+  EXPECT_THROW(app::readGraph(file()), io::FileError);
 }
 
 TEST(SquareRoot, IsFiniteBesideAMotionThatNothingSees)

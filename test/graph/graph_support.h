@@ -70,6 +70,28 @@ drawnEdge(const Poses& poses, int target, int source, Random& random)
           app::independent_noise};
 }
 
+/** \brief Along the x axis [m], independent of all others.
+ * \param[in] variance of each axis [m^2, rad^2] */
+inline app::GraphEdge
+edgeAlongX(int target, int source, double metres, double variance)
+{
+  app::GraphEdge edge;
+  edge.target = target;
+  edge.source = source;
+  edge.T_target_source(0, 3) = metres;
+  edge.covariance = variance * Matrix6d::Identity();
+  edge.shared = app::independent_noise;
+  return edge;
+}
+
+/** \brief (truth - estimate)^T S^-1 (truth - estimate), S the covariance. */
+inline double
+squaredErrorOf(const app::GaussianPose& estimate, const Eigen::Matrix4d& truth)
+{
+  const Vector6d error = logSE3(matrixOf(estimate.mean).inverse() * truth);
+  return error.dot(estimate.covariance.ldlt().solve(error));
+}
+
 /** \brief From each pose to up to \p span before it. */
 inline std::vector<app::GraphEdge>
 drawnSpan(const Poses& poses, int span, const app::SharedNoise& shared, Random& random)

@@ -1,8 +1,6 @@
 // Poses and covariances of optimised graphs against closed forms and known truths.
-#include "graph/adjoint.h"
 #include "graph/cycle_closure.h"
 #include "graph/graph_support.h"
-#include "graph/loop_candidates.h"
 #include "graph/optimization.h"
 
 #include <gtest/gtest.h>
@@ -118,12 +116,11 @@ TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
     const Poses chain = chained(edges, 5);
     const OptimizedPoses found = optimizedPoses(chain, edges, RobustLoss::None);
     ASSERT_EQ(found.complaint, "");
-    const Vector6d error = errorOf(found.poses[4], truth[4]);
-    of_poses += error.dot(found.poses[4].covariance.ldlt().solve(error)) / num_runs;
+    of_poses += squaredErrorOf(found.poses[4], truth[4]) / num_runs;
     for (const double squared_error : found.squared_errors)
       of_edges += squared_error / num_runs;
     of_chain += errorOf({poseOf(chain[4]), {}}, truth[4]).squaredNorm() /
-                error.squaredNorm() / num_runs;
+                errorOf(found.poses[4], truth[4]).squaredNorm() / num_runs;
   }
   // A chi-square of 6 degrees each: 30 residuals, 24 unknowns.
   const double tolerance = 4.0 * std::sqrt(12.0 / num_runs);
@@ -148,14 +145,13 @@ TEST(OptimizedPosesOf, EdgesThatShareNoiseAreAsFarOffAsStated)
       EXPECT_EQ(found.complaint, "");
       return found.poses.back();
     };
-    const auto squaredErrorOf = [&](const GaussianPose& pose) {
-      const Vector6d error = errorOf(pose, truth.back());
-      return error.dot(pose.covariance.ldlt().solve(error));
+    const auto squaredErrorFor = [&](const app::SharedNoise& assumed) {
+      return squaredErrorOf(lastPoseFor(assumed), truth.back());
     };
     const GaussianPose with_common = lastPoseFor(shared);
-    as_drawn += squaredErrorOf(with_common) / num_runs;
-    without += squaredErrorOf(lastPoseFor(without_common)) / num_runs;
-    alone += squaredErrorOf(lastPoseFor(app::independent_noise)) / num_runs;
+    as_drawn += squaredErrorOf(with_common, truth.back()) / num_runs;
+    without += squaredErrorFor(without_common) / num_runs;
+    alone += squaredErrorFor(app::independent_noise) / num_runs;
     // The common noise has no part in the weights.
     const double scale = 1.0 / (1.0 - shared.common);
     EXPECT_LT(
@@ -173,11 +169,7 @@ TEST(OptimizedPosesOf, WhatAllEdgesHaveInCommonAddsUpAlongAChain)
   // alike.
   std::vector<GraphEdge> edges;
   for (int k = 0; k < 10; ++k) {
-    edges.emplace_back();
-    edges.back().target = k;
-    edges.back().source = k + 1;
-    edges.back().T_target_source(0, 3) = 1.0;
-    edges.back().covariance = 1e-6 * Matrix6d::Identity();
+    edges.push_back(edgeAlongX(k, k + 1, 1.0, 1e-6));
     edges.back().shared = {0.0, 0.1};
   }
   const OptimizedPoses found =
@@ -226,13 +218,8 @@ TEST(OptimizedPosesOf, AnEdgePullsNoHarderThanAtItsBorder)
   // far off as the border of its 95 % region, 3.548 deviations.
   for (const app::SharedNoise& shared :
        {app::independent_noise, app::SharedNoise{0.6, 0.0}, app::SharedNoise()}) {
-    GraphEdge right;
-    right.source = 1;
-    right.T_target_source(0, 3) = 1.0;
-    right.covariance = 0.01 * Matrix6d::Identity();
-    right.shared = app::independent_noise;
-    GraphEdge wrong = right;
-    wrong.T_target_source(0, 3) = 11.0;
+    const GraphEdge right = edgeAlongX(0, 1, 1.0, 0.01);
+    GraphEdge wrong = edgeAlongX(0, 1, 11.0, 0.01);
     wrong.shared = shared;
     const std::vector<GraphEdge> edges = {right, right, wrong};
     const OptimizedPoses found =
@@ -252,14 +239,8 @@ TEST(DisagreementsOf, AnEdgeThatPullsThePosesAlongShowsInItsCycles)
   // the optimum.
   std::vector<GraphEdge> edges;
   for (int source = 1; source < 5; ++source)
-    for (int target = std::max(0, source - 2); target < source; ++target) {
-      edges.emplace_back();
-      edges.back().target = target;
-      edges.back().source = source;
-      edges.back().T_target_source(0, 3) = source - target;
-      edges.back().covariance = 0.01 * Matrix6d::Identity();
-      edges.back().shared = app::independent_noise;
-    }
+    for (int target = std::max(0, source - 2); target < source; ++target)
+      edges.push_back(edgeAlongX(target, source, source - target, 0.01));
   const auto disagreements = [&edges] {
     Poses poses(5, Eigen::Matrix4d::Identity());
     return disagreementsOf(edges, optimizedPoses(poses, edges, RobustLoss::None));

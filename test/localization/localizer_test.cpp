@@ -88,8 +88,7 @@ TEST_F(LocalizerTest, FindsThePose)
 
 TEST_F(LocalizerTest, SamplesWhatTheClassSamplesWithThisPrior)
 {
-  double widening = 0.0;
-  const PriorOptions prior = app::priorFrom(somePrior(), {}, widening);
+  const PriorOptions prior = app::priorFrom(somePrior()).options;
   using Cloud = pcl::PointCloud<pcl::PointXYZ>;
   const auto toCloud = [](const pcl::PCLPointCloud2& blob) {
     const auto cloud = pcl::make_shared<Cloud>();
@@ -178,16 +177,6 @@ TEST_F(LocalizerTest, RefusesPriorsOfOtherTimes)
   Localizer other(patient);
   giveAll(other);
   EXPECT_TRUE(other.localize(*cloud_, stamp_ns + 1000 * second).posterior);
-}
-
-TEST_F(LocalizerTest, RefusesPriorsWithoutACovariance)
-{
-  Localizer localizer{LocalizerOptions()};
-  localizer.setMap(map_);
-  app::StatedPose prior = somePrior();
-  prior.covariance.setZero();
-  localizer.addPrior(prior);
-  expectRefusal(localizer.localize(*cloud_, stamp_ns), "variance of x is 0");
 }
 
 TEST_F(LocalizerTest, RefusesCloudsThatAreNoClouds)

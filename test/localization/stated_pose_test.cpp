@@ -66,9 +66,8 @@ correlatedCovariance()
 std::string
 refusalOf(const StatedPose& pose)
 {
-  double widening = 0.0;
   try {
-    priorFrom(pose, {}, widening);
+    priorFrom(pose);
   }
   catch (const app::Refusal& refusal) {
     return refusal.what();
@@ -95,8 +94,7 @@ TEST(StatedPose, OfAnExportedPriorIsThatPrior)
     const StatedPose pose = app::statedPoseOf(message);
     EXPECT_EQ(pose.frame, "map");
     EXPECT_EQ(pose.stamp_ns, options.timestamp_ns);
-    double widening = 0.0;
-    const PriorOptions prior = priorFrom(pose, {}, widening);
+    const auto [prior, widening] = priorFrom(pose);
     EXPECT_LT((prior.mean - mean).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_LT((prior.variance.cwiseQuotient(variance) - Vector6d::Ones())
                   .cwiseAbs()
@@ -114,9 +112,7 @@ TEST(StatedPose, HasRotationsAboutTheFixedAxesOfTheMap)
   pose[5] = 0.5 * M_PI;
   Vector6d variances;
   variances << 1.0, 2.0, 3.0, 0.01, 0.04, 0.09;
-  double widening = 0.0;
-  const PriorOptions prior =
-      priorFrom(stated(pose, variances.asDiagonal()), {}, widening);
+  const PriorOptions prior = priorFrom(stated(pose, variances.asDiagonal())).options;
   Vector6d expected;
   expected << 1.0, 2.0, 3.0, 0.04, 0.01, 0.09;
   EXPECT_LT((prior.variance - expected).cwiseAbs().maxCoeff(), 1e-12);
@@ -125,8 +121,7 @@ TEST(StatedPose, HasRotationsAboutTheFixedAxesOfTheMap)
 TEST(StatedPose, WithCorrelationsMakesAPriorThatIsWiderInEveryDirection)
 {
   const Matrix6d covariance = correlatedCovariance();
-  double widening = 0.0;
-  const PriorOptions prior = priorFrom(stated(somePose(), covariance), {}, widening);
+  const auto [prior, widening] = priorFrom(stated(somePose(), covariance));
   const Matrix6d J = parametersByFixedAxes(somePose());
   const Matrix6d in_parameters = J * covariance * J.transpose();
   const Matrix6d excess = Matrix6d(prior.variance.asDiagonal()) - in_parameters;
@@ -147,8 +142,7 @@ TEST(StatedPose, OfAPlanarFilterNeedsAFloor)
   const StatedPose pose = stated(Vector6d::Zero(), covariance);
   EXPECT_NE(refusalOf(pose).find("variance of z is 0"), std::string::npos)
       << refusalOf(pose);
-  double widening = 0.0;
-  const PriorOptions prior = priorFrom(pose, {0.02, 0.03}, widening);
+  const PriorOptions prior = priorFrom(pose, {0.02, 0.03}).options;
   Vector6d expected;
   expected << 0.25, 0.25, 4e-4, 9e-4, 9e-4, 0.01;
   EXPECT_LT((prior.variance - expected).cwiseAbs().maxCoeff(), 1e-15);

@@ -1,5 +1,5 @@
 // The filter of a track against many tracks whose truth is drawn from its model.
-#include "support/test_support.h"
+#include "graph/graph_support.h"
 #include "track/motion_filter.h"
 
 #include <bayesian_icp/random.h>
@@ -14,6 +14,7 @@
 #include <tuple>
 
 using namespace bayesian_icp;
+using namespace bayesian_icp::test;
 using app::GaussianPose;
 using app::MotionFilter;
 using app::MotionModel;
@@ -55,13 +56,6 @@ Vector6d
 drawnFrom(const Matrix6d& covariance, Random& random)
 {
   return covariance.llt().matrixL() * random.normal6();
-}
-
-double
-squaredError(const GaussianPose& estimate, const Eigen::Matrix4d& truth)
-{
-  const Vector6d error = logSE3(matrixOf(estimate.mean).inverse() * truth);
-  return error.dot(estimate.covariance.ldlt().solve(error));
 }
 
 /** What a run comes to. */
@@ -111,7 +105,7 @@ runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
       num_on_target = 0;
     }
   }
-  run.squared_error = squaredError(filter.pose(), truth);
+  run.squared_error = squaredErrorOf(filter.pose(), truth);
   return run;
 }
 
@@ -201,6 +195,6 @@ TEST(MotionFilter, FollowsATurnThatTheCloudsHardlySee)
       filter.update({poseOf(expSE3(2.0 * turn_deviation * turn)), covariance});
   // 99 % quantile of chi-square with six degrees of freedom.
   EXPECT_LT(squared_innovation, 16.812);
-  EXPECT_LT(squaredError(filter.pose(), Eigen::Matrix4d::Identity()), 16.812);
+  EXPECT_LT(squaredErrorOf(filter.pose(), Eigen::Matrix4d::Identity()), 16.812);
   EXPECT_NEAR(std::sqrt(filter.pose().covariance(5, 5)), 0.02, 0.001);
 }
