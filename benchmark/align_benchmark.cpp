@@ -24,6 +24,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,41 +63,34 @@ readInput(fs::path folder)
 template <typename Registration>
 using Prepare = std::function<void(Registration&)>;
 
-/** One object a run: trees and covariances are part of the time. */
-template <typename Registration>
-void
-alignFirst(benchmark::State& state,
-           const Input& input,
-           const Prepare<Registration>& prepare)
-{
-  Cloud output;
-  for (auto _ : state) {
-    Registration registration;
-    prepare(registration);
-    registration.setInputSource(input.source);
-    registration.setInputTarget(input.target);
-    registration.align(output, input.guess);
-    benchmark::DoNotOptimize(output.points.data());
-  }
-}
+/** A new object for each run, so that trees and covariances are part of the time, or
+ * one object for all runs, whose target is set once. */
+enum class Objects { New, One };
 
-/** One object for all runs; the target is set once. */
 template <typename Registration>
 void
-alignNext(benchmark::State& state,
-          const Input& input,
-          const Prepare<Registration>& prepare)
+align(benchmark::State& state,
+      const Input& input,
+      Objects objects,
+      const Prepare<Registration>& prepare)
 {
   Cloud output;
-  Registration registration;
-  prepare(registration);
-  registration.setInputTarget(input.target);
-  registration.setInputSource(input.source);
-  registration.align(output, input.guess);
-  for (auto _ : state) {
-    registration.setInputSource(input.source);
-    registration.align(output, input.guess);
+  std::optional<Registration> registration;
+  const auto alignOnce = [&] {
+    if (!registration) {
+      prepare(registration.emplace());
+      registration->setInputTarget(input.target);
+    }
+    registration->setInputSource(input.source);
+    registration->align(output, input.guess);
     benchmark::DoNotOptimize(output.points.data());
+  };
+  if (objects == Objects::One)
+    alignOnce();
+  for (auto _ : state) {
+    if (objects == Objects::New)
+      registration.reset();
+    alignOnce();
   }
 }
 
@@ -105,12 +99,12 @@ void
 add(
     const std::string& name,
     const Input& input,
-    void (*align)(benchmark::State&, const Input&, const Prepare<Registration>&),
+    Objects objects,
     const Prepare<Registration>& prepare = [](Registration&) {})
 {
   benchmark::RegisterBenchmark(
       (input.name + "/" + name).c_str(),
-      [=](benchmark::State& state) { align(state, input, prepare); })
+      [=](benchmark::State& state) { align(state, input, objects, prepare); })
       ->UseRealTime()
       ->MeasureProcessCPUTime()
       ->Unit(benchmark::kMillisecond);
@@ -124,13 +118,13 @@ void
 addBayesian(
     const std::string& name,
     const Input& input,
-    void (*align)(benchmark::State&, const Input&, const Prepare<BayesianIcp>&),
+    Objects objects,
     const Prepare<BayesianIcp>& prepare = [](BayesianIcp&) {})
 {
   for (const int num_threads : {1, 2})
     add<BayesianIcp>(name + "/threads:" + std::to_string(num_threads),
                      input,
-                     align,
+                     objects,
                      [=](BayesianIcp& icp) {
                        prepare(icp);
                        icp.setNumberOfThreads(static_cast<unsigned int>(num_threads));
@@ -153,36 +147,37 @@ exactWith(double sigma, double n, const bayesian_icp::ResidualOptions& residual 
 void
 addAll(const Input& input)
 {
-  add<Icp>("pcl_icp", input, alignFirst);
+  add<Icp>("pcl_icp", input, Objects::New);
 #if PCL_VERSION_COMPARE(>=, 1, 15, 0) // PCL's ICP has threads since
-  add<Icp>("pcl_icp/threads:2", input, alignFirst, [](Icp& icp) {
+  add<Icp>("pcl_icp/threads:2", input, Objects::New, [](Icp& icp) {
     icp.setNumberOfThreads(2);
   });
 #endif
   add<pcl::GeneralizedIterativeClosestPoint<Point, Point>>(
-      "pcl_gicp", input, alignFirst);
+      "pcl_gicp", input, Objects::New);
   const Prepare<BayesianIcp> mean = [](BayesianIcp& icp) {
     icp.setUseMeanAsFinalTransformation(true);
   };
-  addBayesian("calibrated/first", input, alignFirst);
-  addBayesian("calibrated/next", input, alignNext);
-  addBayesian("calibrated/mean/first", input, alignFirst, mean);
-  addBayesian("calibrated/mean/next", input, alignNext, mean);
-  addBayesian("calibrated/pcls_tree", input, alignFirst, [](BayesianIcp& icp) {
+  addBayesian("calibrated/first", input, Objects::New);
+  addBayesian("calibrated/next", input, Objects::One);
+  addBayesian("calibrated/mean/first", input, Objects::New, mean);
+  addBayesian("calibrated/mean/next", input, Objects::One, mean);
+  addBayesian("calibrated/pcls_tree", input, Objects::New, [](BayesianIcp& icp) {
     icp.setSearchMethodTarget(pcl::make_shared<pcl::search::KdTree<Point>>());
   });
-  addBayesian("paper", input, alignFirst, [](BayesianIcp& icp) {
+  addBayesian("paper", input, Objects::New, [](BayesianIcp& icp) {
     icp.setPreset(bayesian_icp::Preset::Paper);
   });
-  addBayesian("exact/sigma:1,N:6000", input, alignFirst, exactWith(1.0, 6000.0));
-  addBayesian("exact/sigma:0.0015,N:100", input, alignFirst, exactWith(0.0015, 100.0));
+  addBayesian("exact/sigma:1,N:6000", input, Objects::New, exactWith(1.0, 6000.0));
+  addBayesian(
+      "exact/sigma:0.0015,N:100", input, Objects::New, exactWith(0.0015, 100.0));
   constexpr double limit = 0.3; // [m]
   bayesian_icp::ResidualOptions gate, kernel;
   gate.max_distance = limit;
   kernel.kernel = bayesian_icp::RobustKernel::Tukey;
   kernel.kernel_width = limit;
-  addBayesian("exact/gate:0.3", input, alignFirst, exactWith(1.0, 6000.0, gate));
-  addBayesian("exact/tukey:0.3", input, alignFirst, exactWith(1.0, 6000.0, kernel));
+  addBayesian("exact/gate:0.3", input, Objects::New, exactWith(1.0, 6000.0, gate));
+  addBayesian("exact/tukey:0.3", input, Objects::New, exactWith(1.0, 6000.0, kernel));
 }
 
 } // namespace

@@ -6,14 +6,12 @@
 //   kd_tree_benchmark [target.pcd] [Google Benchmark options]
 //
 // Without a file the target is a simulated scan of a table in four sizes.
+#include "benchmark_clouds.h"
 #include "kd_tree_benchmark_data.h"
 #include "kd_tree_benchmark_trees.h"
+#include "simulator/simulation.h"
 
 #include <bayesian_icp/kd_tree.h>
-
-#include <pcl/common/point_tests.h>
-#include <pcl/io/pcd_io.h>
-#include <pcl/point_types.h>
 
 #include <benchmark/benchmark.h>
 
@@ -24,6 +22,7 @@ namespace {
 
 using bayesian_icp::InstructionSet;
 using bayesian_icp::KdTree;
+namespace simulator = bayesian_icp::simulator;
 
 void
 countQueries(benchmark::State& state, Eigen::Index num_queries)
@@ -127,15 +126,20 @@ addBuilding(const Scene& scene)
         });
 }
 
+/** A depth camera 1.4 m from a table with things on it. */
 Eigen::Matrix3Xf
-finitePoints(const pcl::PointCloud<pcl::PointXYZ>& cloud)
+scanOfTable(int width)
 {
-  Eigen::Matrix3Xf points(3, cloud.size());
-  Eigen::Index num_points = 0;
-  for (const auto& point : cloud)
-    if (pcl::isFinite(point))
-      points.col(num_points++) = point.getVector3fMap();
-  return points.leftCols(num_points);
+  simulator::SensorOptions sensor;
+  sensor.camera.width = width;
+  sensor.camera.height = width * 3 / 4;
+  const simulator::View view = {{0.0, -1.2, 0.7}, {0.0, 0.0, 0.0}};
+  return simulator::scanScene(simulator::makeScene("table"),
+                              sensor,
+                              simulator::sensorPose(sensor.kind, view),
+                              1,
+                              0)
+      .points.cast<float>();
 }
 
 std::vector<Scene>
@@ -143,13 +147,13 @@ scenes(int argc, char** argv)
 {
   std::vector<Scene> scenes;
   if (argc > 1) {
-    pcl::PointCloud<pcl::PointXYZ> cloud;
-    if (pcl::io::loadPCDFile(argv[1], cloud) == 0)
-      scenes.push_back(makeScene(finitePoints(cloud)));
+    const Cloud::Ptr cloud = readCloud(argv[1]);
+    if (!cloud->empty())
+      scenes.push_back(makeScene(pointsOf(*cloud)));
     return scenes;
   }
   for (const int width : {86, 276, 599, 1366})
-    scenes.push_back(makeScene(scanOfTable(width, width * 3 / 4)));
+    scenes.push_back(makeScene(scanOfTable(width)));
   return scenes;
 }
 

@@ -1,6 +1,5 @@
 /** \file
- * \brief What kd_tree_benchmark searches: a simulated scan, and queries as a sampler of
- * poses makes them.
+ * \brief What kd_tree_benchmark searches: queries as a sampler of poses makes them.
  */
 #pragma once
 
@@ -9,7 +8,6 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numeric>
@@ -28,48 +26,6 @@ struct Scene {
   Queries scan_order;
   Queries random_order;
 };
-
-/** Distance along a ray to the scene: three balls on a table, a wall behind [m]. */
-inline float
-castRay(const Eigen::Vector3f& eye, const Eigen::Vector3f& direction)
-{
-  float depth = (1.2f - eye.y()) / direction.y();
-  if (direction.z() < 0.f)
-    depth = std::min(depth, -eye.z() / direction.z());
-  const float radii[] = {0.05f, 0.1f, 0.15f};
-  const float positions[] = {-0.25f, 0.f, 0.3f};
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3f offset =
-        Eigen::Vector3f(positions[i], 0.1f * static_cast<float>(i), radii[i]) - eye;
-    const float along = offset.dot(direction);
-    const float inside = radii[i] * radii[i] - (offset.squaredNorm() - along * along);
-    if (inside > 0.f)
-      depth = std::min(depth, along - std::sqrt(inside));
-  }
-  return depth;
-}
-
-/** A depth camera 1 m from the table, with noise of 1 mm, row by row [m]. */
-inline Eigen::Matrix3Xf
-scanOfTable(int width, int height)
-{
-  std::mt19937 generator(1);
-  std::normal_distribution<float> noise(0.f, 0.001f);
-  const Eigen::Vector3f eye(0.f, -0.7f, 0.7f);
-  const Eigen::Matrix3f camera =
-      Eigen::AngleAxisf(-0.785f, Eigen::Vector3f::UnitX()).toRotationMatrix();
-  Eigen::Matrix3Xf points(3, width * height);
-  for (int row = 0; row < height; ++row)
-    for (int column = 0; column < width; ++column) {
-      const float u = (static_cast<float>(column) + 0.5f) / static_cast<float>(width);
-      const float v = (static_cast<float>(row) + 0.5f) / static_cast<float>(height);
-      const Eigen::Vector3f direction =
-          (camera * Eigen::Vector3f(u - 0.5f, 1.f, 0.75f * (0.5f - v))).normalized();
-      points.col(row * width + column) =
-          eye + (castRay(eye, direction) + noise(generator)) * direction;
-    }
-  return points;
-}
 
 inline Queries
 shuffled(const Queries& queries)

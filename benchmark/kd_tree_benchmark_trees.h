@@ -83,34 +83,6 @@ using NanoflannIndex = nanoflann::KDTreeSingleIndexAdaptor<
     3,
     std::uint32_t>;
 
-/** What nanoflann keeps of a search: the nearest point, at first perhaps a guess. */
-struct NanoflannNearest {
-  using DistanceType = float;
-
-  std::uint32_t index = 0;
-  float squared_distance = std::numeric_limits<float>::max();
-
-  bool
-  full() const
-  {
-    return true;
-  }
-  float
-  worstDist() const
-  {
-    return squared_distance;
-  }
-  bool
-  addPoint(float nearer, std::uint32_t at)
-  {
-    if (nearer < squared_distance) {
-      squared_distance = nearer;
-      index = at;
-    }
-    return true;
-  }
-};
-
 class NanoflannTree {
 public:
   explicit NanoflannTree(const Eigen::Matrix3Xf& points, bool is_seeded = false)
@@ -130,12 +102,16 @@ public:
   std::uint32_t
   nearest(const Eigen::Vector3f& query, std::uint32_t last_neighbor) const
   {
-    NanoflannNearest result;
-    if (is_seeded_)
-      result = {last_neighbor,
-                (cloud_.points.col(last_neighbor) - query).squaredNorm()};
+    std::uint32_t index = 0;
+    float squared_distance = 0.0f;
+    nanoflann::KNNResultSet<float, std::uint32_t> result(1);
+    result.init(&index, &squared_distance); // which is the largest number then
+    if (is_seeded_) {
+      index = last_neighbor;
+      squared_distance = (cloud_.points.col(last_neighbor) - query).squaredNorm();
+    }
     tree_.findNeighbors(result, query.data(), {});
-    return result.index;
+    return index;
   }
 
   std::uint32_t

@@ -36,16 +36,10 @@ struct Mean {
 Mean
 meanOf(const std::vector<double>& values)
 {
-  const auto count = static_cast<double>(values.size());
-  Mean mean;
-  double sum_of_squares = 0.0;
-  for (const double value : values) {
-    mean.value += value / count;
-    sum_of_squares += value * value;
-  }
-  const double variance = sum_of_squares / count - mean.value * mean.value;
-  mean.standard_error = std::sqrt(std::max(0.0, variance) / std::max(1.0, count - 1.0));
-  return mean;
+  const auto count = static_cast<Eigen::Index>(values.size());
+  const Eigen::Map<const Eigen::ArrayXd> all(values.data(), count);
+  const double variance = (all - all.mean()).square().mean();
+  return {all.mean(), std::sqrt(variance / std::max(1.0, double(count) - 1.0))};
 }
 
 /** Seconds of our runs [0, num_runs). */
