@@ -3,11 +3,11 @@
 #include <pybind11/eigen.h>
 
 #include <chrono>
-#include <condition_variable>
-#include <exception>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace py = pybind11;
 
@@ -22,60 +22,27 @@ constexpr std::chrono::milliseconds period(50);
  * itself: among millions of points that takes seconds. */
 constexpr std::chrono::milliseconds patience(300);
 
-/** What the two threads share; the lock guards all of it. */
+/** What the two threads share; the lock guards it. */
 struct Job {
   std::mutex lock;
-  std::condition_variable ended;
-  bool has_ended = false;
   bool is_cancelled = false;
   Progress progress = {0, 0, 0, 0};
-  PosteriorEstimate estimate;
-  std::exception_ptr failure;
-
-  bool
-  keep(const Progress& state)
-  {
-    const std::lock_guard<std::mutex> guard(lock);
-    progress = state;
-    return !is_cancelled;
-  }
-
-  void
-  run(const Work& work)
-  {
-    PosteriorEstimate found;
-    std::exception_ptr error;
-    try {
-      found = work([this](const Progress& state) { return keep(state); });
-    }
-    catch (...) {
-      error = std::current_exception();
-    }
-    const std::lock_guard<std::mutex> guard(lock);
-    estimate = std::move(found);
-    failure = error;
-    has_ended = true;
-    ended.notify_all();
-  }
-
-  void
-  cancel()
-  {
-    const std::lock_guard<std::mutex> guard(lock);
-    is_cancelled = true;
-  }
-
-  /** \return whether the work has ended */
-  bool
-  wait(std::chrono::milliseconds time, Progress& state)
-  {
-    const py::gil_scoped_release release;
-    std::unique_lock<std::mutex> guard(lock);
-    ended.wait_for(guard, time, [this] { return has_ended; });
-    state = progress;
-    return has_ended;
-  }
 };
+
+void
+cancel(Job& job)
+{
+  const std::lock_guard<std::mutex> guard(job.lock);
+  job.is_cancelled = true;
+}
+
+bool
+hasEndedWithin(std::chrono::milliseconds time,
+               const std::future<PosteriorEstimate>& result)
+{
+  const py::gil_scoped_release release;
+  return result.wait_for(time) == std::future_status::ready;
+}
 
 /** \return whether the observer lets it go on */
 bool
@@ -89,22 +56,25 @@ tell(const py::object& observer, const Progress& state)
 
 /** Waits for the work, and passes on signals and progress meanwhile. */
 void
-watch(Job& job, const py::object& observer)
+watch(const std::future<PosteriorEstimate>& result,
+      Job& job,
+      const py::object& observer)
 {
-  Progress state = {0, 0, 0, 0};
-  bool has_ended = false;
   try {
-    while (!has_ended) {
-      has_ended = job.wait(period, state);
+    for (bool has_ended = false; !has_ended;) {
+      has_ended = hasEndedWithin(period, result);
       if (PyErr_CheckSignals() != 0)
         throw py::error_already_set();
+      std::unique_lock<std::mutex> guard(job.lock);
+      const Progress state = job.progress;
+      guard.unlock();
       if (!tell(observer, state))
-        job.cancel();
+        cancel(job);
     }
   }
   catch (...) {
-    job.cancel();
-    job.wait(patience, state);
+    cancel(job);
+    hasEndedWithin(patience, result);
     throw;
   }
 }
@@ -115,11 +85,17 @@ PosteriorEstimate
 runBeside(const Work& work, const py::object& observer)
 {
   const auto job = std::make_shared<Job>();
-  std::thread([job, work] { job->run(work); }).detach();
-  watch(*job, observer);
-  if (job->failure)
-    std::rethrow_exception(job->failure);
-  return std::move(job->estimate);
+  std::packaged_task<PosteriorEstimate()> task([job, work] {
+    return work([&job = *job](const Progress& state) {
+      const std::lock_guard<std::mutex> guard(job.lock);
+      job.progress = state;
+      return !job.is_cancelled;
+    });
+  });
+  std::future<PosteriorEstimate> result = task.get_future();
+  std::thread(std::move(task)).detach();
+  watch(result, *job, observer);
+  return result.get();
 }
 
 } // namespace bayesian_icp::python

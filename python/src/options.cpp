@@ -1,15 +1,54 @@
 #include "bindings.h"
 #include "converters.h"
-#include "fields.h"
 
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/options.h>
+
+#include <string>
 
 namespace py = pybind11;
 
 namespace bayesian_icp::python {
 
 namespace {
+
+/** A structure of options, whose fields are bound one after the other. */
+template <typename Struct>
+class Fields : public py::class_<Struct> {
+public:
+  Fields(py::module_& module, const char* name, const char* doc)
+  : py::class_<Struct>(module, name, doc)
+  {
+    this->def(py::init<>(), "All options at their defaults.");
+    this->def(py::init<const Struct&>(), py::arg("other"), "A copy.");
+  }
+
+  /** Other than def_readwrite(), a bad value is refused with the field's name. */
+  template <typename Value>
+  Fields&
+  add(const char* name, Value Struct::*field, const char* doc)
+  {
+    this->def_property(
+        name,
+        py::cpp_function([field](Struct& self) -> Value& { return self.*field; },
+                         py::return_value_policy::reference_internal),
+        [field, name](Struct& self, const py::object& value) {
+          try {
+            self.*field = value.cast<Value>();
+          }
+          catch (const py::value_error& error) {
+            throw py::value_error(std::string(name) + ": " + error.what());
+          }
+          catch (const py::cast_error&) {
+            throw py::type_error(std::string(name) + " is " +
+                                 std::string(py::repr(value)) +
+                                 ", which it cannot be: see help() of its class");
+          }
+        },
+        doc);
+    return *this;
+  }
+};
 
 void
 bindShared(py::module_& module)
@@ -158,7 +197,6 @@ bindOptions(py::module_& module)
       .add("paper", &Options::paper, "Options of preset paper.")
       .add("exact", &Options::exact, "Options of preset exact.")
       .add("calibrated", &Options::calibrated, "Options of preset calibrated.")
-      .get()
       .def("validate",
            &Options::validate,
            "The first bad field with its value and range, in words; empty if all are "

@@ -6,7 +6,6 @@
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/ros_messages.h>
 
-#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -38,41 +37,26 @@ struct RosMessage {
   } pose;
 };
 
-/** A dict of names and values, in their order. */
-py::dict
-dictOf(std::initializer_list<std::pair<const char*, py::object>> items)
-{
-  py::dict dict;
-  for (const auto& [name, value] : items)
-    dict[name] = value;
-  return dict;
-}
-
 py::dict
 rosDict(const PoseEstimate& estimate, const ExportOptions& options)
 {
+  using py::literals::operator""_a;
   RosMessage message;
   fillPoseWithCovarianceStamped(estimate, options, message);
-  const auto& stamp = message.header.stamp;
+  const auto& [stamp, frame_id] = message.header;
   const auto& [position, orientation] = message.pose.pose;
-  const auto number = [](double value) { return py::float_(value); };
-  const py::dict pose = dictOf({{"position",
-                                 dictOf({{"x", number(position.x)},
-                                         {"y", number(position.y)},
-                                         {"z", number(position.z)}})},
-                                {"orientation",
-                                 dictOf({{"x", number(orientation.x)},
-                                         {"y", number(orientation.y)},
-                                         {"z", number(orientation.z)},
-                                         {"w", number(orientation.w)}})}});
-  const py::dict header = dictOf(
-      {{"stamp",
-        dictOf({{"sec", py::int_(stamp.sec)}, {"nanosec", py::int_(stamp.nanosec)}})},
-       {"frame_id", py::str(message.header.frame_id)}});
-  return dictOf(
-      {{"header", header},
-       {"pose",
-        dictOf({{"pose", pose}, {"covariance", py::cast(message.pose.covariance)}})}});
+  const py::dict header("stamp"_a =
+                            py::dict("sec"_a = stamp.sec, "nanosec"_a = stamp.nanosec),
+                        "frame_id"_a = frame_id);
+  const py::dict pose("position"_a = py::dict(
+                          "x"_a = position.x, "y"_a = position.y, "z"_a = position.z),
+                      "orientation"_a = py::dict("x"_a = orientation.x,
+                                                 "y"_a = orientation.y,
+                                                 "z"_a = orientation.z,
+                                                 "w"_a = orientation.w));
+  return py::dict(
+      "header"_a = header,
+      "pose"_a = py::dict("pose"_a = pose, "covariance"_a = message.pose.covariance));
 }
 
 /** Binds an export of an estimate. */

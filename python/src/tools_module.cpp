@@ -16,7 +16,6 @@
 #include <pybind11/stl.h>
 
 #include <filesystem>
-#include <ostream>
 #include <utility>
 
 namespace py = pybind11;
@@ -110,8 +109,7 @@ writeReport(const PosteriorEstimate& estimate,
                  "init_T_target_source=guess, options=options)");
   const std::filesystem::path file = std::filesystem::absolute(path);
   io::OutputFolder folder(file.parent_path().string());
-  folder.add(file.filename().string(),
-             [&page](std::ostream& stream) { stream << page; });
+  folder.add(file.filename().string(), page);
   folder.commit();
 }
 
