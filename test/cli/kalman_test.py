@@ -8,12 +8,13 @@ import unittest
 
 import cloud_files
 from cli_tool import DATA, ToolTest
+from faults import call
 from robot_formats import quaternion_of, turned
 from trajectories import (
     CHI2_HIGH,
     CHI2_LOW,
+    FOUR_EYES,
     TrajectoryTest,
-    call,
     composed,
     g2o_error,
     inverted,
@@ -71,9 +72,8 @@ class KalmanSequence(TrajectoryTest):
 
     def sequence(self):
         """Four scans along 0.18 m, with their exact poses."""
-        eyes = ["0,-1.2,0.7", "0.06,-1.19,0.72", "0.12,-1.17,0.71", "0.18,-1.14,0.7"]
-        scans, from_world = self.trajectory(eyes)
-        for k in range(len(eyes)):
+        scans, from_world = self.trajectory(FOUR_EYES)
+        for k in range(len(from_world)):
             (scans / f"scan_{k}.pcd").rename(scans / f"scan_{k:04d}.pcd")
         lines = [sum(rows_of(inverted(pose)), []) for pose in from_world]
         text = "".join(" ".join(map(repr, line)) + "\n" for line in lines)

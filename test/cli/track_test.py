@@ -5,17 +5,17 @@ import unittest
 
 import cloud_files
 from cli_tool import strict_json
-from faults import EVALUATE, TRACK, TRACKED
+from faults import EVALUATE, TRACK, TRACKED, call
 from trajectories import (
     CHI2_HIGH,
     TrajectoryTest,
-    call,
     composed,
     g2o_error,
     inverse,
     inverted,
     quadratic,
     read_graph,
+    rows_of_file,
 )
 
 EYES = ["0,-1.2,0.7", "0.05,-1.19,0.71", "0.1,-1.18,0.71", "0.15,-1.16,0.7", "0.2,-1.14,0.7"]
@@ -34,10 +34,8 @@ class TrackTest(TrajectoryTest):
     def lines(self):
         return [strict_json(line) for line in (self.track / "edges.jsonl").read_text().splitlines()]
 
-    def rows(self, name):
-        return [
-            list(map(float, line.split())) for line in (self.track / name).read_text().splitlines()
-        ]
+    def times(self):
+        return [row[0] for row in rows_of_file(self.track / "trajectory_tum.txt")]
 
 
 class TrackOfSimulatedScans(TrackTest):
@@ -66,12 +64,11 @@ class TrackOfSimulatedScans(TrackTest):
         self.assertEqual({path.name for path in self.track.iterdir()}, TRACKED)
         vertices = self.check_truth(from_world)
         self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 1, 2, 3])
-        rows = self.rows("trajectory_tum.txt")
-        self.assertEqual([row[0] for row in rows], [0.0, 0.2, 0.4, 0.6, 0.8])
+        rows = rows_of_file(self.track / "trajectory_tum.txt")
+        self.assertEqual(self.times(), [0.0, 0.2, 0.4, 0.6, 0.8])
         for k, row in enumerate(rows):
-            error = g2o_error(vertices[k], (row[1:4], tuple(row[4:8])))
-            self.assertLess(max(map(abs, error)), 1e-12)
-        covariances = self.rows("trajectory_covariance.txt")
+            self.assert_same_pose(vertices[k], (row[1:4], tuple(row[4:8])))
+        covariances = rows_of_file(self.track / "trajectory_covariance.txt")
         self.assertEqual({len(row) for row in covariances}, {37})
         traces = [sum(row[1 + 7 * i] for i in range(3)) for row in covariances]
         self.assertEqual(traces, sorted(traces))
@@ -226,11 +223,11 @@ class TrackUsage(TrackTest):
         second = source.rename(self.folder / "17.5.pcd")
         result = self.run_track(first, second, "--times", "names")
         self.assertIn(result.returncode, (0, 1), result.stderr)
-        self.assertEqual([row[0] for row in self.rows("trajectory_tum.txt")], [17.25, 17.5])
+        self.assertEqual(self.times(), [17.25, 17.5])
         times = self.file("times.txt", "3.00000000000\n4.50000000000\n")
         self.track = self.folder / "another"
         self.assertIn(self.run_track(first, second, "--times", times).returncode, (0, 1))
-        self.assertEqual([row[0] for row in self.rows("trajectory_tum.txt")], [3.0, 4.5])
+        self.assertEqual(self.times(), [3.0, 4.5])
 
     def test_refused(self):
         source, target = self.small_pair()

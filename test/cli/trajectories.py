@@ -2,23 +2,18 @@
 
 import json
 import math
-import os
-import subprocess
 
 from cli_tool import ToolTest
+from faults import SIMULATE, call
 from robot_formats import conjugate, multiplied, read_g2o_edge, turned
 
-SIMULATE = os.environ["PCL_BAYESIAN_ICP_SIMULATE"]
+# Where the camera of a short trajectory stands, world frame [m].
+FOUR_EYES = ["0,-1.2,0.7", "0.06,-1.19,0.72", "0.12,-1.17,0.71", "0.18,-1.14,0.7"]
 
 # 99.9 % and 0.1 % quantiles of chi-square, by degrees of freedom (R 4.2, qchisq).
 CHI2_HIGH = {1: 10.828, 6: 22.458, 18: 42.312}
 CHI2_LOW = {18: 4.905}
 IDENTITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
-
-
-def call(program, *arguments):
-    command = [program, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
 
 
 # A pose is (position, quaternion x y z w).
@@ -87,6 +82,11 @@ def quadratic(error, matrix):
     return sum(error[i] * matrix[i][k] * error[k] for i in range(6) for k in range(6))
 
 
+def rows_of_file(path):
+    """The numbers in each line."""
+    return [list(map(float, line.split())) for line in path.read_text().splitlines()]
+
+
 def read_graph(path):
     """({id: pose}, {(i, j): (pose, information)})."""
     vertices, edges = {}, {}
@@ -123,3 +123,6 @@ class TrajectoryTest(ToolTest):
             scene = json.loads((output / "scene.json").read_text())
             from_world.append(pose_of_matrix(scene["T_source_world"]))
         return scans, from_world
+
+    def assert_same_pose(self, found, expected):
+        self.assertLess(max(map(abs, g2o_error(found, expected))), 1e-12)
