@@ -14,36 +14,20 @@ namespace simulator = bayesian_icp::simulator;
 
 namespace {
 
-std::optional<simulator::Request>
-requestOf(int argc, const char* const* argv)
-{
-  try {
-    return simulator::parseCommandLine(argc, argv);
-  }
-  catch (const std::invalid_argument& error) {
-    throw io::UsageError(error.what());
-  }
-}
-
-/** Options may fit each other and yet see nothing. */
-simulator::ScanPair
-pairOf(const simulator::SimulationOptions& options)
-{
-  try {
-    return simulator::simulate(options);
-  }
-  catch (const std::invalid_argument& error) {
-    throw io::UsageError(error.what());
-  }
-}
-
 int
 runTool(int argc, const char* const* argv)
 {
-  const auto request = requestOf(argc, argv);
-  if (!request)
-    return 0;
-  const simulator::ScanPair pair = pairOf(request->options);
+  std::optional<simulator::Request> request;
+  simulator::ScanPair pair;
+  try {
+    request = simulator::parseCommandLine(argc, argv);
+    if (!request)
+      return 0;
+    pair = simulator::simulate(request->options);
+  }
+  catch (const std::invalid_argument& error) {
+    throw io::UsageError(error.what());
+  }
   io::catchInterrupt(); // from here on all files or none
   simulator::writePair(request->output_folder, request->options, pair);
   io::print(request->output_folder + ": " + request->options.scene + ", source " +

@@ -2,6 +2,7 @@
 
 #include "io/numbers.h"
 #include "io/output_folder.h"
+#include "simulator/option_fields.h"
 
 #include <pcl/io/pcd_io.h>
 #include <pcl/conversions.h>
@@ -10,9 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include <iomanip>
-#include <sstream>
 #include <stdexcept>
+#include <vector>
 
 namespace bayesian_icp::simulator {
 
@@ -35,114 +35,62 @@ writeCloud(const Eigen::Matrix3Xf& points, std::ostream& stream)
     throw std::runtime_error("PCL cannot write the cloud");
 }
 
-std::string
-textOfMatrix(const Eigen::Matrix4d& matrix)
+/** \brief A number or a name. */
+template <typename Value>
+Json
+jsonOf(const Value& value)
 {
-  std::ostringstream text;
-  text << std::setprecision(17);
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column)
-      text << matrix(row, column) << (column < 3 ? ' ' : '\n');
-  return text.str();
+  return value;
 }
 
-template <typename Vector>
+template <int size>
 Json
-arrayOf(const Vector& values)
+jsonOf(const Eigen::Matrix<double, size, 1>& values)
 {
-  Json array = Json::array();
-  for (Eigen::Index i = 0; i < values.size(); ++i)
-    array.push_back(values[i]);
-  return array;
+  return std::vector<double>(values.begin(), values.end());
 }
 
 Json
-rowsOf(const Eigen::Matrix4d& matrix)
+jsonOf(const Eigen::Matrix4d& matrix)
 {
   Json rows = Json::array();
   for (int row = 0; row < 4; ++row)
-    rows.push_back(arrayOf(matrix.row(row)));
+    rows.push_back(jsonOf(Eigen::Vector4d(matrix.row(row))));
   return rows;
 }
 
-void
-addKindOfSensor(const SensorOptions& sensor, Json& options)
+Json
+jsonOf(CloudFrame frame)
 {
-  if (sensor.kind == SensorKind::DepthCamera) {
-    options["sensor"] = "depth-camera";
-    options["width"] = sensor.camera.width;
-    options["height"] = sensor.camera.height;
-    options["fov"] = sensor.camera.horizontal_fov;
-    options["lateral-noise"] = sensor.camera.lateral_noise;
-    return;
-  }
-  options["sensor"] = "lidar";
-  options["rings"] = sensor.lidar.rings;
-  options["min-elevation"] = sensor.lidar.min_elevation;
-  options["max-elevation"] = sensor.lidar.max_elevation;
-  options["azimuth-step"] = sensor.lidar.azimuth_step;
-  options["azimuth-phase"] = sensor.lidar.azimuth_phase;
-  options["range-noise"] = sensor.lidar.range_noise;
-  options["ring-offset"] = sensor.lidar.ring_offset;
-  options["sensor-seed"] = sensor.lidar.sensor_seed;
-}
-
-/** \brief What changes the noise of the reading, where it is switched on; of a LiDAR
- * also its incidence-noise of zero, as some scenes have another one. */
-void
-addOptionalNoise(const SensorOptions& sensor, Json& options)
-{
-  if (sensor.noise_correlation > 0.0) {
-    options["noise-correlation"] = sensor.noise_correlation;
-    options["noise-correlation-pixels"] = sensor.noise_correlation_pixels;
-  }
-  if (sensor.incidence_noise > 0.0 || sensor.kind == SensorKind::Lidar)
-    options["incidence-noise"] = sensor.incidence_noise;
+  return frame == CloudFrame::Sensor ? "sensor" : "object";
 }
 
 Json
-quantisationOf(const SensorOptions& sensor)
+jsonOf(SensorKind kind)
 {
-  switch (sensor.quantisation) {
-  case Quantisation::Kinect:
-    return "kinect";
-  case Quantisation::Step:
-    return sensor.quantisation_step;
-  case Quantisation::None:
-    break;
-  }
-  return "none";
+  return kind == SensorKind::Lidar ? "lidar" : "depth-camera";
+}
+
+Json
+jsonOf(Quantisation quantisation)
+{
+  return quantisation == Quantisation::Kinect ? "kinect" : "none";
 }
 
 /** \brief Every option under its name on the command line; of a
  * camera's noise that is correlated or grows with the angle of incidence, and of the
  * motion during a scan, only what is switched on. */
 Json
-optionsRecord(const SimulationOptions& simulation)
+optionsRecord(const SimulationOptions& options)
 {
-  const SensorOptions& sensor = simulation.sensor;
-  Json options;
-  options["scene"] = simulation.scene;
-  options["seed"] = simulation.seed;
-  options["target-eye"] = arrayOf(simulation.target_view.eye);
-  options["target-look-at"] = arrayOf(simulation.target_view.look_at);
-  options["source-eye"] = arrayOf(simulation.source_view.eye);
-  options["source-look-at"] = arrayOf(simulation.source_view.look_at);
-  options["frame"] = simulation.frame == CloudFrame::Sensor ? "sensor" : "object";
-  options["offset"] = arrayOf(simulation.offset);
-  if (simulation.sweep_motion > 0.0)
-    options["sweep-motion"] = simulation.sweep_motion;
-  addKindOfSensor(sensor, options);
-  options["min-range"] = sensor.min_range;
-  options["max-range"] = sensor.max_range;
-  options["noise"] = sensor.noise;
-  addOptionalNoise(sensor, options);
-  options["quantisation"] = quantisationOf(sensor);
-  options["dropout-from"] = sensor.dropout_from;
-  options["outliers"] = sensor.outliers;
-  options["outlier-spread"] = sensor.outlier_spread;
-  options["jitter"] = sensor.jitter;
-  return options;
+  Json record;
+  visitOptions(options, [&record](const OptionField& field, const auto& value) {
+    if (field.is_recorded)
+      record[field.name] = jsonOf(value);
+  });
+  if (options.sensor.quantisation == Quantisation::Step)
+    record["quantisation"] = options.sensor.quantisation_step;
+  return record;
 }
 
 std::string
@@ -185,9 +133,9 @@ recordOf(const SimulationOptions& options, const ScanPair& pair)
   record["command_line"] = fullCommandLine(options);
   record["options"] = optionsRecord(options);
   record["points"] = {{"source", pair.source.cols()}, {"target", pair.target.cols()}};
-  record["T_target_source"] = rowsOf(pair.T_target_source);
-  record["T_source_world"] = rowsOf(pair.T_source_world);
-  record["T_target_world"] = rowsOf(pair.T_target_world);
+  record["T_target_source"] = jsonOf(pair.T_target_source);
+  record["T_source_world"] = jsonOf(pair.T_source_world);
+  record["T_target_world"] = jsonOf(pair.T_target_world);
   return record;
 }
 
@@ -204,7 +152,8 @@ writePair(const std::string& folder,
   files.add("target.pcd",
             [&](std::ostream& stream) { writeCloud(pair.target, stream); });
   files.add("T_target_source.txt", [&](std::ostream& stream) {
-    stream << textOfMatrix(pair.T_target_source);
+    const Eigen::IOFormat plain(17, Eigen::DontAlignCols, " ", "\n", "", "", "", "\n");
+    stream << pair.T_target_source.format(plain);
   });
   files.add("scene.json", [&](std::ostream& stream) {
     stream << recordOf(options, pair).dump(2) << '\n';

@@ -1,10 +1,10 @@
 /** \file
  * \brief Scenes of the size of a hand or a table.
  */
-#include "simulator/distance_functions.h"
 #include "simulator/scene_parts.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace bayesian_icp::simulator {
 
@@ -69,12 +69,6 @@ mugHandleDistance(const Vector3d& point)
   return std::max(ring, -inside_cup);
 }
 
-ScenePart
-tableTop()
-{
-  return box("table top", Vector3d(-0.6, -0.4, -0.03), Vector3d(0.6, 0.4, 0.0));
-}
-
 /** \brief Mug with its handle on the +x side (visible from -y), or on the +y side. */
 std::vector<ScenePart>
 mugParts(const Vector3d& origin, bool handle_to_y)
@@ -87,74 +81,56 @@ mugParts(const Vector3d& origin, bool handle_to_y)
           {"mug handle", movedTo(origin, handle)}};
 }
 
-Scene
-mug(bool handle_to_y)
+/** \brief Moves the middle of the height of an object to the origin. */
+DistanceFunction
+centred(double height, DistanceFunction distance)
 {
-  const Vector3d origin(0.0, 0.0, -0.5 * mug_height);
-  return {handle_to_y ? "the same mug, turned so that its handle is behind it"
-                      : "a mug, radius 40 mm, 100 mm high, handle in full view",
-          handle_to_y ? "rotation about its vertical axis" : "nothing",
-          mugParts(origin, handle_to_y)};
+  return movedTo({0.0, 0.0, -0.5 * height}, std::move(distance));
 }
 
 } // namespace
 
-Scene
-makeBowl()
+std::vector<Scene>
+objectScenes()
 {
-  return {"a bowl, 170 mm wide and 76 mm high",
-          "rotation about its vertical axis",
-          {{"bowl", movedTo(Vector3d(0.0, 0.0, -0.5 * bowl_height), bowlDistance)}}};
-}
-
-Scene
-makeCan()
-{
-  return {"a soda can, radius 33 mm, 120 mm high",
-          "rotation about its vertical axis",
-          {{"can", movedTo(Vector3d(0.0, 0.0, -0.5 * can_height), canDistance)}}};
-}
-
-Scene
-makeMug()
-{
-  return mug(false);
-}
-
-Scene
-makeMugHiddenHandle()
-{
-  return mug(true);
-}
-
-Scene
-makeTableTop()
-{
-  return {"the empty middle of a table, its edges out of view",
-          "translation along x and y, rotation about z",
-          {tableTop()}};
-}
-
-Scene
-makeTablePlate()
-{
-  return {"an empty plate, 1.0 m x 0.8 m, 40 mm thick",
-          "nothing, but its edges alone hold x, y and the rotation about z",
-          {box("plate", {-0.5, -0.4, -0.04}, {0.5, 0.4, 0.0})}};
-}
-
-Scene
-makeTable()
-{
-  Scene scene{"a table, 1.2 m x 0.8 m, with a mug, a can, a bowl, a carton and a book",
-              "nothing",
-              mugParts(Vector3d(-0.08, -0.2, 0.0), false)};
-  scene.parts.push_back(tableTop());
-  scene.parts.push_back({"can", movedTo(Vector3d(-0.3, 0.12, 0.0), canDistance)});
-  scene.parts.push_back({"bowl", movedTo(Vector3d(0.22, -0.12, 0.0), bowlDistance)});
-  scene.parts.push_back(box("carton", {0.05, 0.12, 0.0}, {0.21, 0.18, 0.22}));
-  scene.parts.push_back(box("book", {-0.5, -0.25, 0.0}, {-0.29, -0.1, 0.025}));
-  return scene;
+  const char* turn = "rotation about its vertical axis";
+  const Vector3d middle_of_mug(0.0, 0.0, -0.5 * mug_height);
+  const ScenePart table_top = box("table top", {-0.6, -0.4, -0.03}, {0.6, 0.4, 0.0});
+  std::vector<ScenePart> table = mugParts({-0.08, -0.2, 0.0}, false);
+  table.insert(table.end(),
+               {table_top,
+                {"can", movedTo({-0.3, 0.12, 0.0}, canDistance)},
+                {"bowl", movedTo({0.22, -0.12, 0.0}, bowlDistance)},
+                box("carton", {0.05, 0.12, 0.0}, {0.21, 0.18, 0.22}),
+                box("book", {-0.5, -0.25, 0.0}, {-0.29, -0.1, 0.025})});
+  return {{"bowl",
+           "a bowl, 170 mm wide and 76 mm high",
+           turn,
+           {{"bowl", centred(bowl_height, bowlDistance)}}},
+          {"can",
+           "a soda can, radius 33 mm, 120 mm high",
+           turn,
+           {{"can", centred(can_height, canDistance)}}},
+          {"mug",
+           "a mug, radius 40 mm, 100 mm high, handle in full view",
+           "nothing",
+           mugParts(middle_of_mug, false)},
+          {"mug_hidden_handle",
+           "the same mug, turned so that its handle is behind it",
+           turn,
+           mugParts(middle_of_mug, true)},
+          {"table_top",
+           "the empty middle of a table, its edges out of view",
+           "translation along x and y, rotation about z",
+           {table_top}},
+          {"table_plate",
+           "an empty plate, 1.0 m x 0.8 m, 40 mm thick",
+           "nothing, but its edges alone hold x, y and the rotation about z",
+           {box("plate", {-0.5, -0.4, -0.04}, {0.5, 0.4, 0.0})}},
+          {"table",
+           "a table, 1.2 m x 0.8 m, with a mug, a can, a bowl, a carton and a book",
+           "nothing",
+           table}};
 }
 
 } // namespace bayesian_icp::simulator

@@ -48,26 +48,20 @@ carDistance(const Vector3d& point)
   return std::min({bodyDistance(point), cabinDistance(point), wheelDistance(point)});
 }
 
-Scene
-makeCar()
+std::vector<Scene>
+outdoorScenes()
 {
-  return {"a car, 4.4 m x 1.8 m x 1.45 m, on the ground",
-          "nothing",
-          {floorPart("ground"),
-           {"body", bodyDistance},
-           {"cabin", cabinDistance},
-           {"wheels", wheelDistance}}};
-}
-
-Scene
-makeTree()
-{
-  const auto trunk = [](const Vector3d& point) {
-    return cylinderDistance(point, 0.2, 4.0);
-  };
-  return {"a trunk, radius 0.2 m, 4 m high, on the ground",
-          "rotation about the trunk",
-          {floorPart("ground"), {"trunk", trunk}}};
+  return {{"car",
+           "a car, 4.4 m x 1.8 m x 1.45 m, on the ground",
+           "nothing",
+           {floorPart("ground"),
+            {"body", bodyDistance},
+            {"cabin", cabinDistance},
+            {"wheels", wheelDistance}}},
+          {"tree",
+           "a trunk, radius 0.2 m, 4 m high, on the ground",
+           "rotation about the trunk",
+           {floorPart("ground"), cylinder("trunk", Vector3d::Zero(), 0.2, 4.0)}}};
 }
 
 } // namespace bayesian_icp::simulator

@@ -1,5 +1,5 @@
 /** \file
- * \brief Scenes to walk or drive through.
+ * \brief Indoor places to walk or drive through, and plain ground.
  */
 #include "simulator/scene_parts.h"
 
@@ -91,124 +91,125 @@ addFurniture(std::vector<ScenePart>& parts)
   }
 }
 
-} // namespace
+std::vector<ScenePart>
+officeFloor()
+{
+  std::vector<ScenePart> parts = {hall("outer walls", {18.0, 6.3, 1.4}),
+                                  {"partitions", partitionDistance},
+                                  {"door frames", doorFrameDistance}};
+  addFurniture(parts);
+  return parts;
+}
 
-Scene
-makeCorridor()
+std::vector<ScenePart>
+plainCorridor()
+{
+  return {floorPart(),
+          {"ceiling", [](const Vector3d& point) { return 2.5 - point.z(); }},
+          wallsAlong(1.0)};
+}
+
+/** \brief Both walls carry one flat pillar a period. */
+double
+corridorPillarDistance(const Vector3d& point)
 {
   constexpr double period = 1.5;
-  const auto pillars = [](const Vector3d& point) {
-    // Both walls carry one pillar a period: fold the point onto the nearest of them.
-    const double along = point.x() - period * std::round(point.x() / period);
-    return boxDistance(Vector3d(along, std::abs(point.y()), point.z()),
-                       Vector3d(-0.1, 0.94, 0.0),
-                       Vector3d(0.1, 1.0, 2.5));
-  };
-  return {"an endless corridor, 2 m wide and 2.5 m high, a flat pillar every 1.5 m",
-          "translation along it: held by the pillars only, and up to their period",
-          {floorPart(),
-           {"ceiling", [](const Vector3d& point) { return 2.5 - point.z(); }},
-           {"walls", [](const Vector3d& point) { return 1.0 - std::abs(point.y()); }},
-           {"pillars", pillars}}};
+  const double along = point.x() - period * std::round(point.x() / period);
+  return boxDistance(Vector3d(along, std::abs(point.y()), point.z()),
+                     Vector3d(-0.1, 0.94, 0.0),
+                     Vector3d(0.1, 1.0, 2.5));
 }
 
-Scene
-makePlainCorridor()
+std::vector<ScenePart>
+corridor()
 {
-  return {"an endless corridor, 2 m wide and 2.5 m high, with smooth walls",
-          "translation along it",
-          {floorPart(),
-           {"ceiling", [](const Vector3d& point) { return 2.5 - point.z(); }},
-           {"walls", [](const Vector3d& point) { return 1.0 - std::abs(point.y()); }}}};
+  std::vector<ScenePart> parts = plainCorridor();
+  parts.push_back({"pillars", corridorPillarDistance});
+  return parts;
 }
 
-Scene
-makeCorridorLoop()
+/** \brief Four corridors around a block. */
+std::vector<ScenePart>
+corridorLoop()
 {
-  const Vector3d outside(7.0, 5.0, 1.25), block(5.0, 3.0, 1.25);
-  const Vector3d centre(0.0, 0.0, 1.25);
-  Scene scene{
-      "corridors around a block, 14 m x 10 m, 2 m wide and 2.5 m high, with "
-      "cupboards and pillars at uneven distances",
-      "nothing, but little holds the motion along a corridor",
-      {{"outer walls",
-        [=](const Vector3d& p) { return -boxDistance(p - centre, outside); }},
-       {"block", [=](const Vector3d& p) { return boxDistance(p - centre, block); }}}};
+  const Vector3d block(5.0, 3.0, 1.25), centre(0.0, 0.0, 1.25);
+  std::vector<ScenePart> parts = {
+      hall("outer walls", {7.0, 5.0, 1.25}),
+      {"block", [=](const Vector3d& p) { return boxDistance(p - centre, block); }}};
   for (const double x : {-4.2, -2.9, -1.1, 1.9, 4.3}) {
-    scene.parts.push_back(box("pillar", {x, -3.0 - 0.12, 0.0}, {x + 0.25, -3.0, 2.5}));
-    scene.parts.push_back(box("cupboard", {-x, 5.0 - 0.35, 0.0}, {-x + 0.9, 5.0, 1.9}));
+    parts.push_back(box("pillar", {x, -3.0 - 0.12, 0.0}, {x + 0.25, -3.0, 2.5}));
+    parts.push_back(box("cupboard", {-x, 5.0 - 0.35, 0.0}, {-x + 0.9, 5.0, 1.9}));
   }
   for (const double y : {-2.3, 0.4, 1.7}) {
-    scene.parts.push_back(box("pillar", {7.0 - 0.15, y, 0.0}, {7.0, y + 0.3, 2.5}));
-    scene.parts.push_back(box("cupboard", {-5.0 - 0.3, y, 0.0}, {-5.0, y + 0.7, 1.8}));
+    parts.push_back(box("pillar", {7.0 - 0.15, y, 0.0}, {7.0, y + 0.3, 2.5}));
+    parts.push_back(box("cupboard", {-5.0 - 0.3, y, 0.0}, {-5.0, y + 0.7, 1.8}));
   }
-  return scene;
+  return parts;
 }
 
-Scene
-makeStairs()
+std::vector<ScenePart>
+stairs()
 {
   constexpr double rise = 0.17;
   constexpr double going = 0.28;
   constexpr int num_steps = 8;
-  Scene scene{"eight steps, rise 0.17 m, going 0.28 m, between walls 1.2 m apart",
-              "nothing, but a shift by one step is nearly as good",
-              {floorPart(), {"walls", [](const Vector3d& point) {
-                               return 0.6 - std::abs(point.y());
-                             }}}};
+  std::vector<ScenePart> parts = {floorPart(), wallsAlong(0.6)};
   for (int step = 0; step < num_steps; ++step)
-    scene.parts.push_back(
-        box("step " + std::to_string(step + 1),
-            Vector3d(step * going, -0.6, 0.0),
-            Vector3d(num_steps * going + 1.0, 0.6, (step + 1) * rise)));
-  return scene;
+    parts.push_back(box("step " + std::to_string(step + 1),
+                        Vector3d(step * going, -0.6, 0.0),
+                        Vector3d(num_steps * going + 1.0, 0.6, (step + 1) * rise)));
+  return parts;
 }
 
-Scene
-makeRoom()
+std::vector<ScenePart>
+room()
 {
-  const Vector3d half_size(2.5, 2.0, 1.25);
-  const auto walls = [half_size](const Vector3d& point) {
-    return -boxDistance(point - Vector3d(0.0, 0.0, 1.25), half_size);
-  };
-  const auto bin = [](const Vector3d& point) {
-    return cylinderDistance(point, 0.15, 0.4);
-  };
-  return {"a room, 5 m x 4 m x 2.5 m, with table, stools, cupboard, bed, shelf and bin",
-          "nothing",
-          {{"walls", walls},
-           plateOnLegs("table", Vector3d(1.2, 0.6, 0.74), 0.7, 0.4),
-           plateOnLegs("stool by the table", Vector3d(1.2, -0.15, 0.45), 0.2, 0.2),
-           plateOnLegs("stool by the bed", Vector3d(-0.3, -0.9, 0.45), 0.2, 0.2),
-           box("cupboard", {-2.5, 0.8, 0.0}, {-1.9, 2.0, 1.9}),
-           box("bed", {-2.5, -2.0, 0.0}, {-0.5, -1.1, 0.5}),
-           box("shelf", {0.6, -2.0, 1.3}, {2.1, -1.7, 1.34}),
-           {"bin", movedTo(Vector3d(2.2, -1.6, 0.0), bin)}}};
+  return {hall("walls", {2.5, 2.0, 1.25}),
+          plateOnLegs("table", {1.2, 0.6, 0.74}, 0.7, 0.4),
+          plateOnLegs("stool by the table", {1.2, -0.15, 0.45}, 0.2, 0.2),
+          plateOnLegs("stool by the bed", {-0.3, -0.9, 0.45}, 0.2, 0.2),
+          box("cupboard", {-2.5, 0.8, 0.0}, {-1.9, 2.0, 1.9}),
+          box("bed", {-2.5, -2.0, 0.0}, {-0.5, -1.1, 0.5}),
+          box("shelf", {0.6, -2.0, 1.3}, {2.1, -1.7, 1.34}),
+          cylinder("bin", {2.2, -1.6, 0.0}, 0.15, 0.4)};
 }
 
-Scene
-makeOfficeFloor()
-{
-  const Vector3d half_size(18.0, 6.3, 1.4);
-  const auto walls = [half_size](const Vector3d& point) {
-    return -boxDistance(point - Vector3d(0.0, 0.0, 1.4), half_size);
-  };
-  Scene scene{
-      "a floor of 36 m x 12.6 m: a corridor 2.4 m wide, on each side nine rooms "
-      "with open doors, pillars and desks",
-      "nothing, but a shift by one room is nearly as good",
-      {{"outer walls", walls},
-       {"partitions", partitionDistance},
-       {"door frames", doorFrameDistance}}};
-  addFurniture(scene.parts);
-  return scene;
-}
+} // namespace
 
-Scene
-makeGround()
+std::vector<Scene>
+placeScenes()
 {
   return {
-      "an endless plane", "translation along x and y, rotation about z", {floorPart()}};
+      {"corridor",
+       "an endless corridor, 2 m wide and 2.5 m high, a flat pillar every 1.5 m",
+       "translation along it: held by the pillars only, and up to their period",
+       corridor()},
+      {"plain_corridor",
+       "an endless corridor, 2 m wide and 2.5 m high, with smooth walls",
+       "translation along it",
+       plainCorridor()},
+      {"corridor_loop",
+       "corridors around a block, 14 m x 10 m, 2 m wide and 2.5 m high, with cupboards "
+       "and pillars at uneven distances",
+       "nothing, but little holds the motion along a corridor",
+       corridorLoop()},
+      {"stairs",
+       "eight steps, rise 0.17 m, going 0.28 m, between walls 1.2 m apart",
+       "nothing, but a shift by one step is nearly as good",
+       stairs()},
+      {"room",
+       "a room, 5 m x 4 m x 2.5 m, with table, stools, cupboard, bed, shelf and bin",
+       "nothing",
+       room()},
+      {"office_floor",
+       "a floor of 36 m x 12.6 m: a corridor 2.4 m wide, on each side nine rooms with "
+       "open doors, pillars and desks",
+       "nothing, but a shift by one room is nearly as good",
+       officeFloor()},
+      {"ground",
+       "an endless plane",
+       "translation along x and y, rotation about z",
+       {floorPart()}}};
 }
 
 } // namespace bayesian_icp::simulator

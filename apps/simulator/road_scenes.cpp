@@ -137,65 +137,69 @@ addRoadside(double side, Random& random, std::vector<ScenePart>& parts)
     parts.push_back(pole("pole", {x, side * 5.6, 0.0}, 0.08, 6.0));
 }
 
-} // namespace
-
-Scene
-makeStreet()
+std::vector<ScenePart>
+street()
 {
   const auto pavement = [](const Vector3d& point) {
     return boxDistance(Vector3d(0.0, std::abs(point.y()), point.z()),
                        Vector3d(-1.0, 5.2, -1.0),
                        Vector3d(1.0, 40.0, 0.12));
   };
-  Scene scene{"a street, 150 m long and 17 m wide, with houses, parked cars, trees and "
-              "poles",
-              "nothing",
-              {floorPart("ground"), {"pavement", pavement}}};
+  std::vector<ScenePart> parts = {floorPart("ground"), {"pavement", pavement}};
   Random random(1, 0);
   for (const double side : {-1.0, 1.0}) {
-    addBuildings(side, random, scene.parts);
-    addRoadside(side, random, scene.parts);
+    addBuildings(side, random, parts);
+    addRoadside(side, random, parts);
   }
-  return scene;
+  return parts;
 }
 
-Scene
-makeForest()
+std::vector<ScenePart>
+forest()
 {
   constexpr int num_trunks = 160;
-  Scene scene{"160 trunks on uneven ground, 80 m x 80 m, and a track between them",
-              "nothing",
-              {roughGround(0.2, 20.0)}};
+  std::vector<ScenePart> parts = {roughGround(0.2, 20.0)};
   Random random(2, 0);
   for (int i = 0; i < num_trunks; ++i) {
     const double x = between(-40.0, 40.0, random);
     const double side = i % 2 == 0 ? 1.0 : -1.0;
     const Vector3d foot(x, side * between(2.5, 40.0, random), -1.0);
-    scene.parts.push_back(pole("trunk", foot, between(0.1, 0.3, random), 13.0));
+    parts.push_back(pole("trunk", foot, between(0.1, 0.3, random), 13.0));
   }
-  return scene;
+  return parts;
 }
 
-Scene
-makeBareGround()
-{
-  return {"endless ground, rough by 0.05 m over 15 m",
-          "translation along x and y and rotation about z, but for the roughness",
-          {roughGround(0.05, 15.0)}};
-}
-
-Scene
-makeTunnel()
+/** \brief The wall of a straight tube along x. */
+double
+tunnelDistance(const Vector3d& point)
 {
   constexpr double radius = 4.5;
   constexpr double height_of_axis = 1.5;
-  const auto wall = [](const Vector3d& point) {
-    return radius - Eigen::Vector2d(point.y(), point.z() - height_of_axis).norm();
-  };
+  return radius - Eigen::Vector2d(point.y(), point.z() - height_of_axis).norm();
+}
+
+} // namespace
+
+std::vector<Scene>
+roadScenes()
+{
   return {
-      "an endless smooth tube, radius 4.5 m, with a flat floor 1.5 m below its axis",
-      "translation along it",
-      {floorPart(), {"wall", wall}}};
+      {"street",
+       "a street, 150 m long and 17 m wide, with houses, parked cars, trees and poles",
+       "nothing",
+       street()},
+      {"forest",
+       "160 trunks on uneven ground, 80 m x 80 m, and a track between them",
+       "nothing",
+       forest()},
+      {"bare_ground",
+       "endless ground, rough by 0.05 m over 15 m",
+       "translation along x and y and rotation about z, but for the roughness",
+       {roughGround(0.05, 15.0)}},
+      {"tunnel",
+       "an endless smooth tube, radius 4.5 m, with a flat floor 1.5 m below its axis",
+       "translation along it",
+       {floorPart(), {"wall", tunnelDistance}}}};
 }
 
 } // namespace bayesian_icp::simulator

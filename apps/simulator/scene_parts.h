@@ -1,14 +1,16 @@
 /** \file
- * \brief How the scenes are put together: pieces used by several of them, and the
- * functions that make each scene. Internal to scenes.cpp and its helpers.
+ * \brief How the scenes are put together: pieces used by several of them, and the lists
+ * of scenes. Internal to scenes.cpp and its helpers.
  */
 #pragma once
 
 #include "simulator/distance_functions.h"
 #include "simulator/scenes.h"
 
+#include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace bayesian_icp::simulator {
 
@@ -48,6 +50,18 @@ box(const std::string& name,
           }};
 }
 
+/** \brief An upright cylinder whose foot is at \p origin. */
+inline ScenePart
+cylinder(const std::string& name,
+         const Eigen::Vector3d& origin,
+         double radius,
+         double height)
+{
+  return {name, movedTo(origin, [radius, height](const Eigen::Vector3d& point) {
+            return cylinderDistance(point, radius, height);
+          })};
+}
+
 /** \brief The floor z = 0. */
 inline ScenePart
 floorPart(const std::string& name = "floor")
@@ -55,89 +69,47 @@ floorPart(const std::string& name = "floor")
   return {name, [](const Eigen::Vector3d& point) { return point.z(); }};
 }
 
+/** \brief Endless walls at both sides of the plane y = 0. */
+inline ScenePart
+wallsAlong(double half_width)
+{
+  return {"walls", [half_width](const Eigen::Vector3d& point) {
+            return half_width - std::abs(point.y());
+          }};
+}
+
+/** \brief Floor, ceiling and walls of a hall about the z axis, seen from inside. */
+inline ScenePart
+hall(const std::string& name, const Eigen::Vector3d& half_size)
+{
+  const Eigen::Vector3d centre(0.0, 0.0, half_size.z());
+  return {name, [centre, half_size](const Eigen::Vector3d& point) {
+            return -boxDistance(point - centre, half_size);
+          }};
+}
+
 /** \brief A car on the ground, 4.4 m x 1.8 m x 1.45 m, its front towards +x. */
 double
 carDistance(const Eigen::Vector3d& point);
 
-Scene
-makeBowl();
+/** \brief Things of the size of a hand or a table. */
+std::vector<Scene>
+objectScenes();
 
-Scene
-makeCan();
+/** \brief One object made of plane faces, with its edges in view. */
+std::vector<Scene>
+workshopScenes();
 
-/** \brief Mug with its handle on the +x side, in full view from -y. */
-Scene
-makeMug();
+/** \brief Indoor places to walk or drive through, and plain ground. */
+std::vector<Scene>
+placeScenes();
 
-/** \brief The same mug with its handle on the +y side, hidden from -y. */
-Scene
-makeMugHiddenHandle();
+/** \brief Things that stand on the ground out of doors. */
+std::vector<Scene>
+outdoorScenes();
 
-Scene
-makeTableTop();
-
-/** \brief A smaller table top, for views that show its edges. */
-Scene
-makeTablePlate();
-
-Scene
-makeTable();
-
-Scene
-makeBox();
-
-Scene
-makeBracket();
-
-Scene
-makeCarton();
-
-Scene
-makeCube();
-
-Scene
-makeTool();
-
-Scene
-makeCorridor();
-
-/** \brief The corridor without its pillars. */
-Scene
-makePlainCorridor();
-
-/** \brief Four corridors around a block. */
-Scene
-makeCorridorLoop();
-
-Scene
-makeStairs();
-
-Scene
-makeRoom();
-
-Scene
-makeGround();
-
-Scene
-makeCar();
-
-Scene
-makeTree();
-
-Scene
-makeStreet();
-
-Scene
-makeOfficeFloor();
-
-Scene
-makeForest();
-
-Scene
-makeBareGround();
-
-/** \brief A straight tube with a flat floor. */
-Scene
-makeTunnel();
+/** \brief Scenes to drive through, along the x axis. */
+std::vector<Scene>
+roadScenes();
 
 } // namespace bayesian_icp::simulator

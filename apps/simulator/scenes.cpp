@@ -13,38 +13,18 @@ using Eigen::Vector3d;
 
 namespace {
 
-using SceneMaker = Scene (*)();
-
-const std::vector<std::pair<std::string, SceneMaker>>&
-sceneMakers()
+const std::vector<Scene>&
+allScenes()
 {
-  static const std::vector<std::pair<std::string, SceneMaker>> makers = {
-      {"bowl", makeBowl},
-      {"can", makeCan},
-      {"mug", makeMug},
-      {"mug_hidden_handle", makeMugHiddenHandle},
-      {"table_top", makeTableTop},
-      {"table_plate", makeTablePlate},
-      {"table", makeTable},
-      {"box", makeBox},
-      {"bracket", makeBracket},
-      {"carton", makeCarton},
-      {"cube", makeCube},
-      {"tool", makeTool},
-      {"corridor", makeCorridor},
-      {"plain_corridor", makePlainCorridor},
-      {"corridor_loop", makeCorridorLoop},
-      {"stairs", makeStairs},
-      {"room", makeRoom},
-      {"ground", makeGround},
-      {"car", makeCar},
-      {"tree", makeTree},
-      {"street", makeStreet},
-      {"office_floor", makeOfficeFloor},
-      {"forest", makeForest},
-      {"bare_ground", makeBareGround},
-      {"tunnel", makeTunnel}};
-  return makers;
+  static const std::vector<Scene> scenes = [] {
+    std::vector<Scene> all;
+    for (const auto& scenes_of :
+         {objectScenes, workshopScenes, placeScenes, outdoorScenes, roadScenes})
+      for (Scene& scene : scenes_of())
+        all.push_back(std::move(scene));
+    return all;
+  }();
+  return scenes;
 }
 
 } // namespace
@@ -76,24 +56,21 @@ Scene::nearestPart(const Vector3d& point) const
       ->name;
 }
 
-const std::vector<std::string>&
+std::vector<std::string>
 sceneNames()
 {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const auto& maker : sceneMakers())
-      all.push_back(maker.first);
-    return all;
-  }();
+  std::vector<std::string> names;
+  for (const Scene& scene : allScenes())
+    names.push_back(scene.name);
   return names;
 }
 
 Scene
 makeScene(const std::string& name)
 {
-  for (const auto& maker : sceneMakers())
-    if (maker.first == name)
-      return maker.second();
+  for (const Scene& scene : allScenes())
+    if (scene.name == name)
+      return scene;
   throw std::invalid_argument("there is no scene '" + name +
                               "'; --list-scenes shows all");
 }

@@ -43,6 +43,7 @@ struct ScenePart {
 
 /** \brief The union of its parts. */
 struct Scene {
+  std::string name;
   /** One line for people. */
   std::string description;
   /** The motions that a registration of two scans cannot or can barely see. */
@@ -59,10 +60,10 @@ struct Scene {
 };
 
 /** \brief The names that makeScene() knows, in the order in which they are listed. */
-const std::vector<std::string>&
+std::vector<std::string>
 sceneNames();
 
-/** \brief Build a scene.
+/** \brief The scene of this name.
  * \throws std::invalid_argument if there is no scene of this name */
 Scene
 makeScene(const std::string& name);

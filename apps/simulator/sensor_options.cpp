@@ -1,77 +1,60 @@
 #include "simulator/sensor_options.h"
 
+#include "simulator/option_fields.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace bayesian_icp::simulator {
 
 namespace {
 
-/** \brief Throw unless \p good; the message reads "<name> is <value>, but must be ...".
- */
-void
-require(bool good, const std::string& name, double value, const std::string& allowed)
+[[noreturn]] void
+refuse(const std::string& name, double value, const std::string& allowed)
 {
-  if (good)
-    return;
   std::ostringstream message;
   message << name << " is " << value << ", but must be " << allowed;
   throw std::invalid_argument(message.str());
 }
 
-void
-requireWithin(const std::string& name, double value, double lowest, double highest)
+std::string
+textOf(const Range& range)
 {
-  std::ostringstream allowed;
-  allowed << "within " << lowest << " and " << highest;
-  require(value >= lowest && value <= highest, name, value, allowed.str());
+  std::ostringstream text;
+  if (range.highest == not_negative.highest)
+    text << "a finite number " << (range.is_open ? "> " : ">= ") << range.lowest;
+  else
+    text << "within " << range.lowest << " and " << range.highest;
+  return text.str();
 }
 
-void
-requireNotNegative(const std::string& name, double value)
-{
-  require(value >= 0.0 && std::isfinite(value), name, value, "a finite number >= 0");
-}
-
-void
-requirePositive(const std::string& name, double value)
-{
-  require(value > 0.0 && std::isfinite(value), name, value, "a finite number > 0");
-}
-
-void
-validateCamera(const DepthCameraOptions& camera)
-{
-  requireWithin("width", camera.width, 1, 8192);
-  requireWithin("height", camera.height, 1, 8192);
-  requireWithin("fov", camera.horizontal_fov, 0.1, 170.0);
-  requireNotNegative("lateral-noise", camera.lateral_noise);
-}
-
-void
-validateLidar(const LidarOptions& lidar)
-{
-  requireWithin("rings", lidar.rings, 1, 1024);
-  requireWithin("min-elevation", lidar.min_elevation, -90.0, 90.0);
-  requireWithin("max-elevation", lidar.max_elevation, lidar.min_elevation, 90.0);
-  requireWithin("azimuth-step", lidar.azimuth_step, 0.01, 180.0);
-  requireNotNegative("range-noise", lidar.range_noise);
-  requireNotNegative("ring-offset", lidar.ring_offset);
-  requireWithin("azimuth-phase", lidar.azimuth_phase, 0.0, 1.0);
-}
+/** \brief Refuses a number outside the range of its option. */
+struct RangeCheck {
+  template <typename Value>
+  void
+  operator()(const OptionField& field, Value value) const
+  {
+    if constexpr (std::is_arithmetic_v<Value>) {
+      const auto number = static_cast<double>(value);
+      const Range& range = field.range;
+      if (!(number >= range.lowest && number <= range.highest) ||
+          (range.is_open && number == range.lowest))
+        refuse(field.name, number, textOf(range));
+    }
+  }
+};
 
 } // namespace
 
 SensorOptions
 carLidar(int rings)
 {
-  require(rings == 16 || rings == 32 || rings == 64 || rings == 128,
-          "rings",
-          rings,
-          "16, 32, 64 or 128");
+  if (rings != 16 && rings != 32 && rings != 64 && rings != 128)
+    refuse("rings", rings, "16, 32, 64 or 128");
   SensorOptions options;
   options.kind = SensorKind::Lidar;
   options.lidar.rings = rings;
@@ -124,28 +107,15 @@ incidenceFactor(const SensorOptions& options, double angle_of_incidence)
 void
 validate(const SensorOptions& options)
 {
-  validateCamera(options.camera);
-  validateLidar(options.lidar);
-  requireNotNegative("noise", options.noise);
-  requireWithin("noise-correlation", options.noise_correlation, 0.0, 1.0);
-  requireWithin(
-      "noise-correlation-pixels", options.noise_correlation_pixels, 0.1, 100.0);
-  requireWithin("incidence-noise", options.incidence_noise, 0.0, 4.0);
-  if (options.quantisation == Quantisation::Step)
-    requirePositive("quantisation", options.quantisation_step);
+  visitSensor(options, RangeCheck());
+  if (options.quantisation == Quantisation::Step &&
+      !(options.quantisation_step > 0.0 && std::isfinite(options.quantisation_step)))
+    refuse("quantisation", options.quantisation_step, textOf(positive));
   if (options.quantisation == Quantisation::Kinect && options.kind == SensorKind::Lidar)
     throw std::invalid_argument(
         "quantisation 'kinect' is for a depth-camera, not a lidar");
-  requireWithin("dropout-from", options.dropout_from, 0.0, 90.0);
-  requireWithin("outliers", options.outliers, 0.0, 1.0);
-  requireNotNegative("outlier-spread", options.outlier_spread);
-  requireWithin("jitter", options.jitter, 0.0, 1.0);
-  requirePositive("min-range", options.min_range);
-  requirePositive("max-range", options.max_range);
-  require(options.max_range > options.min_range,
-          "max-range",
-          options.max_range,
-          "larger than min-range");
+  if (options.max_range <= options.min_range)
+    refuse("max-range", options.max_range, "larger than min-range");
 }
 
 } // namespace bayesian_icp::simulator

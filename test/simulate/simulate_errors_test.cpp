@@ -63,22 +63,6 @@ TEST(SensorNoise, OfTheCameraIsThatOfAKinectTimesTheFactor)
   expectChiSquared(sum, count);
 }
 
-TEST(SensorNoise, OfTheLidarIsTheStatedRangeNoise)
-{
-  SimulationOptions options = cleanOptions("room");
-  const Scan clean = scanTarget(options);
-  options.sensor.noise = 1.0;
-  options.sensor.lidar.range_noise = 0.03;
-  const Scan noisy = scanTarget(options);
-  double sum = 0.0;
-  double count = 0.0;
-  forCommonRays(clean, noisy, [&](const Vector3d& truth, const Vector3d& point) {
-    sum += std::pow((point.norm() - truth.norm()) / 0.03, 2);
-    count += 1.0;
-  });
-  expectChiSquared(sum, count);
-}
-
 TEST(SensorNoise, IsIndependentInTheTwoScans)
 {
   // In a closed room every ray returns, so columns of all clouds belong to the same

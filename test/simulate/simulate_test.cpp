@@ -167,16 +167,21 @@ TEST(SimulatedPairs, OverlapAtTheTrueTransform)
 
 TEST(SimulatedPairs, FollowTheSeed)
 {
-  SimulationOptions options = cleanOptions("mug");
-  options.sensor.noise = 1.0;
-  options.sensor.jitter = 1.0;
-  const ScanPair first = simulate(options);
-  const ScanPair again = simulate(options);
-  EXPECT_TRUE(first.source == again.source && first.target == again.target);
-  options.seed = 2;
-  const ScanPair other = simulate(options);
-  EXPECT_FALSE(first.source.cols() == other.source.cols() &&
-               first.source == other.source);
+  SimulationOptions camera = cleanOptions("mug");
+  camera.sensor.noise = 1.0;
+  camera.sensor.jitter = 1.0;
+  SimulationOptions lidar = cleanOptions("street");
+  lidar.sensor.noise = 1.0;
+  lidar.sweep_motion = 1.0;
+  for (SimulationOptions options : {camera, lidar}) {
+    const ScanPair first = simulate(options);
+    const ScanPair again = simulate(options);
+    EXPECT_TRUE(first.source == again.source && first.target == again.target);
+    options.seed = 2;
+    const ScanPair other = simulate(options);
+    EXPECT_FALSE(first.source.cols() == other.source.cols() &&
+                 first.source == other.source);
+  }
 }
 
 TEST(SimulatedPairs, InTheObjectFrameTheOffsetIsTheTruth)
