@@ -8,9 +8,7 @@
 #include "io/cloud_file.h"
 #include "io/command_line.h"
 #include "io/errors.h"
-#include "io/folders.h"
 #include "study/formatted_text.h"
-#include "study/report_program.h"
 
 #include <boost/algorithm/string/join.hpp>
 
@@ -111,19 +109,10 @@ offerOf(const CoverageOptions& options)
   return options.has_sequences ? sequenceOffer(options) : realOffer(options);
 }
 
-/** The names asked for, all of \p known if none are.
- * \throws io::UsageError of one that is not known */
-Names
-chosen(const Names& asked, const Names& known, const std::string& option)
+bool
+contains(const Names& names, const std::string& name)
 {
-  const auto unknown =
-      std::find_if(asked.begin(), asked.end(), [&known](const std::string& name) {
-        return std::count(known.begin(), known.end(), name) == 0;
-      });
-  if (unknown != asked.end())
-    throw io::UsageError("--" + option + ": there is no " + io::inQuotes(*unknown) +
-                         ", but " + boost::algorithm::join(known, " "));
-  return asked.empty() ? known : asked;
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 /** Append those of \p more that \p names does not have yet. */
@@ -131,38 +120,41 @@ void
 addMissing(Names& names, const Names& more)
 {
   for (const std::string& name : more)
-    if (std::count(names.begin(), names.end(), name) == 0)
+    if (!contains(names, name))
       names.push_back(name);
 }
 
-/** The scenes asked for, the name of a set replaced by its scenes. */
-Names
-expanded(const Names& asked, const Offer& offer)
+/** \throws io::UsageError of a name asked for that is not known */
+void
+requireKnown(const Names& asked, const Names& known, const std::string& option)
 {
-  Names scenes;
-  for (const std::string& name : asked) {
-    const auto set = std::find_if(
-        offer.sets.begin(), offer.sets.end(), [&name](const SceneSet& candidate) {
-          return candidate.name == name && !name.empty();
-        });
-    addMissing(scenes, set == offer.sets.end() ? Names{name} : set->scenes);
-  }
-  return scenes;
+  for (const std::string& name : asked)
+    if (!contains(known, name))
+      throw io::UsageError("--" + option + ": there is no " + io::inQuotes(name) +
+                           ", but " + boost::algorithm::join(known, " "));
 }
 
-/** The scenes asked for; without any, those of the default sets, or the first few. */
+/** The scenes asked for, the name of a set replaced by its scenes; without any, those
+ * of the default sets, or the first few. */
 Names
 scenesOf(const CoverageOptions& options, const Offer& offer)
 {
-  Names known;
-  Names usual;
+  Names known, usual, asked;
   for (const SceneSet& set : offer.sets) {
     addMissing(known, set.scenes);
     if (set.is_default)
       addMissing(usual, set.scenes);
   }
-  if (!options.scenes.empty())
-    return chosen(expanded(options.scenes, offer), known, "scenes");
+  for (const std::string& name : options.scenes) {
+    const auto set =
+        std::find_if(offer.sets.begin(), offer.sets.end(), [&name](const SceneSet& s) {
+          return s.name == name && !name.empty();
+        });
+    addMissing(asked, set == offer.sets.end() ? Names{name} : set->scenes);
+  }
+  requireKnown(asked, known, "scenes");
+  if (!asked.empty())
+    return asked;
   if (options.is_quick)
     usual.resize(std::min(usual.size(), num_quick_scenes));
   return usual;
@@ -178,23 +170,19 @@ conditionsOf(const CoverageOptions& options,
 {
   const auto set =
       std::find_if(offer.sets.begin(), offer.sets.end(), [&scene](const SceneSet& s) {
-        return std::count(s.scenes.begin(), s.scenes.end(), scene) > 0;
+        return contains(s.scenes, scene);
       });
-  Names conditions = set->conditions;
-  if (!options.conditions.empty()) {
-    Names known = set->conditions;
-    addMissing(known, set->rare_conditions);
-    conditions.clear();
-    for (const std::string& name : options.conditions)
-      if (std::count(known.begin(), known.end(), name) > 0)
-        conditions.push_back(name);
-    if (conditions.empty())
-      throw io::UsageError("--conditions: " + io::inQuotes(scene) + " has only " +
-                           boost::algorithm::join(known, " "));
-  }
-  else if (options.is_quick)
-    conditions.resize(1);
-  return conditions;
+  if (options.conditions.empty())
+    return options.is_quick ? Names{set->conditions.front()} : set->conditions;
+  Names known = set->conditions, chosen;
+  addMissing(known, set->rare_conditions);
+  for (const std::string& name : options.conditions)
+    if (contains(known, name))
+      chosen.push_back(name);
+  if (chosen.empty())
+    throw io::UsageError("--conditions: " + io::inQuotes(scene) + " has only " +
+                         boost::algorithm::join(known, " "));
+  return chosen;
 }
 
 std::vector<CoverageMethod>
@@ -212,10 +200,10 @@ methodsOf(const CoverageOptions& options)
       named.push_back(name);
   if (named.empty() && !of_exact.empty())
     return of_exact;
-  const Names names = chosen(named, known, "methods");
+  requireKnown(named, known, "methods");
   std::vector<CoverageMethod> methods;
   for (const CoverageMethod& method : coverageMethods())
-    if (std::count(names.begin(), names.end(), method.name) > 0)
+    if (named.empty() || contains(named, method.name))
       methods.push_back(method);
   methods.insert(methods.end(), of_exact.begin(), of_exact.end());
   return methods;
@@ -231,7 +219,7 @@ studyOf(const CoverageOptions& options)
     addMissing(known_conditions, set.conditions);
     addMissing(known_conditions, set.rare_conditions);
   }
-  chosen(options.conditions, known_conditions, "conditions");
+  requireKnown(options.conditions, known_conditions, "conditions");
   CoverageStudy study;
   study.make_case = offer.make_case;
   study.num_threads = options.num_threads;
@@ -244,29 +232,16 @@ studyOf(const CoverageOptions& options)
 }
 
 void
-reportProgress(const CoverageProgress& progress)
+reportProgress(const StudyProgress& progress, const CoverageCaseName& last)
 {
   std::cerr << format("%zu of %zu cases, about %.0f s left (%s, %s, seed %llu)",
                       progress.num_done,
-                      progress.num_cases,
+                      progress.num_all,
                       progress.seconds_left,
-                      progress.last_case.scene.c_str(),
-                      progress.last_case.condition.c_str(),
-                      static_cast<unsigned long long>(progress.last_case.seed))
+                      last.scene.c_str(),
+                      last.condition.c_str(),
+                      static_cast<unsigned long long>(last.seed))
             << std::endl;
-}
-
-/** The rows of the study, in its order. */
-std::vector<CoverageRun>
-runsOf(const CoverageStudy& study, const CoverageFile& results)
-{
-  std::vector<CoverageRun> runs;
-  for (const CoverageCaseName& name : study.cases)
-    for (const CoverageMethod& method : study.methods)
-      if (const CoverageRun* run =
-              results.find({name.scene, name.condition, name.seed, method.name}))
-        runs.push_back(*run);
-  return runs;
 }
 
 } // namespace
@@ -280,11 +255,10 @@ runCoverageCommand(int argc, const char* const* argv)
   io::silencePcl();
   CoverageStudy study = studyOf(*options);
   study.report = reportProgress;
-  CoverageFile results(options->result_file);
+  CoverageFile results(options->result.file);
   runCoverageStudy(study, results);
-  const auto runs = runsOf(study, results);
-  printCoverageTable(runs, std::cout);
-  return options->has_report ? makeReport(io::folderOf(options->result_file)) : 0;
+  printCoverageTable(runsOf(study, results), std::cout);
+  return options->result.report();
 }
 
 } // namespace bayesian_icp::evaluate

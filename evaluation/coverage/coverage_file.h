@@ -67,7 +67,7 @@ private:
   }
 };
 
-/** \brief The CSV file. Not for several threads at once. */
+/** \brief The CSV file. */
 using CoverageFile = RunFile<CoverageRun>;
 
 } // namespace bayesian_icp::evaluate

@@ -1,16 +1,34 @@
 #include "coverage/coverage_options.h"
 
 #include "register/choices.h"
-#include "study/option_values.h"
 
 #include <cmath>
-#include <sstream>
 
 namespace bayesian_icp::evaluate {
 
 namespace po = boost::program_options;
 
 namespace {
+
+constexpr char coverage_help[] = R"(Usage: pcl_bayesian_icp_evaluate coverage [options]
+
+Is the posterior as wide as it should be? Registers pairs of scans whose true
+pose was drawn from the prior, by every method, and compares each posterior
+with the truth. Every run is a row of a CSV file: squared Mahalanobis
+distance of the truth (NEES), log score [nats] and energy score in units of
+the prior's standard deviations, probability integral transforms (PIT),
+errors, standard scores and deviations of the six coordinates of a twist
+about the source's centroid, mean displacement of the source's points [m],
+time, nearest-neighbour queries, flags. A table goes to the standard output,
+progress to the standard error.
+Of recordings the prior is the default one about a guess, log scores are in
+metres and radians and at least -50 a pair, and the table counts lost pairs
+(displaced by more than the recording's limit; they are left out of NEES/6),
+alarms (flags on good ones: not lost, NEES below 16.812) and misses (bad ones
+without a flag: lost, or NEES above 27.856).
+Results of another build of the methods have to be deleted by hand.
+Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the report.
+)";
 
 AxisDeviation
 deviationOf(const std::string& text)
@@ -75,18 +93,13 @@ describeOptions(CoverageOptions& options)
      "file with pairs of recordings, their guesses and truths, which replace random "
      "guesses. Each line is a JSON object with set, pair (the target's number), guess "
      "and truth (3x4; the source is turned as the truth requires)")
-    ("output", outputName("file", options.result_file),
-     "CSV file of the results, one row for each run. Runs that it already has are "
-     "skipped")
-    ("report", io::flag(options.has_report),
-     "also make a report, with figures, of all results in that folder")
     ("threads", threads(options.num_threads),
      "number of cases that run at the same time; 0 means as many as there are cores")
     ("quick", io::flag(options.is_quick),
      "two scenes, pairs or recordings, one condition, and three seeds or pairs, unless "
-     "given")
-    ("help", "show this text");
+     "given");
   // clang-format on
+  addResultOptions(options.result, description);
   return description;
 }
 
@@ -107,33 +120,6 @@ refuseMisplaced(const po::variables_map& given, const CoverageOptions& options)
       refuse(name, "of recordings only: see --real");
 }
 
-std::string
-coverageHelp(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_evaluate coverage [options]
-
-Is the posterior as wide as it should be? Registers pairs of scans whose true
-pose was drawn from the prior, by every method, and compares each posterior
-with the truth. Every run is a row of a CSV file: squared Mahalanobis
-distance of the truth (NEES), log score [nats] and energy score in units of
-the prior's standard deviations, probability integral transforms (PIT),
-errors, standard scores and deviations of the six coordinates of a twist
-about the source's centroid, mean displacement of the source's points [m],
-time, nearest-neighbour queries, flags. A table goes to the standard output,
-progress to the standard error.
-Of recordings the prior is the default one about a guess, log scores are in
-metres and radians and at least -50 a pair, and the table counts lost pairs
-(displaced by more than the recording's limit; they are left out of NEES/6),
-alarms (flags on good ones: not lost, NEES below 16.812) and misses (bad ones
-without a flag: lost, or NEES above 27.856).
-Results of another build of the methods have to be deleted by hand.
-Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the report.
-
-)" << options;
-  return help.str();
-}
-
 } // namespace
 
 std::optional<CoverageOptions>
@@ -141,20 +127,16 @@ parseCoverageOptions(int argc, const char* const* argv)
 {
   constexpr int num_quick_cases = 3;
   CoverageOptions options;
-  const po::options_description description = describeOptions(options);
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, nullptr);
-  if (io::printHelpOrVersion(
-          given, "", [&description] { return coverageHelp(description); }))
+  const auto given = readOptions(argc, argv, describeOptions(options), coverage_help);
+  if (!given)
     return std::nullopt;
-  io::takeOptions(given, description);
   options.sequences.seed = options.first_seed;
   options.has_sequences =
       !options.real_folder.empty() && !hasManifest(options.real_folder);
-  refuseMisplaced(given, options);
-  if (options.is_quick && given["seeds"].defaulted())
+  refuseMisplaced(*given, options);
+  if (options.is_quick && (*given)["seeds"].defaulted())
     options.num_seeds = num_quick_cases;
-  if (options.is_quick && given["pairs"].defaulted())
+  if (options.is_quick && (*given)["pairs"].defaulted())
     options.sequences.max_pairs = num_quick_cases;
   return options;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "coverage/coverage_sequences.h"
+#include "study/option_values.h"
 
 #include <cstdint>
 #include <optional>
@@ -20,13 +21,12 @@ struct CoverageOptions {
   std::vector<std::string> methods;
   int num_seeds = 20;
   std::uint64_t first_seed = 1;
-  std::string result_file = "results/coverage.csv";
+  ResultOptions result = {"results/coverage.csv"};
   /** Folder of real pairs with a manifest.json, or of recordings; empty: simulated
    * scenes. */
   std::string real_folder;
   bool has_sequences = false;
   SequenceOptions sequences;
-  bool has_report = false;
   int num_threads = 1;
   /** Few scenes and one condition where none are given. */
   bool is_quick = false;

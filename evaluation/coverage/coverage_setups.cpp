@@ -4,8 +4,8 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace bayesian_icp::evaluate {
 
@@ -89,47 +89,56 @@ fromFoot(double height, const View& view)
   return {view.eye - middle, view.look_at - middle};
 }
 
-CoverageSetup
-makeTunedSetup(const std::string& scene)
+using Setups = std::vector<std::pair<std::string, CoverageSetup>>;
+
+const Setups&
+tunedSetups()
 {
   const Vector3d eye(0.0, -0.8, 0.5);
   const Vector3d object(0.0, 0.0, 0.05);
-  if (scene == "bowl")
-    return depthCamera({112, 112, 0.36}, fromFoot(0.076, {eye, object}));
-  if (scene == "can")
-    return depthCamera({112, 112, 0.22}, fromFoot(0.12, {eye, object}));
-  if (scene == "mug")
-    return depthCamera({112, 112, 0.22}, fromFoot(0.10, {{0.25, -0.76, 0.5}, object}));
-  if (scene == "table" || scene == "table_top")
-    return depthCamera({128, 96, 1.0}, {eye, Vector3d::Zero()});
-  return carriedOn({0.6, 0.15, 0.1},
-                   depthCamera({128, 96, 1.0}, {{0.0, 0.0, 1.2}, {5.0, 0.1, 1.0}}));
+  const CoverageSetup table = depthCamera({128, 96, 1.0}, {eye, Vector3d::Zero()});
+  static const Setups setups = {
+      {"bowl", depthCamera({112, 112, 0.36}, fromFoot(0.076, {eye, object}))},
+      {"can", depthCamera({112, 112, 0.22}, fromFoot(0.12, {eye, object}))},
+      {"mug",
+       depthCamera({112, 112, 0.22}, fromFoot(0.10, {{0.25, -0.76, 0.5}, object}))},
+      {"table_top", table},
+      {"plain_corridor",
+       carriedOn({0.6, 0.15, 0.1},
+                 depthCamera({128, 96, 1.0}, {{0.0, 0.0, 1.2}, {5.0, 0.1, 1.0}}))},
+      {"table", table}};
+  return setups;
 }
 
-CoverageSetup
-makeNewSetup(const std::string& scene)
+const Setups&
+newSetups()
 {
-  if (scene == "cube")
-    return depthCamera({96, 96, 0.3}, {{0.3, -0.75, 0.5}, {0.0, 0.0, 0.05}});
-  if (scene == "bracket")
-    return depthCamera({96, 96, 0.22}, {{0.25, -0.7, 0.45}, {0.0, 0.0, 0.03}});
-  if (scene == "tool")
-    return depthCamera({96, 96, 0.26}, {{0.3, -0.65, 0.45}, {0.0, 0.0, 0.02}});
-  if (scene == "carton")
-    return timeOfFlightCamera({96, 96, 0.36}, {{0.3, -0.75, 0.6}, {0.0, 0.0, 0.05}});
-  if (scene == "box")
-    return timeOfFlightCamera({96, 96, 0.32}, {{0.4, -0.7, 0.45}, {0.0, 0.0, 0.07}});
-  if (scene == "stairs")
-    return carriedOn(
-        {0.25, 0.1, 0.05},
-        timeOfFlightCamera({96, 96, 0.9}, {{-1.3, 0.0, 1.4}, {0.6, 0.0, 0.4}}));
-  if (scene == "room")
-    return lidar(-30.0, 10.0, {{0.0, 0.0, 1.2}, {1.0, 0.0, 1.2}});
-  if (scene == "car")
-    return lidar(-25.0, 0.0, {{-3.5, -3.0, 1.8}, {-2.5, -2.0, 1.8}});
-  if (scene == "tree")
-    return lidar(-25.0, 15.0, {{-3.0, -1.0, 1.8}, {-2.0, -0.7, 1.8}});
-  return lidar(-30.0, 0.0, {{0.0, 0.0, 1.8}, {1.0, 0.0, 1.8}});
+  static const Setups setups = {
+      {"cube", depthCamera({96, 96, 0.3}, {{0.3, -0.75, 0.5}, {0.0, 0.0, 0.05}})},
+      {"bracket", depthCamera({96, 96, 0.22}, {{0.25, -0.7, 0.45}, {0.0, 0.0, 0.03}})},
+      {"carton",
+       timeOfFlightCamera({96, 96, 0.36}, {{0.3, -0.75, 0.6}, {0.0, 0.0, 0.05}})},
+      {"tool", depthCamera({96, 96, 0.26}, {{0.3, -0.65, 0.45}, {0.0, 0.0, 0.02}})},
+      {"box",
+       timeOfFlightCamera({96, 96, 0.32}, {{0.4, -0.7, 0.45}, {0.0, 0.0, 0.07}})},
+      {"stairs",
+       carriedOn(
+           {0.25, 0.1, 0.05},
+           timeOfFlightCamera({96, 96, 0.9}, {{-1.3, 0.0, 1.4}, {0.6, 0.0, 0.4}}))},
+      {"room", lidar(-30.0, 10.0, {{0.0, 0.0, 1.2}, {1.0, 0.0, 1.2}})},
+      {"car", lidar(-25.0, 0.0, {{-3.5, -3.0, 1.8}, {-2.5, -2.0, 1.8}})},
+      {"tree", lidar(-25.0, 15.0, {{-3.0, -1.0, 1.8}, {-2.0, -0.7, 1.8}})},
+      {"ground", lidar(-30.0, 0.0, {{0.0, 0.0, 1.8}, {1.0, 0.0, 1.8}})}};
+  return setups;
+}
+
+std::vector<std::string>
+namesOf(const Setups& setups)
+{
+  std::vector<std::string> names;
+  for (const auto& [name, setup] : setups)
+    names.push_back(name);
+  return names;
 }
 
 CoverageSetup
@@ -143,10 +152,18 @@ makeLidarSetup(const std::string& scene)
   return setup;
 }
 
-bool
-contains(const std::vector<std::string>& names, const std::string& name)
+/** \throws std::invalid_argument if there is no such scene */
+CoverageSetup
+findSetup(const std::string& scene)
 {
-  return std::find(names.begin(), names.end(), name) != names.end();
+  for (const Setups* setups : {&tunedSetups(), &newSetups()})
+    for (const auto& [name, setup] : *setups)
+      if (name == scene)
+        return setup;
+  for (const std::string& name : lidarScenes())
+    if (name == scene)
+      return makeLidarSetup(scene);
+  throw std::invalid_argument("the coverage study has no scene '" + scene + "'");
 }
 
 Vector3d
@@ -160,24 +177,14 @@ turnedAboutVertical(const Vector3d& vector, double angle)
 const std::vector<std::string>&
 tunedScenes()
 {
-  static const std::vector<std::string> names = {
-      "bowl", "can", "mug", "table_top", "plain_corridor", "table"};
+  static const std::vector<std::string> names = namesOf(tunedSetups());
   return names;
 }
 
 const std::vector<std::string>&
 newScenes()
 {
-  static const std::vector<std::string> names = {"cube",
-                                                 "bracket",
-                                                 "carton",
-                                                 "tool",
-                                                 "box",
-                                                 "stairs",
-                                                 "room",
-                                                 "car",
-                                                 "tree",
-                                                 "ground"};
+  static const std::vector<std::string> names = namesOf(newSetups());
   return names;
 }
 
@@ -192,15 +199,7 @@ lidarScenes()
 CoverageSetup
 coverageSetup(const std::string& scene)
 {
-  CoverageSetup setup;
-  if (contains(tunedScenes(), scene))
-    setup = makeTunedSetup(scene);
-  else if (contains(newScenes(), scene))
-    setup = makeNewSetup(scene);
-  else if (contains(lidarScenes(), scene))
-    setup = makeLidarSetup(scene);
-  else
-    throw std::invalid_argument("the coverage study has no scene '" + scene + "'");
+  CoverageSetup setup = findSetup(scene);
   // The study's table top has its edges in view.
   setup.simulated_scene = scene == "table_top" ? "table_plate" : scene;
   return setup;

@@ -5,6 +5,7 @@
 
 #include "coverage/coverage_file.h"
 #include "coverage/coverage_methods.h"
+#include "study/parallel_tasks.h"
 
 #include <functional>
 #include <string>
@@ -22,21 +23,13 @@ struct CoverageCaseName {
 /** \brief Makes a case; called by several threads at once. */
 using CoverageCaseMaker = std::function<CoverageCase(const CoverageCaseName&)>;
 
-/** \brief How far a study is. */
-struct CoverageProgress {
-  std::size_t num_done;
-  std::size_t num_cases;
-  double seconds_left;
-  const CoverageCaseName& last_case;
-};
-
 /** \brief What is run. */
 struct CoverageStudy {
   std::vector<CoverageCaseName> cases;
   std::vector<CoverageMethod> methods;
   CoverageCaseMaker make_case;
-  /** Called after each case by one thread at a time. */
-  std::function<void(const CoverageProgress&)> report;
+  /** Called after each case by one thread at a time; may be empty. */
+  std::function<void(const StudyProgress&, const CoverageCaseName&)> report;
   int num_threads = 1;
 };
 
@@ -45,5 +38,9 @@ struct CoverageStudy {
  * \throws io::FileError, and what make_case throws; rows of other cases are kept */
 void
 runCoverageStudy(const CoverageStudy& study, CoverageFile& results);
+
+/** \brief The rows of the study, in its order. */
+std::vector<CoverageRun>
+runsOf(const CoverageStudy& study, const CoverageFile& results);
 
 } // namespace bayesian_icp::evaluate

@@ -1,8 +1,8 @@
 #include "geometry/twist.h"
 #include "io/text_hash.h"
-#include "paper/accuracy_file.h"
 #include "paper/accuracy_methods.h"
 #include "paper/median_table.h"
+#include "paper/paper_runs.h"
 #include "paper/study_record.h"
 
 #include <cmath>
@@ -22,9 +22,9 @@ numStarts(const PaperStudy& study)
 }
 
 Vector6d
-startOf(const AccuracyRun::Name& name)
+startOf(const PaperRunName& name)
 {
-  Random random(name.seed, static_cast<std::uint64_t>(name.index));
+  Random random(name.seed, static_cast<std::uint64_t>(name.number));
   Vector6d start;
   for (int k = 0; k < 6; ++k)
     start[k] = (k < 3 ? accuracy_translation_range : accuracy_rotation_range) *
@@ -35,12 +35,14 @@ startOf(const AccuracyRun::Name& name)
 AccuracyRun
 makeRun(const PaperProblem& problem,
         const AccuracyMethod& method,
-        const AccuracyRun::Name& name,
+        const PaperRunName& name,
         int num_threads)
 {
-  const AccuracyStart start{
-      startOf(name), name.seed + static_cast<std::uint64_t>(name.index), num_threads};
-  const AccuracyEstimate estimate = method.run(problem, start);
+  DrawPlan plan;
+  plan.start = startOf(name);
+  plan.seed = name.seed + static_cast<std::uint64_t>(name.number);
+  plan.num_threads = num_threads;
+  const AccuracyEstimate estimate = method.run(problem, plan);
   const Vector6d error = estimate.pose - poseOf(problem.pair.truth.matrix());
   AccuracyRun run{name, error.head<3>().norm(), 0.0, estimate.status};
   for (int k = 3; k < 6; ++k)
@@ -53,21 +55,20 @@ void
 studyMethod(const PaperStudy& study,
             const PaperProblem& problem,
             const AccuracyMethod& method,
-            AccuracyFile& file,
+            RunFile<AccuracyRun>& file,
             MedianTable& table)
 {
   int num_made = 0;
   for (int i = 0; i < numStarts(study); ++i) {
-    const AccuracyRun::Name name{io::textOfHash(problem.pair.key()),
-                                 problem.pair.name,
-                                 method.name,
-                                 study.options.seed,
-                                 i};
-    if (file.find(name) == nullptr) {
-      file.add(makeRun(problem, method, name, study.options.num_threads));
+    const PaperRunName name{io::textOfHash(problem.pair.key()),
+                            problem.pair.name,
+                            method.name,
+                            study.options.seed,
+                            i};
+    const AccuracyRun& run = file.findOrMake(name, [&] {
       ++num_made;
-    }
-    const AccuracyRun& run = *file.find(name);
+      return makeRun(problem, method, name, study.options.num_threads);
+    });
     table.add(problem.pair.name + ", " + method.name,
               {1000.0 * run.translation_error, 1000.0 * run.rotation_error});
   }
@@ -81,7 +82,7 @@ studyMethod(const PaperStudy& study,
 void
 accuracyExperiment(const PaperStudy& study)
 {
-  AccuracyFile file(study.path("accuracy.csv"));
+  RunFile<AccuracyRun> file(study.path("accuracy.csv"));
   MedianTable table("accuracy: errors of the final pose", {"[mm]", "[mrad]"});
   std::vector<PairKey> keys;
   for (const ScanPair& pair : study.pairs) {

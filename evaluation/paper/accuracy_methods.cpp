@@ -35,16 +35,16 @@ priorOf(Preset preset)
 }
 
 AccuracyEstimate
-bayesianMean(Preset preset, const PaperProblem& problem, const AccuracyStart& start)
+bayesianMean(Preset preset, const PaperProblem& problem, const DrawPlan& plan)
 {
   Options options;
   options.preset = preset;
   options.prior = priorOf(preset);
-  options.chains.seed = start.seed;
-  options.chains.num_threads = start.num_threads;
+  options.chains.seed = plan.seed;
+  options.chains.num_threads = plan.num_threads;
   options.paper.num_burn_in = num_burn_in;
   const PosteriorEstimate estimate =
-      estimatePosterior(problem.pair.source, problem.tree, start.pose, options);
+      estimatePosterior(problem.pair.source, problem.tree, plan.start, options);
   AccuracyEstimate result{estimate.summary.mean, toString(estimate.summary.status)};
   if (estimate.samples.rows() == 0)
     result.pose.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -52,41 +52,40 @@ bayesianMean(Preset preset, const PaperProblem& problem, const AccuracyStart& st
 }
 
 AccuracyEstimate
-sgdIcp(bool is_one_to_one, const PaperProblem& problem, const AccuracyStart& start)
+sgdIcp(bool is_one_to_one, const PaperProblem& problem, const DrawPlan& plan)
 {
   StochasticGradientIcpOptions options;
-  options.seed = start.seed;
+  options.seed = plan.seed;
   options.is_one_to_one = is_one_to_one;
   const TreeSearch search(problem.tree, std::numeric_limits<double>::infinity());
   const StochasticGradientIcpResult result =
-      stochasticGradientIcp(problem.pair.source, search, start.pose, options);
+      stochasticGradientIcp(problem.pair.source, search, plan.start, options);
   return {result.pose, toString(result.end)};
 }
 
 AccuracyEstimate
-icp(const PaperProblem& problem, const AccuracyStart& start)
+icp(const PaperProblem& problem, const DrawPlan& plan)
 {
   IcpOptions options;
   options.max_iterations = max_icp_iterations;
   const IcpResult result = iterativeClosestPoint(
-      problem.pair.source, problem.tree, isometryOf(start.pose), options);
+      problem.pair.source, problem.tree, isometryOf(plan.start), options);
   return {poseOf(result.T_target_source.matrix()), toString(result.stop)};
 }
 
 AccuracyMethod
 sgdMethod(const char* name, bool is_one_to_one)
 {
-  return {name,
-          [is_one_to_one](const PaperProblem& problem, const AccuracyStart& start) {
-            return sgdIcp(is_one_to_one, problem, start);
+  return {name, [is_one_to_one](const PaperProblem& problem, const DrawPlan& plan) {
+            return sgdIcp(is_one_to_one, problem, plan);
           }};
 }
 
 AccuracyMethod
 bayesianMethod(const char* name, Preset preset)
 {
-  return {name, [preset](const PaperProblem& problem, const AccuracyStart& start) {
-            return bayesianMean(preset, problem, start);
+  return {name, [preset](const PaperProblem& problem, const DrawPlan& plan) {
+            return bayesianMean(preset, problem, plan);
           }};
 }
 

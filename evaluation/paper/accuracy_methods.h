@@ -24,17 +24,10 @@ struct AccuracyEstimate {
   std::string status;
 };
 
-/** \brief From where, and with which random numbers. */
-struct AccuracyStart {
-  Vector6d pose;
-  std::uint64_t seed = 1;
-  int num_threads = 1;
-};
-
 struct AccuracyMethod {
   /** In the file. */
   std::string name;
-  std::function<AccuracyEstimate(const PaperProblem&, const AccuracyStart&)> run;
+  std::function<AccuracyEstimate(const PaperProblem&, const DrawPlan&)> run;
 };
 
 /** \brief What they are:

@@ -2,14 +2,12 @@
 
 #include "io/numbers.h"
 #include "io/text_hash.h"
-#include "study/csv_fields.h"
 #include "study/input_hash.h"
-#include "study/row_file.h"
+#include "study/run_file.h"
 
-#include <algorithm>
 #include <chrono>
-#include <map>
 #include <stdexcept>
+#include <type_traits>
 
 namespace bayesian_icp::evaluate {
 
@@ -18,35 +16,11 @@ namespace {
 /** To be changed with what a run does: old files are then ignored. */
 constexpr char version[] = "monte carlo icp 1";
 
-constexpr char header[] =
-    "index,start_x_m,start_y_m,start_z_m,start_roll_rad,start_pitch_rad,start_yaw_rad,"
-    "x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad,stop,iterations,mean_squared_distance_m2";
-
 constexpr int block_size = 100;
 constexpr double seconds_between_reports = 5.0;
 
 using Clock = std::chrono::steady_clock;
 using Report = std::function<void(const std::string&)>;
-
-/** Numbers of a run in the order of the columns around `stop`. */
-template <typename Run, typename Visit>
-void
-forEachNumber(Run& run, const Visit& visit)
-{
-  visit(run.index);
-  for (auto* pose : {&run.start, &run.end})
-    for (int k = 0; k < 6; ++k)
-      visit((*pose)[k]);
-}
-
-std::string
-rowOf(const MonteCarloIcpRun& run)
-{
-  CsvRow row;
-  forEachNumber(run, [&row](auto number) { row.add(number); });
-  row.add(std::string(toString(run.stop)));
-  return row.add(run.num_iterations).add(run.mean_squared_distance).text();
-}
 
 IcpStop
 stopOf(std::string_view name)
@@ -61,34 +35,55 @@ stopOf(std::string_view name)
   throw std::runtime_error("not an end of ICP");
 }
 
-/** \throws std::exception if the line is not a row */
-MonteCarloIcpRun
-runOf(const std::string& line)
-{
-  CsvFields fields(line);
-  MonteCarloIcpRun run;
-  forEachNumber(run, [&fields](auto& number) { fields.read(number); });
-  run.stop = stopOf(fields.text());
-  run.has_converged = run.stop != IcpStop::TooFewPairs;
-  fields.read(run.num_iterations);
-  fields.read(run.mean_squared_distance);
-  fields.end();
-  return run;
-}
+/** A row of the file. */
+struct KeptRun {
+  struct Name {
+    int index = 0;
 
-using RunMap = std::map<int, MonteCarloIcpRun>;
+    template <typename Self, typename Column>
+    static void
+    columns(Self& self, const Column& column)
+    {
+      column("index", self.index);
+    }
+  };
+
+  Name name;
+  MonteCarloIcpRun run;
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    auto& run = self.run;
+    std::string stop = toString(run.stop);
+    Name::columns(self.name, column);
+    unitColumns("start_", run.start, column);
+    unitColumns("", run.end, column);
+    column("stop", stop);
+    column("iterations", run.num_iterations);
+    column("mean_squared_distance_m2", run.mean_squared_distance);
+    if constexpr (!std::is_const_v<Self>) {
+      run.index = self.name.index;
+      run.stop = stopOf(stop);
+      run.has_converged = run.stop != IcpStop::TooFewPairs;
+    }
+  }
+};
+
+using KeptRuns = RunFile<KeptRun>;
 
 /** The next runs that are not there, without a gap; num_runs 0: there are none. */
 MonteCarloIcpOptions
-nextBlock(const MonteCarloIcpOptions& options, const RunMap& runs)
+nextBlock(const MonteCarloIcpOptions& options, const KeptRuns& runs)
 {
   MonteCarloIcpOptions block = options;
   const int end = options.first_run + options.num_runs;
-  while (block.first_run < end && runs.count(block.first_run) > 0)
+  while (block.first_run < end && runs.find({block.first_run}) != nullptr)
     ++block.first_run;
   block.num_runs = 0;
   while (block.num_runs < block_size && block.first_run + block.num_runs < end &&
-         runs.count(block.first_run + block.num_runs) == 0)
+         runs.find({block.first_run + block.num_runs}) == nullptr)
     ++block.num_runs;
   return block;
 }
@@ -161,36 +156,25 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
                    const MonteCarloFile& file,
                    const Report& report)
 {
-  RunMap runs;
-  const RowFile rows(file.name(monteCarloKey(source, target, options)),
-                     header,
-                     [&runs](const std::string& row) {
-                       const MonteCarloIcpRun run = runOf(row);
-                       runs[run.index] = run;
-                     });
-  const auto isAsked = [&options](int index) {
-    return index >= options.first_run && index < options.first_run + options.num_runs;
-  };
-  const auto num_known = std::count_if(
-      runs.begin(), runs.end(), [&](const auto& run) { return isAsked(run.first); });
-  Progress progress(options.num_runs - static_cast<int>(num_known), report);
-  int num_done = 0;
+  KeptRuns runs(file.name(monteCarloKey(source, target, options)));
+  const int end = options.first_run + options.num_runs;
+  int num_missing = 0, num_done = 0;
+  for (int index = options.first_run; index < end; ++index)
+    num_missing += runs.find({index}) == nullptr ? 1 : 0;
+  Progress progress(num_missing, report);
   for (auto block = nextBlock(options, runs); block.num_runs > 0;
        block = nextBlock(options, runs)) {
     const auto made = monteCarloIcp(source, target, block, [&](int done) {
       progress.show(num_done + done);
       return true;
     });
-    for (const MonteCarloIcpRun& run : made) {
-      rows.add(rowOf(run));
-      runs[run.index] = run;
-    }
+    for (const MonteCarloIcpRun& run : made)
+      runs.add({{run.index}, run});
     num_done += block.num_runs;
   }
   std::vector<MonteCarloIcpRun> asked;
-  for (const auto& run : runs)
-    if (isAsked(run.first))
-      asked.push_back(run.second);
+  for (int index = options.first_run; index < end; ++index)
+    asked.push_back(runs.find({index})->run);
   return asked;
 }
 

@@ -28,6 +28,31 @@ baselineOptions(const PaperStudyOptions& paper)
   return options;
 }
 
+std::vector<MonteCarloIcpRun>
+keptRuns(const PaperStudy& study, const PaperProblem& problem)
+{
+  const std::string& name = problem.pair.name;
+  return keptMonteCarloRuns(
+      problem.pair.source,
+      problem.tree,
+      baselineOptions(study.options),
+      {study.options.output_folder, name},
+      [&](const std::string& line) { study.report(name + ": " + line); });
+}
+
+std::string
+keyOf(const PaperStudyOptions& options, const PaperProblem& problem)
+{
+  const MonteCarloIcpOptions baseline = baselineOptions(options);
+  const std::uint64_t numbers[] = {
+      problem.pair.key(),
+      monteCarloKey(problem.pair.source, problem.tree, baseline),
+      static_cast<std::uint64_t>(baseline.num_runs)};
+  InputHash hash;
+  hash.add(numbers, sizeof numbers);
+  return io::textOfHash(hash.value());
+}
+
 } // namespace
 
 PaperBaseline
@@ -50,32 +75,10 @@ baselineOf(const std::string& pair_name, const std::vector<MonteCarloIcpRun>& ru
   return baseline;
 }
 
-PaperBaseline
-keptBaseline(const PaperStudy& study, const PaperProblem& problem)
-{
-  const std::string& name = problem.pair.name;
-  const auto report = [&](const std::string& line) {
-    study.report(name + ": " + line);
-  };
-  return baselineOf(name,
-                    keptMonteCarloRuns(problem.pair.source,
-                                       problem.tree,
-                                       baselineOptions(study.options),
-                                       {study.options.output_folder, name},
-                                       report));
-}
-
-std::string
-baselineKey(const PaperStudyOptions& options, const PaperProblem& problem)
-{
-  const MonteCarloIcpOptions baseline = baselineOptions(options);
-  const std::uint64_t numbers[] = {
-      problem.pair.key(),
-      monteCarloKey(problem.pair.source, problem.tree, baseline),
-      static_cast<std::uint64_t>(baseline.num_runs)};
-  InputHash hash;
-  hash.add(numbers, sizeof numbers);
-  return io::textOfHash(hash.value());
-}
+ComparedPair::ComparedPair(const PaperStudy& study, const ScanPair& scan_pair)
+: problem(scan_pair)
+, baseline(baselineOf(scan_pair.name, keptRuns(study, problem)))
+, key(keyOf(study.options, problem))
+{}
 
 } // namespace bayesian_icp::evaluate

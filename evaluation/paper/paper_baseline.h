@@ -34,15 +34,18 @@ struct PaperBaseline {
 PaperBaseline
 baselineOf(const std::string& pair_name, const std::vector<MonteCarloIcpRun>& runs);
 
-/** \brief The pair's baseline: runs that are in the output folder, and for the others
- * they are made.
- * \throws io::FileError */
-PaperBaseline
-keptBaseline(const PaperStudy& study, const PaperProblem& problem);
+/** \brief A pair with its baseline. */
+struct ComparedPair {
+  /** \brief Take the baseline's runs that are in the output folder, and make the
+   * others.
+   * \param[in] scan_pair must outlive this object
+   * \throws io::FileError */
+  ComparedPair(const PaperStudy& study, const ScanPair& scan_pair);
 
-/** \brief A hash of all that the pair's baseline depends on, as 16 hexadecimal digits.
- */
-std::string
-baselineKey(const PaperStudyOptions& options, const PaperProblem& problem);
+  PaperProblem problem;
+  PaperBaseline baseline;
+  /** A hash of all that the baseline depends on, as 16 hexadecimal digits. */
+  std::string key;
+};
 
 } // namespace bayesian_icp::evaluate

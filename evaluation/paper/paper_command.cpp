@@ -2,28 +2,17 @@
 
 #include "io/cloud_file.h"
 #include "io/folders.h"
-#include "study/option_values.h"
 #include "study/report_program.h"
 
 #include <iostream>
-#include <sstream>
 
 namespace bayesian_icp::evaluate {
-
-namespace po = boost::program_options;
 
 namespace {
 
 constexpr int incomplete_exit_code = 3;
 
-std::string
-helpText(const std::string& name,
-         const std::string& summary,
-         const po::options_description& options)
-{
-  std::ostringstream help;
-  help << "Usage: pcl_bayesian_icp_evaluate " << name << " [options]\n\n"
-       << summary << R"(
+constexpr char help_of_all[] = R"(
 
 The output folder gets a CSV file with one row for each run, and the data of the
 pictures. Python with pandas and matplotlib makes report.md, report.html and the
@@ -32,10 +21,7 @@ continues where it stopped. A pair that is missing or broken is named and skippe
 Delete the results of another build of the methods yourself.
 Exit codes: 0 good, 2 usage, 3 cannot read or write a file, left a pair out, or
 made no report.
-
-)" << options;
-  return help.str();
-}
+)";
 
 /** Read options and pairs, make the output folder, run the experiments, and have the
  * report made; progress goes to the standard error. */
@@ -47,13 +33,14 @@ runExperiments(const std::string& summary,
 {
   PaperStudy study;
   study.command = argv[0];
-  const po::options_description description = paperOptionsDescription(study.options);
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, nullptr);
-  if (io::printHelpOrVersion(
-          given, "", [&] { return helpText(argv[0], summary, description); }))
+  const auto options =
+      readPaperOptions(argc,
+                       argv,
+                       "Usage: pcl_bayesian_icp_evaluate " + study.command +
+                           " [options]\n\n" + summary + help_of_all);
+  if (!options)
     return 0;
-  takePaperOptions(given, description, study.options);
+  study.options = *options;
   io::silencePcl();
   study.pairs = readPairs(study.options, std::cerr, study.num_skipped);
   study.report = [](const std::string& line) { std::cerr << line << std::endl; };

@@ -6,12 +6,10 @@
 
 #include "study/scan_pairs.h"
 
-#include <boost/program_options/options_description.hpp>
-#include <boost/program_options/variables_map.hpp>
-
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,18 +37,18 @@ struct PaperStudyOptions {
   bool is_quick = false;
   /** Or CSV files and medians only. */
   bool has_report = true;
+
+  /** \brief Those of the repeats. */
+  std::vector<std::uint64_t>
+  seeds() const;
 };
 
-/** \brief Their description. They fill \p options, which has to outlive them. */
-boost::program_options::options_description
-paperOptionsDescription(PaperStudyOptions& options);
-
-/** \brief Take them from a command line.
+/** \brief Read the command line.
+ * \param[in] help is printed before the options if it is asked for
+ * \return nothing if that was help
  * \throws io::UsageError with a message for the user */
-void
-takePaperOptions(const boost::program_options::variables_map& given,
-                 const boost::program_options::options_description& description,
-                 PaperStudyOptions& options);
+std::optional<PaperStudyOptions>
+readPaperOptions(int argc, const char* const* argv, const std::string& help);
 
 /** \brief The pairs asked for. A missing or broken one is named, with the reason, on
  * \p log and left out.

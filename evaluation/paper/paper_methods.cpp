@@ -4,8 +4,6 @@
 #include "study/cpu_time.h"
 #include "study/draw_statistics.h"
 
-#include <bayesian_icp/pipeline.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,32 +22,18 @@ constexpr double estimated = std::numeric_limits<double>::quiet_NaN();
 
 using OptionChange = std::function<void(Options&)>;
 
-/** The project's front door, with the paper's prior and likelihood, its defaults. */
-PaperRun
-runPreset(const PaperProblem& problem, const DrawPlan& plan, const OptionChange& change)
-{
-  Options options;
-  options.chains.num_draws = plan.num_draws;
-  options.chains.seed = plan.seed;
-  options.chains.num_threads = plan.num_threads;
-  options.paper.initial_spread.setConstant(plan.initial_spread);
-  change(options);
-  const double begin = cpuSeconds();
-  PosteriorEstimate estimate =
-      estimatePosterior(problem.pair.source, problem.tree, Vector6d::Zero(), options);
-  PaperRun run;
-  run.sampled.seconds = cpuSeconds() - begin;
-  run.sampled.chains.chains = std::move(estimate.chains);
-  run.sampled.message = estimate.summary.message;
-  run.status = toString(estimate.summary.status);
-  return run;
-}
-
+/** A preset with the paper's prior and likelihood, its defaults, and this change. */
 PaperMethod
 preset(const std::string& name, const OptionChange& change)
 {
   return {name, [change](const PaperProblem& problem, const DrawPlan& plan) {
-            return runPreset(problem, plan, change);
+            Options options;
+            options.chains.num_draws = plan.num_draws;
+            options.chains.seed = plan.seed;
+            options.chains.num_threads = plan.num_threads;
+            options.paper.initial_spread.setConstant(plan.initial_spread);
+            change(options);
+            return runPreset(problem.pair.source, problem.tree, options, plan.start);
           }};
 }
 
@@ -95,12 +79,12 @@ gaussian(const std::string& name,
                     ? known->second
                     : problem.gaussians.emplace(name, fit(caseOf(problem.pair)))
                           .first->second;
-            PaperRun run;
+            SamplerRun run;
             Chain chain;
             chain.draws = drawsOf(fitted, plan);
-            run.sampled.seconds = cpuSeconds() - begin;
+            run.seconds = cpuSeconds() - begin;
             run.status = chain.draws.rows() > 0 ? "gaussian" : "no_covariance";
-            run.sampled.chains.chains.push_back(std::move(chain));
+            run.chains.chains.push_back(std::move(chain));
             return run;
           }};
 }

@@ -30,30 +30,25 @@ struct PaperProblem {
   mutable std::map<std::string, TwistGaussian> gaussians;
 };
 
-/** \brief How much is drawn. */
+/** \brief What is drawn, and from where. */
 struct DrawPlan {
   /** Over all chains, of which there are four. */
   int num_draws = 2000;
   std::uint64_t seed = 1;
   int num_threads = 1;
+  /** The guess [m, rad]. */
+  Vector6d start = Vector6d::Zero();
   /** Standard deviations of the starts of preset `paper` about the guess, six equal
    * numbers [m, rad]. */
   double initial_spread = 0.0;
 };
 
-/** \brief Draws of a method and what it says of them itself. */
-struct PaperRun {
-  /** Gaussians are drawn from, as one chain. */
-  SamplerRun sampled;
-  /** Short name of the Status; of Gaussians "gaussian", or "no_covariance" without
-   * draws. */
-  std::string status;
-};
-
+/** \brief A way to draws. The status of a Gaussian, which is drawn from as one chain,
+ * is "gaussian", or "no_covariance" without draws. */
 struct PaperMethod {
   /** In files. */
   std::string name;
-  std::function<PaperRun(const PaperProblem&, const DrawPlan&)> run;
+  std::function<SamplerRun(const PaperProblem&, const DrawPlan&)> run;
 };
 
 /** \brief All of them start at the identity, and have the paper's prior where they have

@@ -1,6 +1,7 @@
 #include "paper/paper_experiment.h"
 #include "study/option_values.h"
 
+#include <numeric>
 #include <ostream>
 
 namespace bayesian_icp::evaluate {
@@ -14,10 +15,8 @@ constexpr int num_quick_points = 500;
 constexpr int num_quick_baseline_runs = 60;
 constexpr int num_quick_repeats = 3;
 
-} // namespace
-
 po::options_description
-paperOptionsDescription(PaperStudyOptions& options)
+describeOptions(PaperStudyOptions& options)
 {
   constexpr int most = 10000000;
   po::options_description description("Options", 88);
@@ -54,20 +53,32 @@ paperOptionsDescription(PaperStudyOptions& options)
   return description;
 }
 
-void
-takePaperOptions(const po::variables_map& given,
-                 const po::options_description& description,
-                 PaperStudyOptions& options)
+} // namespace
+
+std::vector<std::uint64_t>
+PaperStudyOptions::seeds() const
 {
-  io::takeOptions(given, description);
-  options.has_report = given.count("no-report") == 0;
+  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(num_repeats));
+  std::iota(seeds.begin(), seeds.end(), seed);
+  return seeds;
+}
+
+std::optional<PaperStudyOptions>
+readPaperOptions(int argc, const char* const* argv, const std::string& help)
+{
+  PaperStudyOptions options;
+  const auto given = readOptions(argc, argv, describeOptions(options), help);
+  if (!given)
+    return std::nullopt;
+  options.has_report = given->count("no-report") == 0;
   const auto makeSmaller = [&](const char* name, int& count, int quick) {
-    if (options.is_quick && given[name].defaulted())
+    if (options.is_quick && (*given)[name].defaulted())
       count = quick;
   };
   makeSmaller("points", options.num_points, num_quick_points);
   makeSmaller("baseline-runs", options.num_baseline_runs, num_quick_baseline_runs);
   makeSmaller("repeats", options.num_repeats, num_quick_repeats);
+  return options;
 }
 
 std::vector<ScanPair>

@@ -3,7 +3,8 @@
 #include "geometry/twist.h"
 #include "io/coordinates.h"
 #include "io/output_folder.h"
-#include "study/csv_fields.h"
+#include "samplers/score.h"
+#include "study/csv_row.h"
 #include "study/draw_statistics.h"
 
 #include <bayesian_icp/summary.h>
@@ -20,6 +21,9 @@ namespace {
 constexpr Eigen::Index num_drawn_points = 500;
 
 constexpr std::size_t num_cloud_methods = 2;
+
+/** Draws of methods, by the methods' names. */
+using NamedDraws = std::vector<std::pair<std::string, PoseMatrix>>;
 
 /** What can be told apart in a picture. */
 constexpr int num_digits = 7;
@@ -83,21 +87,20 @@ writePoints(const ScanPair& pair, const NamedDraws& methods, std::ostream& strea
 }
 
 std::string
-baselineRow(const PairDistribution& distribution)
+baselineRow(const ComparedPair& compared)
 {
-  const PaperBaseline& baseline = distribution.baseline;
+  const ScanPair& pair = compared.problem.pair;
+  const PaperBaseline& baseline = compared.baseline;
   const Moments moments = momentsOf(unwrapAbout(baseline.mean, baseline.ends));
   CsvRow row;
-  row.add(distribution.pair->name).add(distribution.pair->source.cols());
-  row.add(distribution.pair->target.cols()).add(baseline.ends.rows());
-  row.add(baseline.mainShare());
+  row.add(pair.name).add(pair.source.cols()).add(pair.target.cols());
+  row.add(baseline.ends.rows()).add(baseline.mainShare());
   for (int k = 0; k < 6; ++k)
     row.add(std::sqrt(moments.covariance(k, k)));
   return row.text();
 }
 
-} // namespace
-
+/** A run of each method that is shown. */
 NamedDraws
 shownDraws(const PaperProblem& problem, const PaperStudyOptions& options)
 {
@@ -107,35 +110,37 @@ shownDraws(const PaperProblem& problem, const PaperStudyOptions& options)
   NamedDraws shown;
   for (const char* name : {"bayesian-icp", "calibrated", "exact", "online-icp"}) {
     const PoseMatrix draws =
-        pooledDraws(paperMethod(name).run(problem, plan).sampled.chains.chains);
+        pooledDraws(paperMethod(name).run(problem, plan).chains.chains);
     if (draws.rows() >= min_scored_draws)
       shown.emplace_back(name, draws);
   }
   return shown;
 }
 
+} // namespace
+
 void
-writeBaselines(const std::string& folder, const std::vector<PairDistribution>& pairs)
+writeBaselines(const std::string& folder, const std::vector<ComparedPair>& pairs)
 {
   io::OutputFolder files(folder);
   files.add("baseline.csv", [&pairs](std::ostream& stream) {
     stream << "pair,source_points,target_points,runs,main_basin_share"
            << coordinateColumns("sd_") << '\n';
-    for (const PairDistribution& pair : pairs)
+    for (const ComparedPair& pair : pairs)
       stream << baselineRow(pair) << '\n';
   });
   files.commit();
 }
 
 void
-writePictureData(const std::string& folder,
-                 const ScanPair& pair,
-                 const PaperBaseline& baseline,
-                 const NamedDraws& methods)
+writePictureData(const ComparedPair& compared, const PaperStudyOptions& options)
 {
-  io::OutputFolder files(folder);
-  files.add("draws_" + pair.name + ".csv",
-            [&](std::ostream& stream) { writeDraws(baseline, methods, stream); });
+  const ScanPair& pair = compared.problem.pair;
+  const NamedDraws methods = shownDraws(compared.problem, options);
+  io::OutputFolder files(options.output_folder);
+  files.add("draws_" + pair.name + ".csv", [&](std::ostream& stream) {
+    writeDraws(compared.baseline, methods, stream);
+  });
   files.add("points_" + pair.name + ".csv",
             [&](std::ostream& stream) { writePoints(pair, methods, stream); });
   files.commit();

@@ -15,21 +15,6 @@ constexpr int num_chains = 4;
 /** Steps of each chain of a competitor: enough to see its rate, not to converge. */
 constexpr int num_competitor_steps = 1500;
 
-/** Run the project's front door and time it. */
-SamplerRun
-runEstimate(const Problem& problem, const Options& options)
-{
-  const double begin = cpuSeconds();
-  PosteriorEstimate estimate = estimatePosterior(
-      problem.scene().source, problem.scene().target, Vector6d::Zero(), options);
-  SamplerRun run;
-  run.seconds = cpuSeconds() - begin;
-  run.chains.chains = std::move(estimate.chains);
-  run.summary = estimate.summary;
-  run.message = estimate.summary.message;
-  return run;
-}
-
 template <typename RunChain>
 SamplerRun
 runCompetitor(const Problem& problem,
@@ -57,6 +42,23 @@ runCompetitor(const Problem& problem,
 
 } // namespace
 
+SamplerRun
+runPreset(const Eigen::Matrix3Xd& source,
+          const KdTree& target,
+          const Options& options,
+          const Vector6d& start)
+{
+  const double begin = cpuSeconds();
+  PosteriorEstimate estimate = estimatePosterior(source, target, start, options);
+  SamplerRun run;
+  run.seconds = cpuSeconds() - begin;
+  run.chains.chains = std::move(estimate.chains);
+  run.status = toString(estimate.summary.status);
+  run.message = estimate.summary.message;
+  run.summary = std::move(estimate.summary);
+  return run;
+}
+
 Oracle
 oracleOf(const Problem& problem, const GoldStandard& gold)
 {
@@ -81,7 +83,7 @@ runExact(const Problem& problem,
   options.exact.num_particles = num_particles;
   options.chains.seed = seed;
   options.chains.num_threads = num_threads;
-  return runEstimate(problem, options);
+  return runPreset(problem.scene().source, problem.scene().target, options);
 }
 
 SamplerRun
@@ -93,7 +95,7 @@ runPaper(const Problem& problem, std::uint64_t seed, int num_threads, double ste
   options.paper.thinning = 10;
   options.chains.seed = seed;
   options.chains.num_threads = num_threads;
-  return runEstimate(problem, options);
+  return runPreset(problem.scene().source, problem.scene().target, options);
 }
 
 SamplerRun

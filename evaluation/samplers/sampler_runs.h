@@ -20,6 +20,8 @@ struct SamplerRun {
   ChainSet chains;
   /** Of a preset; other samplers have none. */
   std::optional<Summary> summary;
+  /** Short name of the Status; empty: as the draws show. */
+  std::string status;
   /** CPU time from the first to the last step, warm-up included, of all threads [s]. */
   double seconds = 0.0;
   /** Not empty if the sampler refused to run, or says more than the draws show. */
@@ -36,6 +38,15 @@ struct Oracle {
 
 Oracle
 oracleOf(const Problem& problem, const GoldStandard& gold);
+
+/** \brief What the library makes of two clouds.
+ * \param[in] start mean of the prior unless the options state one, and of the chains'
+ *            starts [m, rad] */
+SamplerRun
+runPreset(const Eigen::Matrix3Xd& source,
+          const KdTree& target,
+          const Options& options,
+          const Vector6d& start = Vector6d::Zero());
 
 /** \brief Preset `exact` with these steps.
  * \param[in] num_particles of Stein steps */

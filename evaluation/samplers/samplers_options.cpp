@@ -1,11 +1,11 @@
 #include "samplers/samplers_options.h"
 
 #include "register/choices.h"
-#include "study/option_values.h"
+
+#include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace bayesian_icp::evaluate {
 
@@ -34,75 +34,80 @@ cellOf(const std::string& text)
   return {positiveNumberOf(numbers[0]), positiveNumberOf(numbers[1])};
 }
 
-void
-takeCells(const std::string& text, SamplersOptions& options)
+/** An option with several values, separated by commas, each of which \p read reads. */
+template <typename Value>
+po::typed_value<std::string>*
+listOf(const std::string& standard,
+       std::vector<Value>& values,
+       Value (*read)(const std::string&))
 {
-  for (const std::string& cell : split(text, ','))
-    options.cells.push_back(cellOf(cell));
+  return taken(standard, [&values, read](const std::string& text) {
+    values.clear();
+    for (const std::string& word : split(text, ','))
+      values.push_back(read(word));
+  });
 }
 
-void
-takeStepSizes(const std::string& text, SamplersOptions& options)
+/** A sampler of the default ones. */
+std::string
+samplerOf(const std::string& name)
 {
-  for (const std::string& step : split(text, ','))
-    options.step_sizes.push_back(positiveNumberOf(step));
+  if (!SamplersOptions().wants(name))
+    throw io::BadValue(": there is no " + io::inQuotes(name));
+  return name;
 }
 
-void
-takeSamplers(const std::string& text, SamplersOptions& options)
+int
+numParticlesOf(const std::string& text)
 {
-  const std::vector<std::string> known = options.samplers;
-  options.samplers = split(text, ',');
-  for (const std::string& sampler : options.samplers)
-    if (std::count(known.begin(), known.end(), sampler) == 0)
-      throw io::BadValue(": there is no " + io::inQuotes(sampler));
+  const double number = positiveNumberOf(text);
+  if (number != std::floor(number) || number < min_particles || number > 10000.0)
+    io::refuseValue(text, "a whole number from 8 to 10000");
+  return static_cast<int>(number);
 }
 
-void
-takeParticles(const std::string& text, SamplersOptions& options)
-{
-  for (const std::string& item : split(text, ',')) {
-    const double number = positiveNumberOf(item);
-    if (number != std::floor(number) || number < min_particles || number > 10000.0)
-      io::refuseValue(item, "a whole number from 8 to 10000");
-    options.particles.push_back(static_cast<int>(number));
-  }
-}
+constexpr char samplers_help[] = R"(Usage: pcl_bayesian_icp_evaluate samplers [options]
 
-void
-takeResidual(const std::string& text, SamplersOptions& options)
-{
-  if (!app::readChoice(text, options.residual))
-    io::refuseValue(text, app::namesOfChoices(Residual()));
-}
+Compares the draws of every sampler with a gold standard: long Metropolis
+runs on the same posterior, kept in the cache folder. Every run is a row of
+a CSV file: KL divergence of Gaussian moments (gold standard to sampler,
+6-D and per coordinate) [nats], Wasserstein-1 distance [standard deviations
+of the gold standard] and Kolmogorov-Smirnov distance of the marginals,
+largest R-hat, smallest bulk and tail effective sample size (ESS), CPU time
+of all threads [s], smallest bulk ESS a second, status. A table of medians
+and worst cases goes to the standard output, progress to the standard error.
+Results of another build of the samplers have to be deleted by hand.
+Exit codes: 0 good, 1 a gold standard did not converge, 2 usage, 3 cannot
+read or write a file, or make the report.
+)";
 
 po::options_description
 describeOptions(SamplersOptions& options)
 {
-  const auto taking = [&options](void (*take)(const std::string&, SamplersOptions&)) {
-    return [take, &options](const std::string& text) { take(text, options); };
-  };
   po::options_description description("Options", 88);
   // clang-format off
   description.add_options()
     ("data", text(options.data_folder),
      "folder with one folder for each scene: source.pcd, target.pcd [m]")
     ("scenes", list(options.scenes), "names of scenes, separated by commas")
-    ("cells", taken("1:6000,0.0015:100,0.0015:1000,0.005:300", taking(takeCells)),
+    ("cells", listOf("1:6000,0.0015:100,0.0015:1000,0.005:300", options.cells, cellOf),
      "scales of the likelihood as sigma:N, separated by commas: sigma [m], effective "
      "points N")
-    ("residual", taken("point-to-point", taking(takeResidual)),
+    ("residual", taken("point-to-point", [&options](const std::string& text) {
+       if (!app::readChoice(text, options.residual))
+         io::refuseValue(text, app::namesOfChoices(Residual()));
+     }),
      ("residual of the energy, for all samplers and the gold standard (paper has its "
       "own): " + app::namesOfChoices(Residual())).c_str())
-    ("samplers", taken("exact,exact-metropolis,stein-gradient,stein-newton,paper,walk,"
-                       "mala", taking(takeSamplers)),
+    ("samplers", listOf(boost::algorithm::join(options.samplers, ","), options.samplers,
+                        samplerOf),
      "samplers to compare: exact (preset exact), exact-metropolis (the same with "
      "Metropolis steps), stein-gradient and stein-newton (with Stein steps), paper "
      "(Algorithm 1 at several step sizes; all seeds at the best one), walk and mala "
      "(full batch; covariance and starts from the gold standard)")
-    ("particles", taken("20,50,100", taking(takeParticles)),
+    ("particles", listOf("20,50,100", options.particles, numParticlesOf),
      "numbers of particles of the Stein samplers")
-    ("step-sizes", taken("1e-3,1e-4,1e-5,1e-6", taking(takeStepSizes)),
+    ("step-sizes", listOf("1e-3,1e-4,1e-5,1e-6", options.step_sizes, positiveNumberOf),
      "step sizes alpha of Algorithm 1. Each is also tried times 6000 sigma^2 / N, "
      "which is its value at the paper's scale. Smaller ones are tried as long as they "
      "are better")
@@ -115,15 +120,10 @@ describeOptions(SamplersOptions& options)
     ("gold-seconds", positiveNumber(options.gold.max_seconds, unlimited),
      "CPU time after which a gold standard ends, even if it has not converged [s]")
     ("cache", text(options.cache_folder), "folder of the gold standards")
-    ("output", text(options.result_file),
-     "CSV file of the results, one row for each run. Runs that it already has are "
-     "skipped")
-    ("report", io::flag(options.has_report),
-     "also make a report of all results in that folder")
     ("quick", io::flag(options.is_quick),
-     "one scene (can), two seeds and 500 points, unless given")
-    ("help", "show this text");
+     "one scene (can), two seeds and 500 points, unless given");
   // clang-format on
+  addResultOptions(options.result, description);
   return description;
 }
 
@@ -138,28 +138,6 @@ makeQuick(const po::variables_map& given, SamplersOptions& options)
     options.num_points = 500;
 }
 
-std::string
-samplersHelp(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_evaluate samplers [options]
-
-Compares the draws of every sampler with a gold standard: long Metropolis
-runs on the same posterior, kept in the cache folder. Every run is a row of
-a CSV file: KL divergence of Gaussian moments (gold standard to sampler,
-6-D and per coordinate) [nats], Wasserstein-1 distance [standard deviations
-of the gold standard] and Kolmogorov-Smirnov distance of the marginals,
-largest R-hat, smallest bulk and tail effective sample size (ESS), CPU time
-of all threads [s], smallest bulk ESS a second, status. A table of medians
-and worst cases goes to the standard output, progress to the standard error.
-Results of another build of the samplers have to be deleted by hand.
-Exit codes: 0 good, 1 a gold standard did not converge, 2 usage, 3 cannot
-read or write a file, or make the report.
-
-)" << options;
-  return help.str();
-}
-
 } // namespace
 
 bool
@@ -172,15 +150,11 @@ std::optional<SamplersOptions>
 parseSamplersOptions(int argc, const char* const* argv)
 {
   SamplersOptions options;
-  const po::options_description description = describeOptions(options);
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, nullptr);
-  if (io::printHelpOrVersion(
-          given, "", [&description] { return samplersHelp(description); }))
+  const auto given = readOptions(argc, argv, describeOptions(options), samplers_help);
+  if (!given)
     return std::nullopt;
-  io::takeOptions(given, description);
   if (options.is_quick)
-    makeQuick(given, options);
+    makeQuick(*given, options);
   options.gold.num_threads = options.num_threads;
   return options;
 }

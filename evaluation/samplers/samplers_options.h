@@ -4,6 +4,7 @@
 #pragma once
 
 #include "samplers/sampler_problem.h"
+#include "study/option_values.h"
 
 #include <optional>
 #include <string>
@@ -15,8 +16,7 @@ namespace bayesian_icp::evaluate {
 struct SamplersOptions {
   std::string data_folder = "data";
   std::string cache_folder = "results";
-  std::string result_file = "results/samplers.csv";
-  bool has_report = false;
+  ResultOptions result = {"results/samplers.csv"};
   bool is_quick = false;
   std::vector<std::string> scenes = {"can", "bowl", "mug", "table", "corridor"};
   std::vector<Cell> cells;

@@ -47,7 +47,7 @@ scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
 {
   const Summary summary = run.summary ? *run.summary : summarize(run.chains);
   Score score;
-  score.status = toString(summary.status);
+  score.status = run.status.empty() ? toString(summary.status) : run.status;
   score.seconds = run.seconds;
   addDiagnostics(summary, score);
   const PoseMatrix pooled_draws = pooledDraws(run.chains.chains);

@@ -1,15 +1,14 @@
 #include "commands.h"
 #include "io/coordinates.h"
-#include "io/folders.h"
-#include "sbc/rank_study.h"
+#include "sbc/rank_file.h"
+#include "sbc/rank_samplers.h"
 #include "study/formatted_text.h"
 #include "study/option_values.h"
-#include "study/report_program.h"
+#include "study/parallel_tasks.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <sstream>
 
 namespace bayesian_icp::evaluate {
 
@@ -17,76 +16,16 @@ namespace po = boost::program_options;
 
 namespace {
 
-/** The samplers asked for, all if none are.
- * \throws io::UsageError of one that is not known */
-std::vector<RankSampler>
-chosenSamplers(const std::vector<std::string>& names)
-{
-  if (names.empty())
-    return rankSamplers();
-  std::vector<RankSampler> chosen;
-  for (const std::string& name : names) {
-    const auto& all = rankSamplers();
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&name](const RankSampler& sampler) {
-          return sampler.name == name;
-        });
-    if (found == all.end())
-      throw io::UsageError("--sampler: there is no " + io::inQuotes(name));
-    chosen.push_back(*found);
-  }
-  return chosen;
-}
-
-/** What the command line says besides what is run. */
+/** What is run, and where it is kept. */
 struct SbcOptions {
-  /** Names as given; empty: all there are. */
-  std::vector<std::string> samplers;
-  std::string result_file = "results/sbc.csv";
-  bool has_report = false;
+  std::vector<RankSampler> samplers = rankSamplers();
+  int num_runs = 500;
+  std::uint64_t first_seed = 1;
+  int num_threads = 1;
+  ResultOptions result = {"results/sbc.csv"};
 };
 
-void
-takeSamplers(const std::string& text, SbcOptions& options)
-{
-  for (const std::string& name : split(text, ','))
-    if (name == "exact")
-      options.samplers.insert(options.samplers.end(),
-                              {"exact-langevin", "exact-metropolis"});
-    else
-      options.samplers.push_back(name);
-}
-
-po::options_description
-describeOptions(SbcOptions& options, RankStudy& study)
-{
-  po::options_description description("Options", 88);
-  // clang-format off
-  description.add_options()
-    ("sampler", taken("", [&options](const std::string& text) {
-       takeSamplers(text, options);
-     }),
-     "exact-langevin, exact-metropolis, calibrated, calibrated-scans, or several of "
-     "them, separated by commas; exact means the first two. The default is all")
-    ("runs", integer(study.num_runs, 1, 1000000), "number of runs of each sampler")
-    ("seed", integer(study.first_seed, 0, max_seed), "seed of the first run")
-    ("output", outputName("file", options.result_file),
-     "CSV file of the results, one row for each run. Runs that it already has are "
-     "skipped")
-    ("report", io::flag(options.has_report),
-     "also make a report, with figures, of all results in that folder")
-    ("threads", threads(study.num_threads),
-     "number of runs at the same time; 0 means as many as there are cores")
-    ("help", "show this text");
-  // clang-format on
-  return description;
-}
-
-std::string
-sbcHelp(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_evaluate sbc [options]
+constexpr char sbc_help[] = R"(Usage: pcl_bayesian_icp_evaluate sbc [options]
 
 Simulation-based calibration: are the draws of a sampler draws of the
 posterior? True poses are drawn from the prior and data from the very
@@ -97,9 +36,93 @@ CSV file. A table goes to the standard output, progress to the standard
 error. Results of another build have to be deleted by hand.
 Exit codes: 0 good, 1 ranks are not uniform or draws are no good, 2 usage,
 3 cannot read or write a file, or make the report.
+)";
 
-)" << options;
-  return help.str();
+/** The samplers of these names, all of them if there are none.
+ * \throws io::BadValue of a name that is not known */
+std::vector<RankSampler>
+samplersOf(const std::string& text)
+{
+  std::vector<RankSampler> chosen;
+  for (const std::string& name : split(text, ',')) {
+    const std::size_t before = chosen.size();
+    for (const RankSampler& sampler : rankSamplers())
+      if (sampler.name == name ||
+          (name == "exact" && sampler.name.rfind("exact-", 0) == 0))
+        chosen.push_back(sampler);
+    if (chosen.size() == before)
+      throw io::BadValue(": there is no " + io::inQuotes(name));
+  }
+  return chosen.empty() ? rankSamplers() : chosen;
+}
+
+po::options_description
+describeOptions(SbcOptions& options)
+{
+  po::options_description description("Options", 88);
+  // clang-format off
+  description.add_options()
+    ("sampler", taken("", [&options](const std::string& text) {
+       options.samplers = samplersOf(text);
+     }),
+     "exact-langevin, exact-metropolis, calibrated, calibrated-scans, or several of "
+     "them, separated by commas; exact means the first two. The default is all")
+    ("runs", integer(options.num_runs, 1, 1000000), "number of runs of each sampler")
+    ("seed", integer(options.first_seed, 0, max_seed), "seed of the first run")
+    ("threads", threads(options.num_threads),
+     "number of runs at the same time; 0 means as many as there are cores");
+  // clang-format on
+  addResultOptions(options.result, description);
+  return description;
+}
+
+/** The names of all runs of a sampler. */
+std::vector<RankRun::Name>
+runNamesOf(const RankSampler& sampler, const SbcOptions& options)
+{
+  std::vector<RankRun::Name> names;
+  for (int i = 0; i < options.num_runs; ++i)
+    names.push_back({sampler.name, options.first_seed + static_cast<std::uint64_t>(i)});
+  return names;
+}
+
+/** Run what \p results does not have. A row does not depend on the number of threads.
+ */
+void
+runMissing(const SbcOptions& options, RankFile& results)
+{
+  struct Task {
+    const RankSampler& sampler;
+    RankRun::Name name;
+  };
+  std::vector<Task> missing;
+  for (const RankSampler& sampler : options.samplers)
+    for (const RankRun::Name& name : runNamesOf(sampler, options))
+      if (results.find(name) == nullptr)
+        missing.push_back({sampler, name});
+  StudyTasks tasks;
+  tasks.size = missing.size();
+  tasks.run = [&](std::size_t i) {
+    const std::optional<Ranks> ranks = missing[i].sampler.run(missing[i].name.seed);
+    results.add({missing[i].name, ranks.has_value(), ranks.value_or(Ranks::Zero())});
+  };
+  tasks.report = [](const StudyProgress& progress, std::size_t) {
+    if (progress.num_done % 50 == 0 || progress.num_done == progress.num_all)
+      std::cerr << progress.num_done << " of " << progress.num_all << " runs"
+                << std::endl;
+  };
+  runTasks(tasks, options.num_threads);
+}
+
+/** The ranks of a sampler's good runs. */
+std::vector<Ranks>
+ranksOf(const RankSampler& sampler, const SbcOptions& options, const RankFile& results)
+{
+  std::vector<Ranks> ranks;
+  for (const RankRun::Name& name : runNamesOf(sampler, options))
+    if (const RankRun* run = results.find(name); run != nullptr && run->is_valid)
+      ranks.push_back(run->ranks);
+  return ranks;
 }
 
 std::string
@@ -115,7 +138,7 @@ verdictOf(const RankSampler& sampler, bool is_uniform)
  * \return whether every well-specified sampler has uniform ranks: all runs good and
  *         every statistic below max_rank_chi_square */
 bool
-printRankTable(const RankStudy& study, const RankFile& results, std::ostream& stream)
+printRankTable(const SbcOptions& options, const RankFile& results, std::ostream& stream)
 {
   stream << "                        valid  chi-square of 10 bins, uniform if below "
          << max_rank_chi_square << " (0.1 %)\n  sampler               /runs";
@@ -123,11 +146,11 @@ printRankTable(const RankStudy& study, const RankFile& results, std::ostream& st
     stream << format("%8s", name);
   stream << '\n';
   bool are_all_uniform = true;
-  for (const RankSampler& sampler : study.samplers) {
-    const std::vector<Ranks> runs = ranksOfSampler(study, sampler, results);
+  for (const RankSampler& sampler : options.samplers) {
+    const std::vector<Ranks> runs = ranksOf(sampler, options, results);
     stream << format(
-        "  %-17s %5zu/%-5d", sampler.name.c_str(), runs.size(), study.num_runs);
-    bool is_uniform = runs.size() == static_cast<std::size_t>(study.num_runs);
+        "  %-17s %5zu/%-5d", sampler.name.c_str(), runs.size(), options.num_runs);
+    bool is_uniform = runs.size() == static_cast<std::size_t>(options.num_runs);
     for (int k = 0; k < 6; ++k) {
       const double statistic =
           runs.empty() ? std::nan("") : chiSquareOf(rankHistogram(runs, k));
@@ -146,24 +169,12 @@ int
 runSbcCommand(int argc, const char* const* argv)
 {
   SbcOptions options;
-  RankStudy study;
-  const po::options_description description = describeOptions(options, study);
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, nullptr);
-  if (io::printHelpOrVersion(
-          given, "", [&description] { return sbcHelp(description); }))
+  if (!readOptions(argc, argv, describeOptions(options), sbc_help))
     return 0;
-  io::takeOptions(given, description);
-  study.samplers = chosenSamplers(options.samplers);
-  study.report = [](std::size_t num_done, std::size_t num_all) {
-    if (num_done % 50 == 0 || num_done == num_all)
-      std::cerr << num_done << " of " << num_all << " runs" << std::endl;
-  };
-  RankFile results(options.result_file);
-  runRankStudy(study, results);
-  const bool are_uniform = printRankTable(study, results, std::cout);
-  const int report_code =
-      options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
+  RankFile results(options.result.file);
+  runMissing(options, results);
+  const bool are_uniform = printRankTable(options, results, std::cout);
+  const int report_code = options.result.report();
   return are_uniform ? report_code : 1;
 }
 

@@ -1,5 +1,8 @@
 #include "study/option_values.h"
 
+#include "io/folders.h"
+#include "study/report_program.h"
+
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
@@ -78,6 +81,45 @@ split(const std::string& text, char separator)
   for (std::string item; std::getline(stream, item, separator);)
     items.push_back(item);
   return items;
+}
+
+int
+ResultOptions::report() const
+{
+  return has_report ? makeReport(io::folderOf(file)) : 0;
+}
+
+void
+addResultOptions(ResultOptions& result, po::options_description& description)
+{
+  // clang-format off
+  description.add_options()
+    ("output", outputName("file", result.file),
+     "CSV file of the results, one row for each run. Runs that it already has are "
+     "skipped")
+    ("report", io::flag(result.has_report),
+     "also make a report, with figures, of all results in that folder")
+    ("help", "show this text");
+  // clang-format on
+}
+
+std::optional<po::variables_map>
+readOptions(int argc,
+            const char* const* argv,
+            const po::options_description& description,
+            const std::string& help)
+{
+  const po::variables_map given =
+      io::splitCommandLine(argc, argv, description, nullptr);
+  const auto helpText = [&] {
+    std::ostringstream text;
+    text << help << '\n' << description;
+    return text.str();
+  };
+  if (io::printHelpOrVersion(given, "", helpText))
+    return std::nullopt;
+  io::takeOptions(given, description);
+  return given;
 }
 
 } // namespace bayesian_icp::evaluate

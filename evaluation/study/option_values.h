@@ -1,13 +1,14 @@
 /** \file
- * \brief Where the values of a study's options go, as the functions in
- * io/command_line.h. The default of an option is what its place has before.
+ * \brief The command lines of the studies, and where the values of their options go,
+ * as the functions in io/command_line.h. The default of an option is what its place has
+ * before.
  */
 #pragma once
 
 #include "io/command_line.h"
 
-#include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,5 +60,31 @@ integer(Integer& value, int least, int most)
 /** \brief The pieces between separators; none of an empty text. */
 std::vector<std::string>
 split(const std::string& text, char separator);
+
+/** \brief Where the rows of a study go, and what is made of them. */
+struct ResultOptions {
+  std::string file;
+  bool has_report = false;
+
+  /** \brief Make the report if it is asked for, see makeReport().
+   * \return the exit code: 0, or 3 without a report */
+  int
+  report() const;
+};
+
+/** \brief Add --output, --report and --help to \p description. */
+void
+addResultOptions(ResultOptions& result,
+                 boost::program_options::options_description& description);
+
+/** \brief Read a command line, and fill the places of its options.
+ * \param[in] help is printed before the options if it is asked for
+ * \return what is given; nothing if that was help
+ * \throws io::UsageError with a message for the user */
+std::optional<boost::program_options::variables_map>
+readOptions(int argc,
+            const char* const* argv,
+            const boost::program_options::options_description& description,
+            const std::string& help);
 
 } // namespace bayesian_icp::evaluate

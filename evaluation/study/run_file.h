@@ -9,14 +9,18 @@
 #pragma once
 
 #include "io/coordinates.h"
-#include "study/csv_fields.h"
-#include "study/row_file.h"
+#include "io/errors.h"
+#include "io/line_file.h"
+#include "study/csv_row.h"
 
 #include <Eigen/Core>
 
 #include <deque>
 #include <map>
+#include <mutex>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -24,28 +28,14 @@ namespace bayesian_icp::evaluate {
 namespace detail {
 
 inline void
-addField(const bool& value, CsvRow& row)
+readField(std::string_view text, std::string& value)
 {
-  row.add(value ? 1 : 0);
-}
-
-template <typename Value>
-void
-addField(const Value& value, CsvRow& row)
-{
-  row.add(value);
+  value = text;
 }
 
 inline void
-readField(CsvFields& fields, std::string& value)
+readField(std::string_view text, bool& value)
 {
-  value = fields.text();
-}
-
-inline void
-readField(CsvFields& fields, bool& value)
-{
-  const std::string text = fields.text();
   if (text != "0" && text != "1")
     throw std::runtime_error("neither 0 nor 1");
   value = text == "1";
@@ -53,9 +43,10 @@ readField(CsvFields& fields, bool& value)
 
 template <typename Number>
 void
-readField(CsvFields& fields, Number& value)
+readField(std::string_view text, Number& value)
 {
-  fields.read(value);
+  if (!io::readNumber(text, value))
+    throw std::runtime_error("not a number");
 }
 
 } // namespace detail
@@ -77,9 +68,7 @@ std::string
 rowOf(const Run& run)
 {
   CsvRow row;
-  Run::columns(run, [&row](const std::string&, const auto& value) {
-    detail::addField(value, row);
-  });
+  Run::columns(run, [&row](const std::string&, const auto& value) { row.add(value); });
   return row.text();
 }
 
@@ -88,12 +77,16 @@ template <typename Run>
 Run
 runOf(const std::string& line)
 {
-  CsvFields fields(line);
+  const std::vector<std::string_view> fields = io::splitAt(',', line);
+  std::size_t next = 0;
   Run run;
-  Run::columns(run, [&fields](const std::string&, auto& value) {
-    detail::readField(fields, value);
+  Run::columns(run, [&](const std::string&, auto& value) {
+    if (next == fields.size())
+      throw std::runtime_error("too few fields");
+    detail::readField(fields[next++], value);
   });
-  fields.end();
+  if (next != fields.size())
+    throw std::runtime_error("too many fields");
   return run;
 }
 
@@ -106,34 +99,72 @@ coordinateColumns(const std::string& prefix, Vector& values, const Column& colum
     column(prefix + app::coordinate_names[static_cast<std::size_t>(k)], values[k]);
 }
 
-/** \brief A CSV file of runs. Not for several threads at once. */
+/** \brief The same with the coordinates' units in the titles. */
+template <typename Vector, typename Column>
+void
+unitColumns(const std::string& prefix, Vector& values, const Column& column)
+{
+  for (std::size_t k = 0; k < 6; ++k)
+    column(prefix + app::coordinateKey(k), values[Eigen::Index(k)]);
+}
+
+/** \brief A CSV file of runs that grows by one row per run, so an interrupted study
+ * continues where it stopped. For one process at a time, and any of its threads. */
 template <typename Run>
 class RunFile {
 public:
   using Name = decltype(Run::name);
 
-  /** \brief Read what is there; see RowFile. */
+  /** \brief Read what is there, or write the header; a last line that was cut off is
+   * removed.
+   * \throws io::FileError if the file exists and has another header or a bad row, or
+   *         cannot be written, or is in use by another process */
   explicit RunFile(const std::string& file)
-  : file_(file, headerOf<Run>(), [this](const std::string& row) {
-    keep(runOf<Run>(row));
+  : file_(file, [&, has_header = false](const std::string& line) mutable {
+    if (!has_header && line != headerOf<Run>())
+      throw io::FileError(file, "is not a file of results of this version");
+    try {
+      if (has_header)
+        keep(runOf<Run>(line));
+    }
+    catch (const std::exception&) {
+      throw io::FileError(file, "bad line '" + line + "'");
+    }
+    has_header = true;
   })
-  {}
+  {
+    if (file_.isNew())
+      file_.add(headerOf<Run>());
+  }
 
   /** \brief The run of this name, or null; valid as long as this object. */
   const Run*
   find(const Name& name) const
   {
+    const std::lock_guard<std::mutex> lock(mutex_);
     const auto found = places_.find(rowOf(name));
     return found == places_.end() ? nullptr : &runs_[found->second];
   }
 
   /** \brief Write a row, at once.
+   * \return the run, valid as long as this object
    * \throws io::FileError */
-  void
+  const Run&
   add(const Run& run)
   {
+    const std::lock_guard<std::mutex> lock(mutex_);
     file_.add(rowOf(run));
-    keep(run);
+    return keep(run);
+  }
+
+  /** \brief The run of this name: that of the file, or the one that \p make returns,
+   * which is added to it. */
+  template <typename Make>
+  const Run&
+  findOrMake(const Name& name, const Make& make)
+  {
+    const Run* const known = find(name);
+    return known != nullptr ? *known : add(make());
   }
 
   /** \brief In the order in which they ended. */
@@ -144,19 +175,19 @@ public:
   }
 
 private:
-  void
+  const Run&
   keep(const Run& run)
   {
     const auto [place, is_new] = places_.emplace(rowOf(run.name), runs_.size());
     if (is_new)
-      runs_.push_back(run);
-    else
-      runs_[place->second] = run;
+      return runs_.emplace_back(run);
+    return runs_[place->second] = run;
   }
 
   std::deque<Run> runs_;
   std::map<std::string, std::size_t> places_;
-  RowFile file_;
+  mutable std::mutex mutex_;
+  io::LineFile file_;
 };
 
 } // namespace bayesian_icp::evaluate

@@ -1,7 +1,6 @@
 // The evaluation app's own pieces: distances against closed forms, scores of good and
-// bad draws, files that come back as they went.
+// bad draws.
 #include "evaluation/evaluate_test_support.h"
-#include "io/errors.h"
 #include "samplers/gold_file.h"
 #include "samplers/result_table.h"
 #include "samplers/score.h"
@@ -11,25 +10,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;
-
-namespace {
-
-std::string
-temporaryFile(const std::string& name)
-{
-  const auto folder = std::filesystem::temp_directory_path() / "bayesian_icp_evaluate";
-  std::filesystem::create_directories(folder);
-  return (folder / name).string();
-}
-
-} // namespace
 
 TEST(DrawStatistics, KlOfGaussiansIsTheClosedForm)
 {
@@ -165,37 +150,6 @@ TEST(Score, JudgesGoodAndBadDraws)
   EXPECT_LT(shifted.coordinate_kl[2], 0.01);
 
   EXPECT_TRUE(std::isinf(scoreOf(SamplerRun(), gold).kl));
-}
-
-TEST(ResultFile, KeepsWholeRowsOnly)
-{
-  const std::string file = temporaryFile("results.csv");
-  std::filesystem::remove(file);
-  ScoredRun run;
-  run.name = {"can", 0.0015, 100.0, "paper 1e-05", 3, "00ff"};
-  run.score.kl = 0.25;
-  run.score.coordinate_kl[5] = 0.125;
-  run.score.bulk_ess = 400.0;
-  run.score.seconds = 2.0;
-  run.score.status = "not_mixed";
-  ResultFile(file).add(run);
-  {
-    std::ofstream stream(file, std::ios::app);
-    stream << "00ff,can,0.0015,1";
-  }
-  const ResultFile again(file);
-  ASSERT_EQ(again.runs().size(), 1u);
-  const ScoredRun* found = again.find(run.name);
-  ASSERT_NE(found, nullptr);
-  EXPECT_EQ(found->score.kl, 0.25);
-  EXPECT_EQ(found->score.coordinate_kl[5], 0.125);
-  EXPECT_EQ(found->score.essPerSecond(), 200.0);
-  EXPECT_EQ(found->score.status, "not_mixed");
-  run.name.seed = 4;
-  EXPECT_EQ(again.find(run.name), nullptr);
-
-  std::ofstream(file) << "something else\n";
-  EXPECT_THROW(ResultFile{file}, io::FileError);
 }
 
 TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)

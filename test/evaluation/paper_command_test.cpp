@@ -1,9 +1,7 @@
 // The sub-commands of the paper's evaluation, run as a user would.
 #include "evaluation/csv_rows.h"
+#include "evaluation/evaluate_tool.h"
 #include "evaluation/paper_pairs.h"
-#include "support/command_helpers.h"
-
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -26,15 +24,8 @@ withoutSeconds(Rows rows)
   return rows;
 }
 
-class PaperCommand : public FolderTest {
+class PaperCommand : public EvaluateTool {
 protected:
-  CommandResult
-  run(const std::string& arguments, const std::string& environment = "") const
-  {
-    return runShell("cd '" + folder_.string() + "' && " + environment +
-                    " '" BAYESIAN_ICP_EVALUATE "' " + arguments);
-  }
-
   fs::path
   runsOfIcp() const
   {
@@ -44,6 +35,10 @@ protected:
     return {};
   }
 };
+
+constexpr char quick[] =
+    "--quick --no-report --pairs mug --points 60 --repeats 2 --data "
+    "'" BAYESIAN_ICP_DATA_DIR "' --output ";
 
 constexpr char small[] =
     " --data . --output out --quick --repeats 2 --baseline-runs 10 --no-report";
@@ -63,7 +58,7 @@ TEST_F(PaperCommand, BrokenPairsAreSkippedAndTheExitCodeSaysSo)
                             "2 pairs were skipped",
                             "medians of the runs of",
                             "\n  good, online-icp "})
-    EXPECT_NE(result.output.find(piece), std::string::npos) << result.output;
+    expectIn(result.output, piece);
   const Rows rows = rowsOf(folder_ / "out/distribution.csv");
   ASSERT_GT(rows.size(), 2u);
   for (std::size_t i = 1; i < rows.size(); ++i)
@@ -110,7 +105,7 @@ TEST_F(PaperCommand, WritesWhatTheReportNeeds)
        {"\"key\": \"" + key + "\"",
         std::string("\"seeds\": 2"),
         std::string("evaluate distribution --data . --pairs good --baseline-runs 10")})
-    EXPECT_NE(record.find(piece), std::string::npos) << record;
+    expectIn(record, piece);
 }
 
 TEST_F(PaperCommand, SaysWhatTheReportNeedsAndMakesItLater)
@@ -120,13 +115,10 @@ TEST_F(PaperCommand, SaysWhatTheReportNeedsAndMakesItLater)
   const std::string without = "PCL_BAYESIAN_ICP_PYTHON=/nowhere";
   const CommandResult result = run(command, without);
   EXPECT_EQ(result.exit_code, 3) << result.output;
-  EXPECT_EQ(
-      count("The CSV files are complete. The report needs python3-pandas and "
-            "python3-matplotlib; then run: pcl_bayesian_icp_evaluate report out\n",
-            result.output),
-      1)
-      << result.output;
-  EXPECT_NE(result.output.find("seconds per 1000 draws"), std::string::npos);
+  expectIn(result.output,
+           "The CSV files are complete. The report needs python3-pandas and "
+           "python3-matplotlib; then run: pcl_bayesian_icp_evaluate report out\n");
+  expectIn(result.output, "seconds per 1000 draws");
   EXPECT_EQ(run("report out", without).exit_code, 3);
   EXPECT_FALSE(fs::exists(folder_ / "out/report.md"));
   const CommandResult later = run("report out");
@@ -135,36 +127,33 @@ TEST_F(PaperCommand, SaysWhatTheReportNeedsAndMakesItLater)
   EXPECT_EQ(count("## Run time\n", contentOf(folder_ / "out/report.md")), 1);
 }
 
-TEST_F(PaperCommand, ReportNamesWhatIsWrong)
+TEST_F(PaperCommand, RuntimeIsKeptAndShown)
 {
-  for (const char* arguments : {"report", "report a b", "report --quick"})
-    EXPECT_EQ(run(arguments).exit_code, 2) << arguments;
-  EXPECT_EQ(run("report --help").exit_code, 0);
-  EXPECT_EQ(run("report nowhere").exit_code, 3);
-  const CommandResult result = run("report .");
-  EXPECT_EQ(result.exit_code, 3) << result.output;
-  EXPECT_NE(result.output.find("no rows of a study"), std::string::npos)
-      << result.output;
+  const CommandResult first = run("runtime " + std::string(quick) + "out");
+  ASSERT_EQ(first.exit_code, 0) << first.output;
+  const std::string rows = contentOf(folder_ / "out/runtime.csv");
+  // Three presets on 1, 2 and 4 threads, twice.
+  EXPECT_EQ(count("\n", rows), 1 + 3 * 3 * 2);
+  for (const char* text : {"\n  exact, 1 threads ", "\n  calibrated, 4 threads "})
+    expectIn(first.output, text);
+  const CommandResult second = run("runtime " + std::string(quick) + "out");
+  EXPECT_EQ(second.exit_code, 0) << second.output;
+  EXPECT_EQ(contentOf(folder_ / "out/runtime.csv"), rows);
 }
 
-TEST_F(PaperCommand, BadOptionsExitWithTwoAndLeaveNothing)
+TEST_F(PaperCommand, AccuracyIsKeptAndShown)
 {
-  for (const char* arguments : {"--baseline-runs 7",
-                                "--repeats 1",
-                                "--points -1",
-                                "--start-translation 0",
-                                "--start-rotation nan",
-                                "--threads 1000",
-                                "--output ''",
-                                "--quic",
-                                "word"})
-    for (const char* command : {"paper ", "samples "}) {
-      const CommandResult result = run(std::string(command) + arguments);
-      EXPECT_EQ(result.exit_code, 2) << arguments << ": " << result.output;
-      EXPECT_TRUE(fs::is_empty(folder_)) << arguments;
-    }
-  EXPECT_EQ(run("paper --data nowhere").exit_code, 3);
-  const CommandResult help = run("burn-in --help");
-  EXPECT_EQ(help.exit_code, 0);
-  EXPECT_NE(help.output.find("--baseline-runs"), std::string::npos);
+  const CommandResult first = run("accuracy " + std::string(quick) + "out");
+  ASSERT_EQ(first.exit_code, 0) << first.output;
+  const std::string rows = contentOf(folder_ / "out/accuracy.csv");
+  // Six methods from five starts.
+  EXPECT_EQ(count("\n", rows), 1 + 6 * 5);
+  for (const char* method : {"paper", "exact", "calibrated", "sgd-icp", "icp"})
+    expectIn(first.output, std::string("\n  mug, ") + method + ' ');
+  // Half of it, then the same again: only what is missing is made, and it is the same.
+  fs::resize_file(folder_ / "out/accuracy.csv", rows.size() / 2);
+  const CommandResult second =
+      run("accuracy " + std::string(quick) + "out --threads 1");
+  EXPECT_EQ(second.exit_code, 0) << second.output;
+  EXPECT_EQ(contentOf(folder_ / "out/accuracy.csv"), rows);
 }

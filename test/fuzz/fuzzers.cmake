@@ -63,7 +63,6 @@ target_sources(
   fuzz_result_file
   PRIVATE ${apps}/batch/batch_file.cpp
           ${apps}/batch/batch_line.cpp
-          ${evaluation}/study/row_file.cpp
           ${evaluation}/samplers/gold_file.cpp
           ${apps}/register/posterior_json.cpp)
 target_compile_definitions(fuzz_result_file

@@ -5,10 +5,9 @@
 #include "batch/batch_file.h"
 #include "coverage/coverage_file.h"
 #include "fuzz_input.h"
-#include "paper/accuracy_file.h"
-#include "paper/distribution_file.h"
+#include "paper/paper_runs.h"
 #include "samplers/gold_file.h"
-#include "sbc/rank_study.h"
+#include "sbc/rank_file.h"
 
 #include <sstream>
 #include <stdexcept>

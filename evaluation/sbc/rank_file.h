@@ -1,15 +1,13 @@
 /** \file
- * \brief Runs of simulation-based calibration that are not in their file yet, on all
- * cores.
+ * \brief The runs of simulation-based calibration and the CSV file that keeps them.
  */
 #pragma once
 
-#include "sbc/rank_samplers.h"
+#include "sbc/rank_statistics.h"
 #include "study/run_file.h"
 
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace bayesian_icp::evaluate {
 
@@ -47,27 +45,5 @@ struct RankRun {
 };
 
 using RankFile = RunFile<RankRun>;
-
-/** \brief What is run. */
-struct RankStudy {
-  std::vector<RankSampler> samplers;
-  int num_runs = 500;
-  std::uint64_t first_seed = 1;
-  int num_threads = 1;
-  /** Told after each run, by one thread at a time. */
-  std::function<void(std::size_t num_done, std::size_t num_all)> report;
-};
-
-/** \brief Run what \p results does not have. A row does not depend on the number of
- * threads.
- * \throws io::FileError, and what samplers throw; rows of other runs are kept */
-void
-runRankStudy(const RankStudy& study, RankFile& results);
-
-/** \brief The ranks of one sampler's good runs. */
-std::vector<Ranks>
-ranksOfSampler(const RankStudy& study,
-               const RankSampler& sampler,
-               const RankFile& results);
 
 } // namespace bayesian_icp::evaluate

@@ -1,4 +1,4 @@
-#include "paper/distribution_study.h"
+#include "paper/distribution_score.h"
 
 #include "coverage/coverage_score.h"
 #include "geometry/twist.h"
@@ -97,52 +97,21 @@ setUnknown(DistributionRun& run)
 } // namespace
 
 DistributionRun
-distributionRunOf(const DistributionRun::Name& name,
+distributionRunOf(const PaperRunName& name,
                   const ScanPair& pair,
-                  const PaperRun& run,
+                  const SamplerRun& run,
                   const PaperBaseline& baseline)
 {
   DistributionRun scored;
   scored.name = name;
-  scored.score = scoreOf(run.sampled, baseline.ends);
-  scored.score.status = run.status;
+  scored.score = scoreOf(run, baseline.ends);
   setUnknown(scored);
-  const PoseMatrix draws = pooledDraws(run.sampled.chains.chains);
+  const PoseMatrix draws = pooledDraws(run.chains.chains);
   if (draws.rows() < min_scored_draws)
     return scored;
   addBaselineScores(unwrapAbout(baseline.mean, draws), baseline, scored);
   addTruthScores(pair, draws, name.seed, scored);
   return scored;
-}
-
-PairDistribution
-studyDistribution(const PaperStudy& study,
-                  const PaperProblem& problem,
-                  DistributionFile& file)
-{
-  const ScanPair& pair = problem.pair;
-  PairDistribution made{&pair, keptBaseline(study, problem), {}};
-  const std::string key = baselineKey(study.options, problem);
-  for (const PaperMethod& method : paperMethods()) {
-    int num_made = 0;
-    for (int i = 0; i < study.options.num_repeats; ++i) {
-      const DistributionRun::Name name{
-          key, pair.name, method.name, study.options.seed + std::uint64_t(i)};
-      if (file.find(name) == nullptr) {
-        DrawPlan plan;
-        plan.seed = name.seed;
-        plan.num_threads = study.options.num_threads;
-        file.add(
-            distributionRunOf(name, pair, method.run(problem, plan), made.baseline));
-        ++num_made;
-      }
-      made.runs.push_back(*file.find(name));
-    }
-    if (num_made > 0)
-      study.report(pair.name + ": " + method.name + ", " + std::to_string(num_made) +
-                   " runs");
-  }
-  return made;
 }
 
 } // namespace bayesian_icp::evaluate

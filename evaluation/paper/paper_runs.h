@@ -1,0 +1,154 @@
+/** \file
+ * \brief The runs of the paper's experiments, rows of a CSV file each.
+ */
+#pragma once
+
+#include "samplers/score.h"
+#include "study/run_file.h"
+
+#include <cstdint>
+#include <string>
+
+namespace bayesian_icp::evaluate {
+
+/** \brief Which run of an experiment. */
+struct PaperRunName {
+  /** Hash of the clouds, and of the baseline if the run is compared with it: 16
+   * hexadecimal digits. */
+  std::string key;
+  std::string pair;
+  std::string method;
+  std::uint64_t seed = 0;
+  /** What else tells the runs of an experiment apart. */
+  int number = 0;
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("key", self.key);
+    column("pair", self.pair);
+    column("method", self.method);
+    column("seed", self.seed);
+    column("number", self.number);
+  }
+};
+
+/** \brief A run of a method against the baseline and the truth, behind Table I. Numbers
+ * are NaN, or divergences infinite, where there are fewer than 10 draws. */
+struct DistributionRun {
+  PaperRunName name;
+  /** KL(baseline || method) and the like [nats]; Wasserstein-1 in standard deviations
+   * of the baseline. */
+  Score score;
+  /** KL(runs of the baseline in its main basin || method) [nats]; the first is NaN if
+   * there are fewer than seven of those runs. */
+  double main_kl = 0.0;
+  Vector6d main_coordinate_kl = Vector6d::Zero();
+  /** Of the baseline's results and of the truth, in units of the prior's standard
+   * deviations. */
+  double energy_score = 0.0;
+  double truth_energy_score = 0.0;
+  /** Squared Mahalanobis distance of the truth. */
+  double nees = 0.0;
+  /** Of the draws' mean: the source's centroid [m], and the rotation [rad]. */
+  double translation_error = 0.0;
+  double rotation_error = 0.0;
+  /** Of the draws, angles unwrapped about the baseline's mean [m, rad]. */
+  Vector6d mean = Vector6d::Zero();
+  Vector6d standard_deviation = Vector6d::Zero();
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("key", self.name.key);
+    column("pair", self.name.pair);
+    column("method", self.name.method);
+    column("seed", self.name.seed);
+    column("status", self.score.status);
+    Score::columns(self.score, column);
+    column("main_kl", self.main_kl);
+    coordinateColumns("main_kl_", self.main_coordinate_kl, column);
+    column("energy_score", self.energy_score);
+    column("truth_energy_score", self.truth_energy_score);
+    column("nees", self.nees);
+    column("translation_error_m", self.translation_error);
+    column("rotation_error_rad", self.rotation_error);
+    unitColumns("mean_", self.mean, column);
+    unitColumns("sd_", self.standard_deviation, column);
+  }
+};
+
+/** \brief KL(baseline || draws) [nats]: x, y, z, roll, pitch, yaw, and in 6-D. */
+using CurveDivergences = Eigen::Matrix<double, 7, 1>;
+
+/** \brief One run at one value of the axis of a curve; its method is a variant, its
+ * number the value. */
+struct CurvePoint {
+  PaperRunName name;
+  CurveDivergences divergences = CurveDivergences::Zero();
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("key", self.name.key);
+    column("pair", self.name.pair);
+    column("variant", self.name.method);
+    column("seed", self.name.seed);
+    column("value", self.name.number);
+    coordinateColumns("kl_", self.divergences, column);
+    column("kl", self.divergences[6]);
+  }
+};
+
+/** \brief The time of a run; its number is that of the threads. */
+struct RuntimeRun {
+  PaperRunName name;
+  double wall_seconds = 0.0;
+  /** Of all threads. */
+  double cpu_seconds = 0.0;
+  std::string status;
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("key", self.name.key);
+    column("pair", self.name.pair);
+    column("method", self.name.method);
+    column("threads", self.name.number);
+    column("seed", self.name.seed);
+    column("wall_s_per_1000_draws", self.wall_seconds);
+    column("cpu_s_per_1000_draws", self.cpu_seconds);
+    column("status", self.status);
+  }
+};
+
+/** \brief Errors of the pose that is found from a start, which is a function of the
+ * seed and the name's number. */
+struct AccuracyRun {
+  PaperRunName name;
+  /** Euclidean [m]. */
+  double translation_error = 0.0;
+  /** Sum of the absolute differences of roll, pitch and yaw [rad]. */
+  double rotation_error = 0.0;
+  std::string status;
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("key", self.name.key);
+    column("pair", self.name.pair);
+    column("method", self.name.method);
+    column("seed", self.name.seed);
+    column("start", self.name.number);
+    column("translation_error_m", self.translation_error);
+    column("rotation_error_rad", self.rotation_error);
+    column("status", self.status);
+  }
+};
+
+} // namespace bayesian_icp::evaluate

@@ -1,0 +1,161 @@
+// The sub-commands that are not the paper's: what they print and make, and what they
+// refuse; bad options and files of all.
+#include "evaluation/evaluate_tool.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class EvaluateCommands : public EvaluateTool {};
+
+constexpr char rank_header[] =
+    "sampler,seed,valid,rank_x,rank_y,rank_z,rank_roll,rank_pitch,rank_yaw\n";
+
+/** Command lines of a sub-command. */
+using CommandLines = std::pair<std::string, std::vector<std::string>>;
+
+} // namespace
+
+TEST_F(EvaluateCommands, CoverageRunsOnceAndMakesTheReport)
+{
+  const std::string command =
+      "coverage --quick --methods prior --output \"re'sults/a.csv\"";
+  const CommandResult first = run(command);
+  EXPECT_EQ(first.exit_code, 0) << first.output;
+  expectIn(first.output, "6 of 6 cases");
+  const std::string rows = contentOf(folder_ / "re'sults/a.csv");
+  const CommandResult second = run(command + " --report");
+  EXPECT_EQ(second.exit_code, 0) << second.output;
+  EXPECT_EQ(second.output.find(" cases"), std::string::npos) << second.output;
+  EXPECT_EQ(contentOf(folder_ / "re'sults/a.csv"), rows);
+  for (const char* name : {"a_regions", "a_pit", "a_anees"}) {
+    const fs::path plot = folder_ / "re'sults" / name;
+    EXPECT_EQ(contentOf(plot.string() + ".png").substr(1, 3), "PNG");
+    expectIn(contentOf(plot.string() + ".svg"), "</svg>");
+  }
+}
+
+TEST_F(EvaluateCommands, CoverageRunsScenesWithTheirOwnConditions)
+{
+  const CommandResult result =
+      run("coverage --scenes street,tool --conditions lidar16,same --seeds 1 --methods "
+          "prior --output a.csv");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  for (const char* piece : {"2 of 2 cases", "street, lidar16\n", "tool, same\n"})
+    expectIn(result.output, piece);
+}
+
+TEST_F(EvaluateCommands, SbcTellsRanksThatAreNotUniform)
+{
+  std::string rows = rank_header;
+  // Ten runs in one bin: a statistic of 90.
+  for (int seed = 1; seed <= 10; ++seed)
+    rows += "calibrated," + std::to_string(seed) + ",1,0,10,20,30,40,99\n";
+  writeFile(folder_ / "a.csv", rows);
+  const CommandResult result = run("sbc --sampler calibrated --runs 10 --output a.csv");
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  expectIn(result.output, "NOT UNIFORM");
+  expectIn(result.output, "90.0");
+}
+
+TEST_F(EvaluateCommands, BadOptionsExitWithTwoAndLeaveNothing)
+{
+  const std::vector<std::string> of_paper = {"--baseline-runs 7",
+                                             "--repeats 1",
+                                             "--points -1",
+                                             "--start-translation 0",
+                                             "--start-rotation nan",
+                                             "--threads 1000",
+                                             "--output ''",
+                                             "--quic",
+                                             "word"};
+  const std::vector<CommandLines> commands = {
+      {"coverage",
+       {"--scenes nowhere",
+        "--conditions sunny",
+        "--scenes street --conditions same",
+        "--methods guessing",
+        "--methods exact:plane:metropolis:0.01:300:500",
+        "--methods exact:point-to-plane:metropolis:0.01:0:500",
+        "--seeds 0",
+        "--seeds x",
+        "--first-seed -1",
+        "--threads 1000",
+        "--quic",
+        "word",
+        "--output ''",
+        "--real . --conditions same"}},
+      {"sbc",
+       {"--sampler guessing",
+        "--runs 0",
+        "--runs x",
+        "--seed -1",
+        "--threads 1000",
+        "--output ''",
+        "word"}},
+      {"samplers",
+       {"--samplers guessing",
+        "--cells 1",
+        "--cells 1:0",
+        "--particles 7",
+        "--particles 9.5",
+        "--step-sizes 0",
+        "--residual plane",
+        "--gold-seconds 0",
+        "--output ''"}},
+      {"paper", of_paper},
+      {"samples", of_paper},
+      {"accuracy", {"--repeats 0"}},
+      {"report", {"", "a b", "--quick"}}};
+  for (const auto& [command, lines] : commands)
+    for (const std::string& arguments : lines) {
+      const CommandResult result = run(command + ' ' + arguments);
+      EXPECT_EQ(result.exit_code, 2)
+          << command << ' ' << arguments << ": " << result.output;
+      EXPECT_TRUE(fs::is_empty(folder_)) << command << ' ' << arguments;
+    }
+}
+
+TEST_F(EvaluateCommands, BadFilesExitWithThreeAndAreNamed)
+{
+  fs::create_directory(folder_ / "empty");
+  writeFile(folder_ / "other.csv", "x,y\n");
+  writeFile(folder_ / "accuracy.csv", "x,y\n");
+  writeFile(folder_ / "rank.csv",
+            rank_header + std::string("calibrated,1,1,0,10,20,30,40,100\n"));
+  const std::vector<std::pair<std::string, std::string>> commands = {
+      {"coverage --quick --methods prior --output other.csv", "other.csv"},
+      {"coverage --real missing", "missing"},
+      {"sbc --runs 1 --output other.csv", "other.csv"},
+      {"sbc --runs 1 --output rank.csv", "rank.csv"},
+      {"samplers --output other.csv", "other.csv"},
+      {"accuracy --quick --pairs mug --output . --data '" BAYESIAN_ICP_DATA_DIR "'",
+       "accuracy.csv"},
+      {"paper --data nowhere", "nowhere"},
+      {"report nowhere", "nowhere"},
+      {"report empty", "no rows of a study"}};
+  for (const auto& [command, piece] : commands) {
+    const CommandResult result = run(command);
+    EXPECT_EQ(result.exit_code, 3) << command << ": " << result.output;
+    expectIn(result.output, piece);
+  }
+}
+
+TEST_F(EvaluateCommands, EachHasAHelp)
+{
+  for (const auto& [command, piece] : {std::pair("coverage", "--guess-sd"),
+                                       std::pair("sbc", "--sampler"),
+                                       std::pair("samplers", "--cells"),
+                                       std::pair("burn-in", "--baseline-runs"),
+                                       std::pair("report", "FOLDER")}) {
+    const CommandResult result = run(std::string(command) + " --help");
+    EXPECT_EQ(result.exit_code, 0) << command;
+    expectIn(result.output, piece);
+  }
+}
