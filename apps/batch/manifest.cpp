@@ -1,14 +1,13 @@
 #include "batch/manifest.h"
 
-#include "io/errors.h"
 #include "io/json_file.h"
+#include "io/json_node.h"
 #include "io/text_hash.h"
 #include "register/settings_json.h"
 
 #include <bayesian_icp/pose.h>
 
-#include <nlohmann/json.hpp>
-
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -16,61 +15,49 @@ namespace bayesian_icp::app {
 
 namespace {
 
+using io::JsonNode;
 using nlohmann::json;
 
 constexpr std::uint64_t max_manifest_size = 256 << 20;
 constexpr std::size_t max_name_size = 200;
 
-/** What is wrong with a pair; readManifest() puts file and name before it. */
-[[noreturn]] void
-refuse(const std::string& complaint)
-{
-  throw io::UsageError(complaint);
-}
-
+/** A text that is not empty. */
 std::string
-textAt(const json& object, const char* key)
+textOf(const JsonNode& value)
 {
-  if (!object.contains(key))
-    refuse(std::string("the key '") + key + "' is missing");
-  const json& value = object[key];
-  if (!value.is_string() || value.get_ref<const std::string&>().empty())
-    refuse(std::string(key) + " is " + io::inQuotes(value.dump()) +
-           ", but must be a text");
-  return value;
+  if (!value.json().is_string() || value.text().empty())
+    value.refuse("a text");
+  return value.text();
 }
 
 /** Names are those of folders, too. */
 std::string
-nameOf(const json& entry)
+nameOf(const JsonNode& value)
 {
-  std::string name = textAt(entry, "name");
+  std::string name = textOf(value);
   bool is_good = name.size() <= max_name_size && name.front() != '.';
   for (const char character : name)
     is_good &= character != '/' && static_cast<unsigned char>(character) >= 0x20;
   if (!is_good)
-    refuse("name is " + io::inQuotes(name) +
-           ", but must be usable as the name of a folder: no '/', no leading '.'");
+    value.refuse("usable as the name of a folder: no '/', no leading '.'");
   return name;
 }
 
 double
-positiveAt(const json& object, const char* key)
+positiveOf(const JsonNode& value)
 {
-  if (!object.is_object() || !object.contains(key) || !object[key].is_number() ||
-      !(object[key].get<double>() > 0.0))
-    refuse(std::string("suggested_prior_sigma.") + key +
-           " is missing or not a positive number");
-  return object[key];
+  const double number = value.number();
+  if (!(number > 0.0))
+    value.refuse("a positive number");
+  return number;
 }
 
 /** Standard deviations about the guess and the source's centroid. */
 PriorOptions
-suggestedPrior(const json& entry)
+suggestedPrior(const JsonNode& sigma)
 {
-  const json sigma = entry.value("suggested_prior_sigma", json());
-  const double translation = positiveAt(sigma, "translation_m");
-  const double rotation = positiveAt(sigma, "rotation_rad");
+  const double translation = positiveOf(sigma["translation_m"]);
+  const double rotation = positiveOf(sigma["rotation_rad"]);
   PriorOptions prior;
   prior.frame = PriorFrame::SourceCentroid;
   prior.variance << Eigen::Vector3d::Constant(translation * translation),
@@ -79,24 +66,19 @@ suggestedPrior(const json& entry)
 }
 
 void
-takeGuess(const json& guess, BatchPair& pair)
+takeGuess(const JsonNode& guess, BatchPair& pair)
 {
-  if (guess.is_string() && !guess.get_ref<const std::string&>().empty()) {
-    pair.guess_file = guess;
-    return;
-  }
-  bool is_good = guess.is_array() && guess.size() == 6;
-  Vector6d pose = Vector6d::Zero();
-  for (std::size_t k = 0; is_good && k < 6; ++k) {
-    is_good = guess[k].is_number();
-    if (is_good)
-      pose[static_cast<Eigen::Index>(k)] = guess[k].get<double>();
-  }
-  if (!is_good)
-    refuse("guess is " + io::inQuotes(guess.dump()) +
-           ", but must be the six numbers [x, y, z, roll, pitch, yaw] [m, rad] or the "
-           "name of a file with a 4x4 matrix");
-  pair.settings.guess = matrixOf(pose);
+  const json& numbers = guess.json();
+  const auto isNumber = [](const json& item) { return item.is_number(); };
+  if (numbers.is_string() && !guess.text().empty())
+    pair.guess_file = guess.text();
+  else if (numbers.is_array() && numbers.size() == 6 &&
+           std::all_of(numbers.begin(), numbers.end(), isNumber))
+    pair.settings.guess = matrixOf(guess.matrix<Vector6d>());
+  else
+    guess.refuse(
+        "the six numbers [x, y, z, roll, pitch, yaw] [m, rad] or the name of a "
+        "file with a 4x4 matrix");
 }
 
 void
@@ -105,36 +87,31 @@ takeSettings(const json& settings, BatchPair& pair)
   pair.settings = settingsOf(settings, pair.settings);
   const std::string complaint = pair.settings.validate();
   if (!complaint.empty())
-    refuse(complaint);
+    throw io::UsageError(complaint);
 }
 
 /** A pair of the layout of docs/batch.md. */
 void
-takePlainEntry(const json& entry, BatchPair& pair)
+takePlainEntry(const JsonNode& entry, BatchPair& pair)
 {
-  static const std::set<std::string> known = {
-      "name", "source", "target", "guess", "settings", "suggested_prior_sigma"};
-  for (const auto& [key, value] : entry.items())
-    if (known.count(key) == 0)
-      refuse("unknown key " + io::inQuotes(key));
-  pair.source_file = textAt(entry, "source");
-  pair.target_file = textAt(entry, "target");
-  if (entry.contains("settings"))
-    takeSettings(entry["settings"], pair);
-  if (entry.contains("guess"))
+  entry.requireKeysAmong(
+      {"name", "source", "target", "guess", "settings", "suggested_prior_sigma"});
+  pair.source_file = textOf(entry["source"]);
+  pair.target_file = textOf(entry["target"]);
+  if (entry.has("settings"))
+    takeSettings(entry["settings"].json(), pair);
+  if (entry.has("guess"))
     takeGuess(entry["guess"], pair);
 }
 
 /** A pair of a data set, whose entries describe it in further keys. */
 void
-takeDataSetEntry(const json& files, BatchPair& pair)
+takeDataSetEntry(const JsonNode& files, BatchPair& pair)
 {
-  if (!files.is_object())
-    refuse("files is not an object");
-  pair.source_file = textAt(files, "source");
-  pair.target_file = textAt(files, "target");
-  if (files.contains("initial_guess"))
-    pair.guess_file = textAt(files, "initial_guess");
+  pair.source_file = textOf(files["source"]);
+  pair.target_file = textOf(files["target"]);
+  if (files.has("initial_guess"))
+    pair.guess_file = textOf(files["initial_guess"]);
 }
 
 void
@@ -148,14 +125,14 @@ identify(BatchPair& pair)
 }
 
 BatchPair
-pairOf(const json& entry, const Settings& settings, bool use_suggested_prior)
+pairOf(const JsonNode& entry, const Settings& settings, bool use_suggested_prior)
 {
   BatchPair pair;
   pair.settings = settings;
-  pair.name = nameOf(entry);
+  pair.name = nameOf(entry["name"]);
   if (use_suggested_prior)
-    pair.settings.options.prior = suggestedPrior(entry);
-  if (entry.contains("files"))
+    pair.settings.options.prior = suggestedPrior(entry["suggested_prior_sigma"]);
+  if (entry.has("files"))
     takeDataSetEntry(entry["files"], pair);
   else
     takePlainEntry(entry, pair);
@@ -187,13 +164,12 @@ readManifest(const std::string& file,
   for (const json& entry : manifest) {
     std::string what = "pair " + std::to_string(pairs.size() + 1);
     try {
-      if (!entry.is_object())
-        refuse("is not a JSON object");
-      if (entry.contains("name"))
+      const io::JsonNode value(entry);
+      if (value.has("name"))
         what += " (" + io::inQuotes(entry["name"].dump()) + ")";
-      BatchPair pair = pairOf(entry, settings, use_suggested_prior);
+      BatchPair pair = pairOf(value, settings, use_suggested_prior);
       if (!names.insert(pair.name).second)
-        refuse("another pair has this name, too");
+        throw io::UsageError("another pair has this name, too");
       for (std::string* name : {&pair.source_file, &pair.target_file, &pair.guess_file})
         placeIn(folder, *name);
       pairs.push_back(std::move(pair));

@@ -33,12 +33,11 @@ readBlob(const std::string& name, CloudFormat format, Blob& blob, CloudFile& clo
   Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
   errno = 0;
   try {
-    if (format == CloudFormat::Pcd)
-      result =
-          pcl::PCDReader().read(name, blob, cloud.sensor_origin, orientation, version);
-    else
-      result =
-          pcl::PLYReader().read(name, blob, cloud.sensor_origin, orientation, version);
+    const auto read = [&](auto reader) {
+      return reader.read(name, blob, cloud.sensor_origin, orientation, version);
+    };
+    result =
+        format == CloudFormat::Pcd ? read(pcl::PCDReader()) : read(pcl::PLYReader());
   }
   catch (const std::bad_alloc&) {
     throw;
@@ -82,9 +81,7 @@ bool
 areSame(const Eigen::Matrix3Xf& a, const Eigen::Matrix3Xf& b)
 {
   return a.cols() == b.cols() &&
-         std::equal(a.data(), a.data() + a.size(), b.data(), [](float x, float y) {
-           return x == y || (x != x && y != y);
-         });
+         ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
 }
 
 /** Calls a writer of PCL, which may throw exceptions of any type.

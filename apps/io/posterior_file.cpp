@@ -4,12 +4,10 @@
 #include "io/errors.h"
 #include "io/input_file.h"
 #include "io/json_file.h"
+#include "io/json_node.h"
 #include "io/numbers.h"
 
-#include <nlohmann/json.hpp>
-
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,89 +20,6 @@ namespace {
 constexpr std::uint64_t max_posterior_size = 16 << 20;
 constexpr std::uint64_t max_samples_size = 1 << 30;
 constexpr std::size_t num_samples_columns = 8;
-
-/** A value of the file and the way to it, for errors. */
-class Node {
-public:
-  Node(const std::string& file, const json& value) : file_(file), value_(value) {}
-
-  Node
-  operator[](const std::string& key) const
-  {
-    const std::string path = path_ + (path_.empty() ? "" : ".") + key;
-    if (!value_.is_object())
-      refuse("an object");
-    if (!value_.contains(key))
-      throw FileError(file_, "the key '" + path + "' is missing");
-    return {file_, value_[key], path};
-  }
-
-  Node
-  operator[](Eigen::Index index) const
-  {
-    return {file_,
-            value_[static_cast<std::size_t>(index)],
-            path_ + '[' + textOf(index) + ']'};
-  }
-
-  void
-  requireList(Eigen::Index size) const
-  {
-    if (!value_.is_array() || value_.size() != static_cast<std::size_t>(size))
-      refuse("a list of " + textOf(size));
-  }
-
-  std::string
-  text() const
-  {
-    if (!value_.is_string())
-      refuse("a text");
-    return value_.get<std::string>();
-  }
-
-  /** null is what JSON has for NaN. */
-  double
-  number() const
-  {
-    if (value_.is_null())
-      return std::numeric_limits<double>::quiet_NaN();
-    if (!value_.is_number())
-      refuse("a number or null");
-    return value_.get<double>();
-  }
-
-  template <typename Matrix>
-  Matrix
-  matrix() const
-  {
-    Matrix result;
-    requireList(result.rows());
-    for (Eigen::Index row = 0; row < result.rows(); ++row) {
-      (*this)[row].requireList(result.cols());
-      for (Eigen::Index column = 0; column < result.cols(); ++column)
-        result(row, column) = (*this)[row][column].number();
-    }
-    return result;
-  }
-
-  [[noreturn]] void
-  refuse(const std::string& expected) const
-  {
-    throw FileError(file_,
-                    (path_.empty() ? "the document" : path_) + " is not " + expected);
-  }
-
-private:
-  Node(const std::string& file, const json& value, std::string path)
-  : file_(file)
-  , value_(value)
-  , path_(std::move(path))
-  {}
-
-  const std::string& file_;
-  const json& value_;
-  std::string path_;
-};
 
 void
 checkSchema(const std::string& name, const json& document)
@@ -120,24 +35,25 @@ checkSchema(const std::string& name, const json& document)
 }
 
 Vector6d
-meanOf(const Node& mean)
+meanOf(const JsonNode& mean)
 {
   Vector6d pose;
   for (std::size_t k = 0; k < 6; ++k)
-    pose[static_cast<Eigen::Index>(k)] = mean[app::coordinateKey(k)].number();
+    pose[static_cast<Eigen::Index>(k)] =
+        mean[app::coordinateKey(k)].numberOr(std::nan(""));
   return pose;
 }
 
 std::array<Matrix6d, 4>
-covariancesOf(const Node& list)
+covariancesOf(const JsonNode& list)
 {
   std::array<Matrix6d, 4> covariances;
   list.requireList(4);
-  for (Eigen::Index i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < 4; ++i) {
     const char* convention = toString(static_cast<CovarianceConvention>(i));
     if (list[i]["convention"].text() != convention)
-      list[i]["convention"].refuse(std::string("'") + convention + '\'');
-    covariances[static_cast<std::size_t>(i)] = list[i]["matrix"].matrix<Matrix6d>();
+      list[i]["convention"].refuse(convention);
+    covariances[i] = list[i]["matrix"].matrix<Matrix6d>();
   }
   return covariances;
 }
@@ -172,10 +88,10 @@ readLineOf(InputFile& file, std::string& line)
 
 PosteriorFile
 readPosterior(const std::string& name)
-{
+try {
   const json document = readJson(name, max_posterior_size);
   checkSchema(name, document);
-  const Node root(name, document);
+  const JsonNode root(document);
   PosteriorFile posterior;
   posterior.source_file = root["source"]["file"].text();
   posterior.target_file = root["target"]["file"].text();
@@ -188,6 +104,9 @@ readPosterior(const std::string& name)
   posterior.mean = meanOf(root["posterior"]["mean"]);
   posterior.covariances = covariancesOf(root["posterior"]["covariances"]);
   return posterior;
+}
+catch (const UsageError& error) {
+  throw FileError(name, error.what());
 }
 
 PoseMatrix

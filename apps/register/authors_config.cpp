@@ -1,12 +1,9 @@
 #include "register/authors_config.h"
 
 #include "io/coordinates.h"
-#include "io/errors.h"
-#include "register/json_values.h"
+#include "io/json_node.h"
 
 #include <bayesian_icp/pose.h>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <limits>
@@ -17,6 +14,7 @@ namespace bayesian_icp::app {
 
 namespace {
 
+using io::JsonNode;
 using nlohmann::json;
 
 /** The keys of the layout; an empty set is a value of its own. */
@@ -44,84 +42,54 @@ const std::map<std::string, std::set<std::string>> keys_of_groups = {
 
 /** The program reads true and false, 1 and 0. */
 bool
-flagOf(const std::string& path, const json& value)
+flagOf(const JsonNode& value)
 {
-  if (value.is_boolean())
-    return value.get<bool>();
-  if (value != 0 && value != 1)
-    refuse(path, value, "true or false");
-  return value == 1;
+  if (value.json().is_boolean())
+    return value.json().get<bool>();
+  if (value.json() != 0 && value.json() != 1)
+    value.refuse("true or false");
+  return value.json() == 1;
 }
 
 void
-checkGroup(const std::string& name,
-           const std::set<std::string>& keys,
-           const json& group)
+checkKeys(const JsonNode& document)
 {
-  if (!group.is_object())
-    refuse(name, group, "an object");
-  for (const auto& [key, value] : group.items()) {
-    const std::string path = keyPath(name, key);
-    if (keys.count(key) == 0)
-      throw io::UsageError("unknown key " + io::inQuotes(path));
-    if (path != "icp.filter" && !value.is_number())
-      refuse(path, value, "a number");
+  std::set<std::string> groups;
+  for (const auto& [name, keys] : keys_of_groups) {
+    groups.insert(name);
+    if (keys.empty() || !document.has(name))
+      continue;
+    document[name].requireKeysAmong(keys);
+    for (const std::string& key : keys)
+      if (key != "filter" && document[name].has(key))
+        document[name][key].number();
   }
-}
-
-void
-checkKeys(const json& document)
-{
-  for (const auto& [name, value] : document.items()) {
-    const auto found = keys_of_groups.find(name);
-    if (found == keys_of_groups.end())
-      throw io::UsageError("unknown key " + io::inQuotes(name));
-    if (!found->second.empty())
-      checkGroup(name, found->second, value);
-  }
-}
-
-const json&
-at(const json& document, const std::string& group, const std::string& key)
-{
-  if (!document.contains(group) || !document[group].contains(key))
-    throw io::UsageError("the key '" + group + '.' + key + "' is missing");
-  return document[group][key];
-}
-
-double
-numberAt(const json& document, const std::string& group, const std::string& key)
-{
-  return at(document, group, key).get<double>();
+  document.requireKeysAmong(groups);
 }
 
 int
-countAt(const json& document, const std::string& group, const std::string& key)
+countOf(const JsonNode& value)
 {
-  const double number = numberAt(document, group, key);
+  const double number = value.number();
   if (number != std::floor(number) || number < 1 ||
       number > std::numeric_limits<int>::max())
-    refuse(group + '.' + key, at(document, group, key), "a positive whole number");
+    value.refuse("a positive whole number");
   return static_cast<int>(number);
 }
 
 Vector6d
-poseAt(const json& document, const std::string& group, const std::string& prefix)
+poseOf(const JsonNode& group, const std::string& prefix)
 {
   Vector6d pose;
   for (std::size_t k = 0; k < 6; ++k)
-    pose[static_cast<Eigen::Index>(k)] =
-        numberAt(document, group, prefix + coordinate_names[k]);
+    pose[static_cast<Eigen::Index>(k)] = group[prefix + coordinate_names[k]].number();
   return pose;
 }
 
 void
-refuseWhatIsMissing(const json& document)
+refuseWhatIsMissing(const JsonNode& document)
 {
-  const json method = document.value("method", json());
-  if (!method.is_string())
-    refuse("method", method, "the name of a method");
-  const std::string name = method.get<std::string>();
+  const std::string name = document["method"].text();
   if (keys_of_groups.count(name) == 0 || name == "prior" || name == "icp")
     throw io::UsageError("unknown method " + io::inQuotes(name));
   if (name != "preconditioned_sgld")
@@ -130,27 +98,27 @@ refuseWhatIsMissing(const json& document)
 }
 
 void
-takeSampler(const json& document, Options& options)
+takeSampler(const JsonNode& document, Options& options)
 {
-  const std::string method = "preconditioned_sgld";
+  const JsonNode method = document["preconditioned_sgld"];
   SgldOptions& sgld = options.paper.sgld;
-  sgld.step_size = numberAt(document, method, "step-size");
-  sgld.decay_rate = numberAt(document, method, "decay-rate");
-  sgld.noise_factor = numberAt(document, method, "adjust_noise");
+  sgld.step_size = method["step-size"].number();
+  sgld.decay_rate = method["decay-rate"].number();
+  sgld.noise_factor = method["adjust_noise"].number();
   sgld.block_decay_factor = 1.0;
-  options.paper.batch_size = countAt(document, "icp", "batch-size");
+  options.paper.batch_size = countOf(document["icp"]["batch-size"]);
   options.paper.sampling = MiniBatchSampling::ShuffledEpochs;
   options.chains.num_chains = 1;
-  options.chains.num_draws = countAt(document, "icp", "max-iterations");
+  options.chains.num_draws = countOf(document["icp"]["max-iterations"]);
 }
 
 std::string
-noteAbout(const json& document)
+noteAbout(const JsonNode& document)
 {
   std::string ignored;
   for (const char* key :
        {"convergence-steps", "translational-convergence", "rotational-convergence"})
-    if (document["icp"].contains(key))
+    if (document["icp"].has(key))
       ignored += std::string(ignored.empty() ? "" : ", ") + "icp." + key;
   return ignored.empty() ? "" : ignored + ": no effect on sampling";
 }
@@ -167,19 +135,20 @@ isAuthorsConfig(const json& document)
 }
 
 Settings
-settingsOfAuthorsConfig(const json& document, std::string& note)
+settingsOfAuthorsConfig(const json& file, std::string& note)
 {
+  const JsonNode document(file);
   checkKeys(document);
   refuseWhatIsMissing(document);
   Settings settings;
   settings.options.preset = Preset::Paper;
-  settings.guess = matrixOf(poseAt(document, "initial-guess", ""));
-  settings.options.prior.mean = poseAt(document, "prior", "mean-");
-  settings.options.prior.variance.setConstant(numberAt(document, "prior", "variance"));
-  settings.max_distance = numberAt(document, "icp", "max-matching-distance");
-  settings.is_one_to_one = flagOf("icp.filter", at(document, "icp", "filter"));
+  settings.guess = matrixOf(poseOf(document["initial-guess"], ""));
+  settings.options.prior.mean = poseOf(document["prior"], "mean-");
+  settings.options.prior.variance.setConstant(document["prior"]["variance"].number());
+  settings.max_distance = document["icp"]["max-matching-distance"].number();
+  settings.is_one_to_one = flagOf(document["icp"]["filter"]);
   settings.is_normalized = settings.are_lengths_scaled =
-      flagOf("normalize-cloud", document.value("normalize-cloud", json(false)));
+      document.has("normalize-cloud") && flagOf(document["normalize-cloud"]);
   settings.is_step_size_times_points = true;
   settings.is_effective_points_source_size = true;
   takeSampler(document, settings.options);

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include <bayesian_icp/descent_optimizer.h>
 #include <bayesian_icp/options.h>
 
 #include <array>
@@ -59,6 +60,16 @@ inline std::array<RobustKernel, 3>
 choicesOf(RobustKernel)
 {
   return {RobustKernel::None, RobustKernel::Huber, RobustKernel::Tukey};
+}
+
+inline std::array<SgdOptimizer, 5>
+choicesOf(SgdOptimizer)
+{
+  return {SgdOptimizer::FixedStep,
+          SgdOptimizer::Momentum,
+          SgdOptimizer::AdaDelta,
+          SgdOptimizer::Adam,
+          SgdOptimizer::RmsProp};
 }
 
 /** \brief "one, two or three". */

@@ -1,10 +1,7 @@
 #include "register/command_line.h"
 
 #include "io/command_line.h"
-#include "register/choices.h"
-#include "register/export_files.h"
 #include "register/settings_options.h"
-#include "register/sgd_request.h"
 
 #include <sstream>
 
@@ -43,7 +40,7 @@ describeExportOptions(ExportRequest& exports)
   ExportOptions& options = exports.options;
   const std::string formats =
       "Export the posterior mean and covariance for other software: " +
-      namesOfChoices(ExportFormat::Ros) +
+      exportFormatNames() +
       ", separated by commas. With --output, each format becomes a file in that "
       "folder; without it, give one format, which is printed instead of the table. "
       "docs/exports.md has the conventions. Without --export nothing is exported.";
@@ -145,8 +142,8 @@ Example:
   return help.str();
 }
 
-} // namespace
-
+/** Every option of Bayesian ICP, described with its unit and its default. They fill
+ * \p request, which has to outlive them; settingsFrom() reads the settings. */
 po::options_description
 describeOptions(Request& request)
 {
@@ -173,12 +170,34 @@ describeOptions(Request& request)
   return all;
 }
 
+/** \throws io::UsageError if the method is unknown, or if it is bayesian-icp and there
+ *         are options that only SGD-ICP has */
+bool
+isSgdIcpAskedFor(const po::variables_map& given)
+{
+  const std::string method = given.count("method") > 0
+                                 ? given["method"].as<std::string>()
+                                 : std::string("bayesian-icp");
+  if (method == "sgd-icp")
+    return true;
+  if (method != "bayesian-icp")
+    throw io::UsageError("--method: " + io::inQuotes(method) +
+                         " is not bayesian-icp or sgd-icp");
+  const po::options_description own = describeSgdOptions();
+  for (const auto& option : own.options())
+    if (given.count(option->long_name()) > 0)
+      throw io::UsageError("--" + option->long_name() +
+                           ": has no effect with method bayesian-icp");
+  return false;
+}
+
+} // namespace
+
 std::optional<Request>
 parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  // Those of SGD-ICP have been refused before, unless help is asked for.
   po::options_description all;
   all.add(options).add(describeSgdOptions());
   const po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
@@ -187,6 +206,9 @@ parseCommandLine(int argc, const char* const* argv)
                              [&options] { return helpText(options); }))
     return std::nullopt;
   request.command = io::commandOf(argc, argv);
+  const bool is_sgd = isSgdIcpAskedFor(given);
+  if (is_sgd)
+    request.sgd = sgdSettingsFrom(given);
   io::takeClouds(given, "cloud", request.source_file, request.target_file);
   refuseExportOptionsWithoutExport(given);
   io::takeOptions(given, options);
@@ -196,7 +218,8 @@ parseCommandLine(int argc, const char* const* argv)
   if (request.is_json && request.is_quiet)
     throw io::UsageError("--json and --quiet exclude each other");
   checkExports(request);
-  request.settings = settingsFrom(given, Settings(), request.note);
+  if (!is_sgd)
+    request.settings = settingsFrom(given, Settings(), request.note);
   return request;
 }
 

@@ -5,8 +5,7 @@
 
 #include "register/export_files.h"
 #include "register/settings.h"
-
-#include <boost/program_options/options_description.hpp>
+#include "register/sgd_settings.h"
 
 #include <optional>
 #include <string>
@@ -27,6 +26,8 @@ struct Request {
   bool is_json = false;
   bool is_quiet = false;
   Settings settings;
+  /** With --method sgd-icp, in place of the settings above. */
+  std::optional<SgdSettings> sgd;
   /** Something in a configuration file that the user ought to know; empty if nothing.
    */
   std::string note;
@@ -38,10 +39,5 @@ struct Request {
  *         read */
 std::optional<Request>
 parseCommandLine(int argc, const char* const* argv);
-
-/** \brief Every option, described with its unit and its default. They fill \p request,
- * which has to outlive them; settingsFrom() reads the settings. */
-boost::program_options::options_description
-describeOptions(Request& request);
 
 } // namespace bayesian_icp::app

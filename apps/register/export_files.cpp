@@ -2,7 +2,6 @@
 
 #include "io/errors.h"
 #include "io/numbers.h"
-#include "register/choices.h"
 
 #include <algorithm>
 #include <ostream>
@@ -14,59 +13,48 @@ namespace {
 
 constexpr std::size_t num_decimals_of_nanoseconds = 9;
 
-const char*
-fileNameOf(ExportFormat format)
-{
-  switch (format) {
-  case ExportFormat::Ros:
-    return "pose_ros.yaml";
-  case ExportFormat::G2o:
-    return "pose.g2o";
-  case ExportFormat::Gtsam:
-    return "pose_gtsam.txt";
-  case ExportFormat::Tum:
-    return "pose_tum.txt";
-  case ExportFormat::Csv:
-    return "pose.csv";
-  }
-  return "";
-}
+/** A file of the pose for other software; a format may have several. */
+struct ExportFile {
+  const char* format;
+  const char* name;
+  std::string (*text)(const PoseEstimate&, const ExportOptions&);
+};
 
-void
-addText(const std::string& name, const std::string& text, io::OutputFolder& folder)
+constexpr ExportFile export_files[] = {
+    {"ros", "pose_ros.yaml", rosYaml},
+    {"g2o", "pose.g2o", g2oEdge},
+    {"gtsam", "pose_gtsam.txt", gtsamText},
+    {"tum", "pose_tum.txt", tumLine},
+    {"tum", "pose_tum_covariance.txt", tumCovarianceLine},
+    {"csv", "pose.csv", csvText}};
+
+std::vector<ExportFile>
+filesOf(const std::string& format)
 {
-  folder.add(name, [&text](std::ostream& stream) { stream << text; });
+  std::vector<ExportFile> files;
+  for (const ExportFile& file : export_files)
+    if (file.format == format)
+      files.push_back(file);
+  return files;
 }
 
 } // namespace
 
-const char*
-toString(ExportFormat format)
+std::string
+exportFormatNames()
 {
-  switch (format) {
-  case ExportFormat::Ros:
-    return "ros";
-  case ExportFormat::G2o:
-    return "g2o";
-  case ExportFormat::Gtsam:
-    return "gtsam";
-  case ExportFormat::Tum:
-    return "tum";
-  case ExportFormat::Csv:
-    return "csv";
-  }
-  return "";
+  return "ros, g2o, gtsam, tum or csv";
 }
 
-std::vector<ExportFormat>
+std::vector<std::string>
 readExportFormats(const std::string& list)
 {
-  std::vector<ExportFormat> formats;
-  for (const auto name : io::splitAt(',', list)) {
-    ExportFormat format{};
-    if (!readChoice(std::string(name), format))
-      throw io::UsageError("--export: " + io::inQuotes(name) + " is not " +
-                           namesOfChoices(format));
+  std::vector<std::string> formats;
+  for (const auto item : io::splitAt(',', list)) {
+    const std::string format(item);
+    if (filesOf(format).empty())
+      throw io::UsageError("--export: " + io::inQuotes(format) + " is not " +
+                           exportFormatNames());
     if (std::find(formats.begin(), formats.end(), format) == formats.end())
       formats.push_back(format);
   }
@@ -97,23 +85,11 @@ readTimestamp(const std::string& seconds)
 }
 
 std::string
-exportText(ExportFormat format,
+exportText(const std::string& format,
            const PoseEstimate& estimate,
            const ExportOptions& options)
 {
-  switch (format) {
-  case ExportFormat::Ros:
-    return rosYaml(estimate, options);
-  case ExportFormat::G2o:
-    return g2oEdge(estimate, options);
-  case ExportFormat::Gtsam:
-    return gtsamText(estimate, options);
-  case ExportFormat::Tum:
-    return tumLine(estimate, options);
-  case ExportFormat::Csv:
-    return csvText(estimate, options);
-  }
-  return "";
+  return filesOf(format).front().text(estimate, options);
 }
 
 std::vector<std::string>
@@ -122,22 +98,16 @@ addExports(const ExportRequest& request,
            io::OutputFolder& folder)
 {
   std::vector<std::string> refusals;
-  for (const ExportFormat format : request.formats) {
-    std::string text;
+  for (const std::string& format : request.formats)
     try {
-      text = exportText(format, estimate, request.options);
+      for (const ExportFile& file : filesOf(format)) {
+        const std::string text = file.text(estimate, request.options);
+        folder.add(file.name, [&text](std::ostream& stream) { stream << text; });
+      }
     }
     catch (const std::invalid_argument& error) {
-      refusals.push_back(std::string("--export ") + toString(format) +
-                         ": not written: " + error.what());
-      continue;
+      refusals.push_back("--export " + format + ": not written: " + error.what());
     }
-    addText(fileNameOf(format), text, folder);
-    if (format == ExportFormat::Tum)
-      addText("pose_tum_covariance.txt",
-              tumCovarianceLine(estimate, request.options),
-              folder);
-  }
   return refusals;
 }
 

@@ -7,37 +7,24 @@
 
 #include <bayesian_icp/exports.h>
 
-#include <array>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::app {
 
-enum class ExportFormat { Ros, G2o, Gtsam, Tum, Csv };
-
-/** \brief "ros", "g2o", "gtsam", "tum", "csv". */
-const char*
-toString(ExportFormat format);
-
-inline std::array<ExportFormat, 5>
-choicesOf(ExportFormat)
-{
-  return {ExportFormat::Ros,
-          ExportFormat::G2o,
-          ExportFormat::Gtsam,
-          ExportFormat::Tum,
-          ExportFormat::Csv};
-}
-
 /** \brief What --export and the options that go with it say. */
 struct ExportRequest {
-  std::vector<ExportFormat> formats;
+  std::vector<std::string> formats;
   ExportOptions options;
 };
 
+/** \brief "ros, g2o, gtsam, tum or csv". */
+std::string
+exportFormatNames();
+
 /** \brief The formats of a list with commas, each once.
  * \throws io::UsageError if there is another name in it */
-std::vector<ExportFormat>
+std::vector<std::string>
 readExportFormats(const std::string& list);
 
 /** \brief Nanoseconds of a decimal number of seconds, without loss.
@@ -48,7 +35,7 @@ readTimestamp(const std::string& seconds);
 /** \brief The text of one format, of TUM without the covariance.
  * \throws std::invalid_argument if the posterior cannot be exported to it */
 std::string
-exportText(ExportFormat format,
+exportText(const std::string& format,
            const PoseEstimate& estimate,
            const ExportOptions& options);
 

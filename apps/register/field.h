@@ -31,4 +31,37 @@ longNameOf(const Field& field)
   return option.substr(0, option.find(','));
 }
 
+/** \brief A visitor of fields that looks for the option of a complaint of validate():
+ * "prior.variance[x] is ..." speaks of the key "variance_m2_rad2". */
+class OptionFinder {
+public:
+  explicit OptionFinder(const std::string& complaint)
+  : complaint_(complaint)
+  , name_(complaint.substr(0, complaint.find_first_of(" [")))
+  {
+    name_.erase(0, name_.find('.') + 1);
+  }
+
+  template <typename T>
+  void
+  operator()(const Field& field, const T&)
+  {
+    const std::string key = field.key;
+    if (key == name_ || "num_" + key == name_ || key.rfind(name_ + '_', 0) == 0)
+      option_ = "--" + longNameOf(field) + ": ";
+  }
+
+  /** \brief The complaint behind its option. */
+  std::string
+  complaintWithOption() const
+  {
+    return option_ + complaint_;
+  }
+
+private:
+  std::string complaint_;
+  std::string name_;
+  std::string option_;
+};
+
 } // namespace bayesian_icp::app

@@ -1,39 +1,18 @@
 /** \file
- * \brief Numbers and matrices to JSON (which has no infinity and no NaN: they are
- * null), and how messages name a key.
+ * rief Numbers, matrices and settings to JSON, which has no infinity and no NaN: they
+ * are null.
  */
 #pragma once
 
-#include "io/errors.h"
+#include "register/field.h"
 
-#include <Eigen/Core>
+#include <bayesian_icp/options.h>
 
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <string>
 
 namespace bayesian_icp::app {
-
-/** \brief "group.key". */
-inline std::string
-keyPath(std::string group, const std::string& key)
-{
-  group += '.';
-  group += key;
-  return group;
-}
-
-/** \brief Refuse the value at \p path ("group.key").
- * \throws io::UsageError */
-[[noreturn]] inline void
-refuse(const std::string& path,
-       const nlohmann::json& value,
-       const std::string& expected)
-{
-  throw io::UsageError(path + " is " + io::inQuotes(value.dump()) + ", but must be " +
-                       expected);
-}
 
 inline nlohmann::ordered_json
 jsonOf(double number)
@@ -56,5 +35,44 @@ jsonOf(const Eigen::MatrixBase<Derived>& matrix)
       list.push_back(jsonOf(matrix.row(i).transpose().eval()));
   return list;
 }
+
+/** \brief A visitor that writes the fields of a table of settings in their groups. */
+struct FieldWriter {
+  nlohmann::ordered_json document = nlohmann::ordered_json::object();
+
+  template <typename T>
+  void
+  operator()(const Field& field, const T& value)
+  {
+    nlohmann::ordered_json& place = document[field.group][field.key];
+    if constexpr (std::is_enum_v<T>)
+      place = toString(value);
+    else if constexpr (std::is_integral_v<T>)
+      place = value;
+    else
+      place = jsonOf(value);
+  }
+
+  /** The prior mean that is not given is null as a whole. */
+  void
+  operator()(const Field& field, const Vector6d& value)
+  {
+    nlohmann::ordered_json& place = document[field.group][field.key];
+    if (value.array().isNaN().all())
+      place = nullptr;
+    else
+      place = jsonOf(value);
+  }
+
+  template <typename T>
+  void
+  operator()(const Field& field, const Automatic<T>& value)
+  {
+    if (value.isGiven())
+      (*this)(field, value.valueOr(T()));
+    else
+      document[field.group][field.key] = "automatic";
+  }
+};
 
 } // namespace bayesian_icp::app

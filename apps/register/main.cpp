@@ -77,14 +77,14 @@ printsExport(const Request& request)
 bool
 printExport(const Request& request, const Run& run)
 {
-  const ExportFormat format = request.exports.formats.front();
+  const std::string& format = request.exports.formats.front();
   try {
     io::print(
         exportText(format, PoseEstimate(run.result.summary), request.exports.options));
     return true;
   }
   catch (const std::invalid_argument& error) {
-    tell(std::string("--export ") + toString(format) + ": " + error.what());
+    tell("--export " + format + ": " + error.what());
     return false;
   }
 }
@@ -170,10 +170,10 @@ registerAsAsked(const Request& request)
 int
 runTool(int argc, char** argv)
 {
-  if (isSgdIcpAskedFor(argc, argv))
-    return runSgdIcp(argc, argv);
   const std::optional<Request> request = parseCommandLine(argc, argv);
-  return request ? registerAsAsked(*request) : Good;
+  if (!request)
+    return Good;
+  return request->sgd ? runSgdIcp(*request) : registerAsAsked(*request);
 }
 
 } // namespace

@@ -71,27 +71,6 @@ modesText(const std::vector<Mode>& modes)
   return text;
 }
 
-/** The argument of `pcl_transform_point_cloud -matrix`: 16 numbers row by row. */
-std::string
-pasteable(const Eigen::Matrix4d& matrix)
-{
-  std::string text = "  -matrix ";
-  for (Eigen::Index i = 0; i < 16; ++i)
-    text += (i > 0 ? "," : "") + io::textOf(matrix(i / 4, i % 4), 9);
-  return text + '\n';
-}
-
-std::string
-cloudLine(const char* role, const io::CloudFile& cloud)
-{
-  const auto num_points = static_cast<std::size_t>(cloud.points.cols());
-  std::string line =
-      std::string(role) + cloud.file + ", " + std::to_string(num_points) + " points";
-  if (cloud.num_finite < num_points)
-    line += ", " + std::to_string(cloud.num_finite) + " of them finite";
-  return line + '\n';
-}
-
 } // namespace
 
 std::vector<std::vector<std::string>>
@@ -145,6 +124,26 @@ statusText(const Summary& summary)
 }
 
 std::string
+matrixText(const Eigen::Matrix4d& matrix)
+{
+  std::string text = "  -matrix ";
+  for (Eigen::Index i = 0; i < 16; ++i)
+    text += (i > 0 ? "," : "") + io::textOf(matrix(i / 4, i % 4), 9);
+  return text + '\n';
+}
+
+std::string
+cloudLine(const char* role, const io::CloudFile& cloud)
+{
+  const auto num_points = static_cast<std::size_t>(cloud.points.cols());
+  std::string line =
+      std::string(role) + cloud.file + ", " + std::to_string(num_points) + " points";
+  if (cloud.num_finite < num_points)
+    line += ", " + std::to_string(cloud.num_finite) + " of them finite";
+  return line + '\n';
+}
+
+std::string
 reportText(const Run& run)
 {
   const RegistrationResult& result = run.result;
@@ -164,10 +163,10 @@ reportText(const Run& run)
   text += "\nMatrices row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
           "...\n";
   if (summary.num_draws > 0)
-    text += "Posterior mean:\n" + pasteable(matrixOf(summary.mean));
+    text += "Posterior mean:\n" + matrixText(matrixOf(summary.mean));
   text += std::string("Final transformation (") +
           (result.is_final_the_mean ? "the posterior mean" : "ICP's result") + "):\n" +
-          pasteable(result.final_matrix);
+          matrixText(result.final_matrix);
   return text;
 }
 

@@ -36,4 +36,13 @@ icpText(const RegistrationResult& result);
 std::string
 statusText(const Summary& summary);
 
+/** \brief "Source: a.pcd, 300 points". */
+std::string
+cloudLine(const char* role, const io::CloudFile& cloud);
+
+/** \brief The argument of `pcl_transform_point_cloud -matrix`: 16 numbers row by row.
+ */
+std::string
+matrixText(const Eigen::Matrix4d& matrix);
+
 } // namespace bayesian_icp::app

@@ -9,23 +9,6 @@ namespace bayesian_icp::app {
 
 namespace {
 
-/** A complaint of Options::validate() behind the command line option of its field:
- * "prior.variance[x] is ..." speaks of the key "variance_m2_rad2". */
-std::string
-withOptionName(const Settings& settings, const std::string& complaint)
-{
-  std::string name = complaint.substr(0, complaint.find_first_of(" ["));
-  name.erase(0, name.find('.') + 1);
-  std::string option;
-  auto find = [&](const Field& field, const auto&) {
-    const std::string key = field.key;
-    if (key == name || key.rfind(name + "_m", 0) == 0)
-      option = "--" + longNameOf(field) + ": ";
-  };
-  visitSettings(settings, find);
-  return option + complaint;
-}
-
 /** Normals are found by the search of preset `exact`, which has no pairs to filter. */
 bool
 lacksNormals(const Settings& settings)
@@ -76,7 +59,11 @@ Settings::validate() const
     return std::string("--residual: is ") + toString(options.exact.residual.residual) +
            ", but must be point-to-point with --reciprocal or --one-to-one";
   const std::string complaint = options.validate();
-  return complaint.empty() ? complaint : withOptionName(*this, complaint);
+  if (complaint.empty())
+    return "";
+  OptionFinder finder(complaint);
+  visitSettings(*this, finder);
+  return finder.complaintWithOption();
 }
 
 } // namespace bayesian_icp::app

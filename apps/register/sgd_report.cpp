@@ -2,6 +2,7 @@
 #include "io/numbers.h"
 #include "register/json_values.h"
 #include "register/posterior_json.h"
+#include "register/report_text.h"
 #include "register/sgd_run.h"
 #include "register/text_layout.h"
 
@@ -25,36 +26,6 @@ poseTable(const Vector6d& pose)
     table += '\n';
   }
   return table;
-}
-
-std::string
-cloudLine(const char* role, const io::CloudFile& cloud)
-{
-  return role + cloud.file + ", " + io::textOf(cloud.num_finite) + " finite points\n";
-}
-
-double
-usedStepSize(const StochasticGradientIcpOptions& options)
-{
-  return std::isnan(options.step_size) ? defaultStepSize(options.optimizer)
-                                       : options.step_size;
-}
-
-ordered_json
-optionsJson(const SgdRequest& request)
-{
-  const auto& options = request.options;
-  return {{"optimizer", toString(options.optimizer)},
-          {"step_size", jsonOf(usedStepSize(options))},
-          {"batch_size", options.batch_size},
-          {"max_iterations", options.max_iterations},
-          {"max_distance_m", jsonOf(request.max_distance)},
-          {"is_one_to_one", options.is_one_to_one},
-          {"translation_epsilon_m", options.translation_epsilon},
-          {"rotation_epsilon_rad", options.rotation_epsilon},
-          {"still_iterations", options.num_still_iterations},
-          {"seed", options.seed},
-          {"guess_matrix", jsonOf(request.guess)}};
 }
 
 } // namespace
@@ -88,7 +59,7 @@ sgdReportText(const SgdRun& run)
 {
   std::string text =
       cloudLine("Source: ", run.source) + cloudLine("Target: ", run.target);
-  text += "Method: SGD-ICP, " + std::string(toString(run.request.options.optimizer)) +
+  text += "Method: SGD-ICP, " + std::string(toString(run.settings.options.optimizer)) +
           "; no posterior\n";
   text += "Time:   " + io::fixedTextOf(run.registration_seconds, 3) + " s\n";
   text += "\nPose that maps source points into the target frame:\n" +
@@ -97,12 +68,10 @@ sgdReportText(const SgdRun& run)
   if (std::isfinite(run.mean_squared_distance))
     text += "Root mean square distance of the source to the target: " +
             io::textOf(std::sqrt(run.mean_squared_distance), 4) + " m\n";
-  text += "\nMatrix row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
-          "...\n  -matrix ";
-  const Eigen::Matrix4d T = matrixOf(run.result.pose);
-  for (Eigen::Index i = 0; i < 16; ++i)
-    text += (i > 0 ? "," : "") + io::textOf(T(i / 4, i % 4), 9);
-  return text + '\n';
+  return text +
+         "\nMatrix row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
+         "...\n" +
+         matrixText(matrixOf(run.result.pose));
 }
 
 std::string
@@ -124,7 +93,7 @@ sgdJson(const SgdRun& run)
       {"pose", pose},
       {"T_target_source", jsonOf(matrixOf(run.result.pose))},
       {"mean_squared_distance_m2", jsonOf(run.mean_squared_distance)},
-      {"options", optionsJson(run.request)},
+      {"options", jsonOf(run.settings)},
       {"time",
        {{"reading_s", run.reading_seconds},
         {"registration_s", run.registration_seconds}}}};

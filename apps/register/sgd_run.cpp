@@ -41,11 +41,11 @@ meanSquaredDistance(const Eigen::Matrix3Xd& source,
 }
 
 SgdRun
-registerFiles(const SgdRequest& request)
+registerFiles(const Request& request)
 {
   io::silencePcl();
   SgdRun run;
-  run.request = request;
+  run.settings = *request.sgd;
   auto start = Clock::now();
   run.source = io::readCloud(request.source_file);
   run.target = io::readCloud(request.target_file);
@@ -56,14 +56,15 @@ registerFiles(const SgdRequest& request)
   start = Clock::now();
   const Eigen::Matrix3Xd source = io::finitePoints(run.source).cast<double>();
   const KdTree tree(run.target.points);
+  const SgdSettings& settings = run.settings;
   run.result = stochasticGradientIcp(
       source,
-      TreeSearch(tree, request.max_distance),
-      poseOf(request.guess),
-      request.options,
+      TreeSearch(tree, settings.max_distance),
+      poseOf(settings.guess),
+      settings.options,
       [&](int iteration, const Vector6d&) {
         const long steps = iteration;
-        bar.update({0, steps, steps, request.options.max_iterations});
+        bar.update({0, steps, steps, settings.options.max_iterations});
         return !io::wasInterrupted();
       });
   run.registration_seconds = secondsSince(start);
@@ -84,9 +85,8 @@ writeFiles(const SgdRun& run, io::OutputFolder& folder)
 } // namespace
 
 int
-runSgdIcp(int argc, const char* const* argv)
+runSgdIcp(const Request& request)
 {
-  const SgdRequest request = parseSgdCommandLine(argc, argv);
   std::optional<io::OutputFolder> folder;
   if (!request.output_folder.empty())
     folder.emplace(request.output_folder);

@@ -4,14 +4,14 @@
 #pragma once
 
 #include "io/cloud_file.h"
-#include "register/sgd_request.h"
+#include "register/command_line.h"
 
 #include <string>
 
 namespace bayesian_icp::app {
 
 struct SgdRun {
-  SgdRequest request;
+  SgdSettings settings;
   io::CloudFile source;
   io::CloudFile target;
   StochasticGradientIcpResult result;
@@ -33,10 +33,10 @@ sgdReportText(const SgdRun& run);
 std::string
 sgdJson(const SgdRun& run);
 
-/** \brief pcl_bayesian_icp --method sgd-icp.
+/** \brief Register by SGD-ICP and report as asked.
  * \return the exit code: 0 if the descent came to rest, 1 if not, 130 if interrupted
- * \throws as parseSgdCommandLine(), io::FileError for clouds and results */
+ * \throws io::FileError for clouds and results */
 int
-runSgdIcp(int argc, const char* const* argv);
+runSgdIcp(const Request& request);
 
 } // namespace bayesian_icp::app

@@ -156,7 +156,7 @@ TEST_F(PosteriorFiles, BadValuesAreNamed)
     nlohmann::json value;
     const char* path;
   } cases[] = {
-      {"/source", 3, "source is not an object"},
+      {"/source", 3, "source is '3', but must be an object"},
       {"/source/file", nullptr, "source.file"},
       {"/status/name", 1, "status.name"},
       {"/final_transformation/T_target_source/2/1", "1", "T_target_source[2][1]"},

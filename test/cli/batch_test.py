@@ -10,20 +10,16 @@ import time
 import unittest
 
 import cloud_files
-from cli_tool import FAST, ToolTest, run, strict_json
+from cli_tool import FAST, ToolTest, call, run, strict_json
+from faults import BATCH
 
-BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
 # About 0.3 s a pair.
 SLOW = ["--preset", "paper", "--samples", "200", "--chains", "2", "--thinning", "10"]
 SLOW += ["--step-size", "1e-6"]
 
 
-def run_batch(*arguments, launcher=(), **options):
-    options.setdefault("stdout", subprocess.PIPE)
-    command = [*launcher, BATCH, *map(str, arguments)]
-    return subprocess.run(
-        command, stderr=subprocess.PIPE, text=True, timeout=120, check=False, **options
-    )
+def run_batch(*arguments, launcher=()):
+    return call(*launcher, BATCH, *arguments)
 
 
 def results_of(text):
@@ -182,7 +178,7 @@ class BatchRefused(BatchTest):
         for content, *parts in (
             ("[", "broken JSON"),
             ("{}", "not a JSON list"),
-            ("[1]", "pair 1", "not a JSON object"),
+            ("[1]", "pair 1: is '1', but must be an object"),
             ([{**good, "name": "../up"}], "pair 1", "folder"),
             ([{**good, "name": ""}], "pair 1", "name"),
             ([good, good], "pair 2", "another pair"),

@@ -19,13 +19,16 @@ SMALL_PAIR_POSE = (0.01, -0.02, 0.015, 0.05, -0.04, 0.08)
 FAST = ["--preset", "paper", "--samples", "60", "--chains", "2", "--step-size", "1e-6"]
 
 
-def run(*arguments, **options):
-    """The completed process; nothing that the tool does may take longer than a minute."""
-    options.setdefault("stdout", subprocess.PIPE)
-    command = [TOOL, *map(str, arguments)]
+def call(*words, **options):
+    """The completed process; nothing may take longer than two minutes."""
+    options = {"stdout": subprocess.PIPE, "timeout": 120, **options}
     return subprocess.run(
-        command, stderr=subprocess.PIPE, text=True, timeout=60, check=False, **options
+        list(map(str, words)), stderr=subprocess.PIPE, text=True, check=False, **options
     )
+
+
+def run(*arguments, **options):
+    return call(TOOL, *arguments, **options)
 
 
 def strict_json(text):
@@ -80,6 +83,15 @@ class ToolTest(unittest.TestCase):
         self.assertTrue(lines[0].startswith(f"{self.program}: "), result.stderr)
         for part in parts:
             self.assertIn(str(part), lines[0])
+
+    def assert_close(self, found, expected, delta):
+        """Numbers, or lists of the same shape of these, that differ by \p delta at most."""
+        if isinstance(expected, (int, float)):
+            self.assertAlmostEqual(found, expected, delta=delta)
+            return
+        self.assertEqual(len(found), len(expected))
+        for a, b in zip(found, expected):
+            self.assert_close(a, b, delta)
 
     def assert_ran(self, result):
         """A posterior was sampled, whatever is to be thought of it."""

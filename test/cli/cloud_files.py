@@ -120,6 +120,11 @@ def lzf_decompressed(data):
     return bytes(out)
 
 
+def numbers(row, *names):
+    """Fields of a row of read_pcd() that are floats of 32 or 64 bits."""
+    return [struct.unpack("<f" if len(row[name]) == 4 else "<d", row[name])[0] for name in names]
+
+
 def read_pcd(path):
     """(header lines by key, list of {field: bytes} in the order of the points)."""
     with open(path, "rb") as file:

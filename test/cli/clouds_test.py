@@ -2,7 +2,6 @@
 
 import math
 import resource
-import subprocess
 import unittest
 
 import cloud_files
@@ -10,13 +9,13 @@ from cli_tool import (
     DATA,
     FAST,
     SANITIZER,
-    TOOL,
     ToolTest,
     run,
     strict_json,
     true_translation,
 )
 from cloud_files import XYZ, pcd_bytes, pcd_header, ply_bytes
+from faults import limited
 
 POINTS = cloud_files.box_surface(num_points=50)
 
@@ -147,13 +146,8 @@ class BrokenClouds(ToolTest):
         """With an address space that could not hold a tenth of what the header claims."""
         lie = pcd_bytes(POINTS).replace(b" 50", b" 2000000000")
         limit = 2 * 1024**3
-        result = subprocess.run(
-            [TOOL, self.file("lie.pcd", lie), self.file("good.pcd", pcd_bytes(POINTS))],
-            capture_output=True,
-            text=True,
-            check=False,
-            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
-        )
+        pair = [self.file("lie.pcd", lie), self.file("good.pcd", pcd_bytes(POINTS))]
+        result = run(*pair, preexec_fn=limited(resource.RLIMIT_AS, limit))
         self.assert_refused(3, result, "lie.pcd", "cut off")
 
     def test_values_that_are_no_numbers(self):

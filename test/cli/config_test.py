@@ -195,9 +195,7 @@ class AuthorsLayout(ConfigTest):
         self.assertEqual(options["registration"]["max_distance_m"], 1)
         self.assertIs(options["registration"]["one_to_one"], True)
         guess = cloud_files.matrix_of(0.01, 0, 0, 0, 0, 0.1)
-        for row, expected in zip(options["registration"]["guess_matrix"], guess):
-            for number, expected_number in zip(row, expected):
-                self.assertAlmostEqual(number, expected_number, delta=1e-15)
+        self.assert_close(options["registration"]["guess_matrix"], guess, delta=1e-15)
         self.assertIn("note: icp.convergence-steps, ", result.stderr)
 
     def test_finite_source_points_count(self):
@@ -253,33 +251,34 @@ class AuthorsLayout(ConfigTest):
 
 class Repeatability(ConfigTest):
     OPTIONS = [
-        "--preset=paper",
-        "--guess=0.001,0.002,0.003,0.01,0.02,0.03",
-        "--max-distance=0.5",
-        "--prior-variance=0.1,0.2,0.3,0.4,0.5,inf",
-        "--initial-spread=1e-3",
-        "--batch-sampling=shuffled-epochs",
-        "--seed=12345678901234567890",
-        "--step-size=1.1e-6",
-        "--samples=99",
-        "--mean",
+        "--preset=paper --guess=0.001,0.002,0.003,0.01,0.02,0.03 --max-distance=0.5 --mean "
+        "--prior-variance=0.1,0.2,0.3,0.4,0.5,inf --initial-spread=1e-3 --step-size=1.1e-6 "
+        "--batch-sampling=shuffled-epochs --seed=12345678901234567890 --samples=99",
+        "--preset=exact --residual=point-to-plane --kernel=tukey --kernel-width=0.0301 "
+        "--steps=metropolis --max-source-points=250 --seed=18446744073709551615 --samples=200",
+        "--preset=exact --residual=distribution-to-distribution --regularization=frobenius "
+        "--steps=stein-gradient --particles=25 --samples=200",
+        "--preset=exact --kernel=huber --guess=0.01,0,0,0,0,0.02 -d0.2 --samples=200",
+        "--preset=calibrated --calibrated-points=200 --samples=300 --seed=5",
     ]
 
-    def test_a_run_is_repeated_from_its_posterior_json(self):
+    def check(self, *options):
         pair = self.small_pair()
-        expected, document = self.run_to_files(*pair, *self.OPTIONS)
-        whole = self.config(document)
-        self.assertEqual(self.run_to_files(*pair, "--config", whole)[0], expected)
-        part = self.file("options.json", json.dumps(document["options"]))
-        samples, repeated = self.run_to_files(*pair, "--config", part)
-        self.assertEqual(samples, expected)
-        self.assertEqual(repeated["options"], document["options"])
+        expected, document = self.run_to_files(*pair, *options)
+        for content in (document, document["options"]):
+            samples, repeated = self.run_to_files(*pair, "--config", self.config(content))
+            self.assertEqual(samples, expected)
+            self.assertEqual(repeated["options"], document["options"])
+
+    def test_a_run_is_repeated_from_its_posterior_json(self):
+        for options in self.OPTIONS:
+            with self.subTest(options=options):
+                self.check(*options.split())
 
     def test_a_run_of_the_authors_config_is_repeated(self):
-        pair = self.small_pair()
-        expected, document = self.run_to_files(*pair, "--config", self.config(AUTHORS_CONFIG))
-        samples, _ = self.run_to_files(*pair, "--config", self.config(document))
-        self.assertEqual(samples, expected)
+        for is_normalized in (False, True):
+            content = {**AUTHORS_CONFIG, "normalize-cloud": is_normalized}
+            self.check("--config", self.file("authors.json", json.dumps(content)))
 
     def test_same_draws_on_any_number_of_threads(self):
         pair = self.small_pair()

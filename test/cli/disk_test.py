@@ -108,12 +108,11 @@ class FullDisk(FaultTest):
         self.assertTrue(self.names_in(output) <= {"filler", "more", *GROWING})
 
     def test_standard_output(self):
-        for program in PROGRAMS:
-            with self.subTest(program=name_of(program)):
+        table = [TOOL, *self.small_pair(), *FAST]
+        for command in [table, *([program, "--help"] for program in PROGRAMS)]:
+            with self.subTest(command=command):
                 with open("/dev/full", "w", encoding="ascii") as full:
-                    result = subprocess.run(
-                        [program, "--help"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
-                    )
+                    result = call(*command, stdout=full)
                 self.assertEqual(result.returncode, 3)
                 self.assertIn("standard output: cannot be written", result.stderr)
 

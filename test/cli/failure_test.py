@@ -1,4 +1,4 @@
-"""Runs that are cut short or cannot write: nothing is ever written by half."""
+"""The progress bar on a terminal, and registrations of real scans."""
 
 import os
 import pty
@@ -9,24 +9,8 @@ import subprocess
 import time
 import unittest
 
-from cli_tool import DATA, FAST, TOOL, ToolTest, run
+from cli_tool import DATA, TOOL, ToolTest
 from faults import ENDLESS
-
-
-class UnwritableOutput(ToolTest):
-    def test_name_that_is_taken_by_a_folder(self):
-        output = self.folder / "output"
-        (output / "samples.csv").mkdir(parents=True)
-        result = run(*self.small_pair(), *FAST, "-o", output)
-        self.assert_refused(3, result, output / "samples.csv", "is a directory")
-        self.assertEqual([path.name for path in output.iterdir()], ["samples.csv"])
-
-    def test_full_standard_output(self):
-        with open("/dev/full", "w", encoding="ascii") as full:
-            for words in (["--help"], [*self.small_pair(), *FAST]):
-                result = run(*words, stdout=full)
-                self.assertEqual(result.returncode, 3)
-                self.assertIn("standard output: cannot be written", result.stderr)
 
 
 class Progress(ToolTest):

@@ -14,7 +14,7 @@ import unittest.mock
 
 import cloud_files
 import x_server
-from cli_tool import FAST, TOOL, ToolTest
+from cli_tool import FAST, TOOL, ToolTest, call
 
 BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
 EVALUATE = os.environ["PCL_BAYESIAN_ICP_EVALUATE"]
@@ -42,13 +42,6 @@ TEMPORARY = re.compile(r"\.[A-Za-z0-9]{6}$")
 GROWING = {"coverage.csv", "edges.jsonl", "results.jsonl", "sbc.csv"}
 # Minutes of work, of which each chain keeps a draw about every 50 ms.
 ENDLESS = ["--preset", "paper", "--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
-
-
-def call(*words, **options):
-    options.setdefault("timeout", 120)
-    return subprocess.run(
-        list(map(str, words)), capture_output=True, text=True, check=False, **options
-    )
 
 
 def start(*words):

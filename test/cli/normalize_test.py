@@ -103,13 +103,6 @@ class Normalize(ToolTest):
         self.assertEqual(options["prior"]["mean_m_rad"], [2, 1, 0.5, 0.1, 0.2, 0.3])
         self.assertEqual(options["prior"]["variance_m2_rad2"], [12] * 3 + [0.75] * 3)
 
-    def test_run_can_be_repeated_from_its_posterior(self):
-        config = self.configs()[1]
-        samples, _ = self.run_to_files(*self.pair(FACTOR), "--config", config)
-        posterior = (self.folder / "output" / "posterior.json").rename(self.folder / "first.json")
-        again, _ = self.run_to_files(*self.pair(FACTOR), "--config", posterior)
-        self.assertEqual(samples, again)
-
     def test_refusals(self):
         pair = self.pair(1.0)
         for preset in ("calibrated", "exact"):

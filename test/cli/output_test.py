@@ -5,7 +5,6 @@ import math
 import os
 import shutil
 import statistics
-import struct
 import subprocess
 import unittest
 
@@ -29,10 +28,6 @@ def mean_and_errors(values, is_angle):
         return mean, [value - mean for value in values]
     mean = math.atan2(math.fsum(map(math.sin, values)), math.fsum(map(math.cos, values)))
     return mean, [math.remainder(value - mean, 2 * math.pi) for value in values]
-
-
-def floats(*values):
-    return [struct.unpack("<f", value)[0] for value in values]
 
 
 class Files(ToolTest):
@@ -77,11 +72,9 @@ class Files(ToolTest):
         twists = [sum(robot_formats.right_twist(pose, draw), []) for draw in poses]
         for components in zip(*twists):
             self.assertAlmostEqual(math.fsum(components) / len(twists), 0.0, delta=1e-11)
-        for row, expected in zip(
-            posterior["mean"]["T_target_source"], cloud_files.matrix_of(*pose)
-        ):
-            for number, expected_number in zip(row, expected):
-                self.assertAlmostEqual(number, expected_number, delta=1e-12)
+        self.assert_close(
+            posterior["mean"]["T_target_source"], cloud_files.matrix_of(*pose), delta=1e-12
+        )
 
     def test_posterior_json_describes_itself(self):
         _, document = self.run_to_files(*self.small_pair(), *FAST)
@@ -95,9 +88,7 @@ class Files(ToolTest):
             self.assertEqual(covariance["units"], ["m"] * 3 + ["rad"] * 3)
             self.assertIn("frame", covariance["meaning"] + " frame")
             matrix = covariance["matrix"]
-            for i in range(6):
-                for k in range(6):
-                    self.assertAlmostEqual(matrix[i][k], matrix[k][i], delta=1e-15)
+            self.assert_close(matrix, list(zip(*matrix)), delta=1e-15)
 
     def test_files_replace_older_ones_and_leave_nothing_else(self):
         output = self.folder / "deep" / "output"
@@ -187,15 +178,13 @@ class AlignedCloud(ToolTest):
         for name, _ in self.FIELDS:
             if name not in moving:
                 self.assertEqual(row[name], original[name], name)
-        names = (("xyz", moving[:3], cloud_files.moved), ("normal", moving[3:], cloud_files.rotated))
-        for label, fields, move in names:
-            before = floats(*(original[name] for name in fields))
-            after = floats(*(row[name] for name in fields))
+        for fields, move in ((moving[:3], cloud_files.moved), (moving[3:], cloud_files.rotated)):
+            before = cloud_files.numbers(original, *fields)
+            after = cloud_files.numbers(row, *fields)
             if any(map(math.isnan, before)):
                 self.assertEqual([row[n] for n in fields], [original[n] for n in fields])
                 continue
-            for number, expected in zip(after, move(matrix, before)):
-                self.assertAlmostEqual(number, expected, delta=1e-6, msg=label)
+            self.assert_close(after, move(matrix, before), delta=1e-6)
 
     def test_fields_and_order_are_kept(self):
         for encoding, height in (("binary", 1), ("ascii", 10), ("binary_compressed", 10)):
@@ -229,8 +218,7 @@ class AlignedCloud(ToolTest):
             _, rows = cloud_files.read_pcd(self.folder / "output" / "aligned.pcd")
             _, originals = cloud_files.read_pcd(pair[0])
             for row, original in zip(rows, originals):
-                before = floats(original["x"], original["y"], original["z"])
-                after = floats(row["x"], row["y"], row["z"])
+                before, after = (cloud_files.numbers(r, *"xyz") for r in (original, row))
                 self.assertLess(math.dist(after, cloud_files.moved(final, before)), 1e-6)
 
 
@@ -282,7 +270,7 @@ class Printed(ToolTest):
         _, found = cloud_files.read_pcd(moved)
         self.assertEqual(len(found), len(expected))
         for a, b in zip(found, expected):
-            a, b = (floats(row["x"], row["y"], row["z"]) for row in (a, b))
+            a, b = (cloud_files.numbers(row, *"xyz") for row in (a, b))
             self.assertLess(math.dist(a, b), 1e-6)
 
 

@@ -38,16 +38,12 @@ class SgdIcp(ToolTest):
         words = ["--batch-size=300", "--keep-duplicates", "--optimizer=momentum"]
         words += ["--iterations=3000", "--translation-epsilon=0", "--guess", guess]
         found = self.json_of(*pair, *words)["T_target_source"]
-        for row, expected_row in zip(found, matrix):
-            for number, expected_number in zip(row, expected_row):
-                self.assertAlmostEqual(number, expected_number, delta=4 * 3e-8 / 0.05)
+        self.assert_close(found, matrix, delta=4 * 3e-8 / 0.05)
 
     def test_the_matrix_is_that_of_the_pose(self):
         document = self.json_of(*self.small_pair())
         expected = cloud_files.matrix_of(*document["pose"].values())
-        for row, expected_row in zip(document["T_target_source"], expected):
-            for number, expected_number in zip(row, expected_row):
-                self.assertAlmostEqual(number, expected_number, delta=1e-14)
+        self.assert_close(document["T_target_source"], expected, delta=1e-14)
 
     def test_the_guess_is_where_it_starts(self):
         guess = ",".join(map(str, SMALL_PAIR_POSE))
@@ -95,9 +91,8 @@ class SgdIcp(ToolTest):
         _, aligned = cloud_files.read_pcd(output / "aligned.pcd")
         _, source = cloud_files.read_pcd(self.folder / "source.pcd")
         for before, after in zip(source, aligned):
-            point = [cloud_files.struct.unpack("<f", before[k])[0] for k in "xyz"]
+            point, actual = (cloud_files.numbers(row, *"xyz") for row in (before, after))
             expected = cloud_files.moved(document["T_target_source"], point)
-            actual = [cloud_files.struct.unpack("<f", after[k])[0] for k in "xyz"]
             self.assertLess(math.dist(actual, expected), 1e-7)
 
     def test_no_pairs_within_the_gate(self):
@@ -153,27 +148,22 @@ class SgdIcpRefusals(ToolTest):
             "--step-size: has no effect with optimizer adadelta",
         )
 
-    def test_malformed_values(self):
+    def test_bad_values(self):
         for name, value in (
             ("optimizer", "sgd"),
             ("step-size", "0.1m"),
-            ("step-size", ""),
             ("step-size", "nan"),
             ("step-size", "-1"),
             ("batch-size", "0"),
-            ("batch-size", "1.5"),
             ("iterations", "0"),
-            ("iterations", "99999999999"),
             ("still-iterations", "0"),
             ("translation-epsilon", "-1"),
             ("rotation-epsilon", "nan"),
-            ("seed", "-1"),
             ("max-distance", "0"),
-            ("max-distance", "1,0"),
-            ("guess", "1,2,3"),
+            ("guess", "nan,0,0,0,0,0"),
         ):
             with self.subTest(option=name, value=value):
-                self.refuse([*SGD, f"--{name}={value}"], f"--{name}")
+                self.refuse([*SGD, f"--{name}={value}"], f"--{name}: ")
 
     def test_clouds_and_outputs(self):
         self.assert_refused(2, run("a.pcd", *SGD), "expected a source and a target cloud")

@@ -69,7 +69,7 @@ class Usage(ToolTest):
                 self.assert_refused(2, result, name, value)
 
     def test_values_out_of_range(self):
-        bad = [
+        of_paper = [
             ("samples", "0", "num_draws is 0"),
             ("chains", "0", "num_chains is 0"),
             ("burn-in", "-1", "num_burn_in is -1"),
@@ -93,10 +93,33 @@ class Usage(ToolTest):
             ("iterations", "0", "is 0"),
             ("guess", "nan,0,0,0,0,0", "finite"),
         ]
-        for name, value, complaint in bad:
-            with self.subTest(option=name, value=value):
-                result = run("a.pcd", "b.pcd", "--preset=paper", f"--{name}", value)
-                self.assert_refused(2, result, f"--{name}: ", complaint)
+        of_exact = [
+            ("kernel-width", "0", "kernel_width is 0"),
+            ("max-source-points", "0", "max_source_points is 0"),
+            ("max-step-size", "2", "max_step_size is 2"),
+        ]
+        of_calibrated = [
+            ("prior-variance", "inf", "prior.variance[x] is inf, but must be finite"),
+            ("calibrated-points", "29", "max_source_points is 29, but must be at least 30"),
+            ("mode-points", "0", "num_mode_points is 0, but must be at least 30"),
+        ]
+        of_presets = {"paper": of_paper, "exact": of_exact, "calibrated": of_calibrated}
+        for preset, bad in of_presets.items():
+            for name, value, complaint in bad:
+                with self.subTest(preset=preset, option=name, value=value):
+                    result = run("a.pcd", "b.pcd", f"--preset={preset}", f"--{name}", value)
+                    self.assert_refused(2, result, f"--{name}: ", complaint)
+
+    def test_values_that_exclude_each_other(self):
+        for words, *reason in (
+            ("--steps=stein-newton --particles=7", "--particles: num_particles is 7"),
+            ("--steps=stein-newton --batch-size=9", "--steps: steps is stein-newton"),
+            ("--steps=metropolis --batch-size=9", "--steps: steps is metropolis"),
+            ("--residual=point-to-plane --one-to-one", "--residual: ", "--one-to-one"),
+            ("--residual=distribution-to-distribution --reciprocal", "--residual: ", "--reciprocal"),
+        ):
+            result = run("a.pcd", "b.pcd", "--preset=exact", *words.split())
+            self.assert_refused(2, result, *reason)
 
     def test_quiet_and_json_exclude_each_other(self):
         self.assert_refused(2, run("a.pcd", "b.pcd", "--quiet", "--json"), "--json", "--quiet")
@@ -138,9 +161,7 @@ class Values(ToolTest):
         as_file = self.options("--guess", self.file("guess.txt", text))
         as_pose = self.options("--guess", ",".join(map(str, SMALL_PAIR_POSE)))
         for options in (as_file, as_pose):
-            for row, expected in zip(options["registration"]["guess_matrix"], matrix):
-                for number, expected_number in zip(row, expected):
-                    self.assertAlmostEqual(number, expected_number, delta=1e-15)
+            self.assert_close(options["registration"]["guess_matrix"], matrix, delta=1e-15)
 
     def test_one_number_for_all_and_no_prior(self):
         prior = self.options("--prior-variance", "2")["prior"]

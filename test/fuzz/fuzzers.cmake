@@ -21,9 +21,7 @@ add_library(
   ${apps}/io/line_file.cpp
   ${apps}/io/motion.cpp
   ${apps}/io/pcd_format.cpp
-  ${apps}/io/pcd_header.cpp
   ${apps}/io/ply_format.cpp
-  ${apps}/io/ply_header.cpp
   ${apps}/io/posterior_file.cpp
   ${apps}/register/authors_config.cpp
   ${apps}/register/config_file.cpp

@@ -1,6 +1,4 @@
-#include "registration_checks.h"
-
-#include "fuzz_input.h"
+#include "registration_classes.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -4,12 +4,23 @@
 #pragma once
 
 #include "fuzz_input.h"
-#include "registration_checks.h"
+#include "registration_input.h"
+
+#include <bayesian_icp/stochastic_gradient_icp.h>
+#include <bayesian_icp/summary.h>
 
 #include <pcl/registration/bayesian_icp.h>
 #include <pcl/point_types.h>
 
 namespace bayesian_icp::fuzz {
+
+/** \brief End the fuzzer unless the result is as results are, whatever the input was.
+ */
+void
+checkEstimate(const Summary& summary, const PoseMatrix& samples);
+
+void
+checkDescent(const RegistrationInput& input, const StochasticGradientIcpResult& result);
 
 /** \brief As registerByClass(), for points with normals and Scalar double. */
 void
