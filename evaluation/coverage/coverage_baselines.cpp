@@ -13,32 +13,29 @@ using Baseline = std::function<MethodResult(const BaselineProblem&)>;
 MethodResult
 naive(const BaselineProblem& problem)
 {
-  double variance = 0.0;
-  const IcpFit fit = fitNaively(problem, variance);
+  const IcpFit fit = fitNaively(problem);
   const GaussNewton sums = gaussNewton(fit.matches, problem.centreAt(fit.pose));
-  return problem.combineWithPrior(fit.pose,
-                                  {sums.hessian / variance, sums.gradient / variance});
+  return problem.combineWithPrior(
+      fit.pose, {sums.hessian / fit.variance, sums.gradient / fit.variance});
 }
 
 MethodResult
 closedForm(const BaselineProblem& problem)
 {
-  const PlaneFit planes = fitPlanes(problem);
+  const IcpFit fit = fitPlanes(problem);
   const auto derivatives =
-      closedFormDerivatives(planes.fit.matches, problem.centreAt(planes.fit.pose));
-  return problem.combineWithPrior(planes.fit.pose,
-                                  closedFormInformation(derivatives, planes.sigma));
+      closedFormDerivatives(fit.matches, problem.centreAt(fit.pose));
+  return problem.combineWithPrior(fit.pose,
+                                  closedFormInformation(derivatives, fit.pointSigma()));
 }
 
 MethodResult
 sandwich(const BaselineProblem& problem)
 {
-  double variance = 0.0;
-  const IcpFit fit = fitNaively(problem, variance);
+  const IcpFit fit = fitNaively(problem);
   const double noise =
       SurfaceModel(problem.target(), SurfaceModelOptions(), 1).medianSigma();
-  return problem.combineWithPrior(fit.pose,
-                                  pointToPointSandwich(problem, fit, variance, noise));
+  return problem.combineWithPrior(fit.pose, pointToPointSandwich(problem, fit, noise));
 }
 
 MethodResult

@@ -17,19 +17,11 @@ struct CoverageRunName {
   std::string condition;
   std::uint64_t seed = 0;
   std::string method;
-
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
-  {
-    column("scene", self.scene);
-    column("condition", self.condition);
-    column("seed", self.seed);
-    column("method", self.method);
-  }
 };
 
 struct CoverageRun {
+  static constexpr int num_name_columns = 4;
+
   CoverageRunName name;
   CoverageScore score;
 
@@ -37,7 +29,10 @@ struct CoverageRun {
   static void
   columns(Self& self, const Column& column)
   {
-    CoverageRunName::columns(self.name, column);
+    column("scene", self.name.scene);
+    column("condition", self.name.condition);
+    column("seed", self.name.seed);
+    column("method", self.name.method);
     auto& score = self.score;
     column("valid", score.is_valid);
     column("nees", score.nees);

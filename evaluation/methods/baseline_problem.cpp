@@ -138,7 +138,7 @@ fitIcp(const BaselineProblem& problem, const IcpCost& cost, const Isometry3d& st
 }
 
 IcpFit
-fitNaively(const BaselineProblem& problem, double& variance)
+fitNaively(const BaselineProblem& problem)
 {
   const auto varianceAt = [&](const IcpFit& fit) {
     return residualVariance(gaussNewton(fit.matches, problem.centreAt(fit.pose)));
@@ -149,7 +149,7 @@ fitNaively(const BaselineProblem& problem, double& variance)
   cost.weight = 1.0 / varianceAt(fit);
   cost.max_steps = 20;
   fit = fitIcp(problem, cost, fit.pose);
-  variance = varianceAt(fit);
+  fit.variance = varianceAt(fit);
   return fit;
 }
 

@@ -102,6 +102,15 @@ struct IcpFit {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   /** There, and with normals if it used any. */
   MatchedPoints matches;
+  /** Naive one of a residual's coordinate [m^2]. */
+  double variance = 0.0;
+
+  /** \brief Noise of a point's coordinate [m]: that of a residual is of two points. */
+  double
+  pointSigma() const
+  {
+    return std::sqrt(0.5 * variance);
+  }
 };
 
 /** \brief What ICP minimises besides the prior's energy. */
@@ -113,15 +122,15 @@ struct IcpCost {
   int max_steps = 40;
 };
 
-/** \brief Gauss-Newton with correspondences made anew before each step. */
+/** \brief Gauss-Newton with correspondences made anew before each step; the variance is
+ * left to others. */
 IcpFit
 fitIcp(const BaselineProblem& problem,
        const IcpCost& cost,
        const Eigen::Isometry3d& start);
 
-/** \brief Point-to-point ICP with the prior, weighted by its own residuals.
- * \param[out] variance naive variance of a residual's coordinate [m^2] */
+/** \brief Point-to-point ICP with the prior, weighted by its own residuals. */
 IcpFit
-fitNaively(const BaselineProblem& problem, double& variance);
+fitNaively(const BaselineProblem& problem);
 
 } // namespace bayesian_icp::evaluate

@@ -173,10 +173,7 @@ private:
 } // namespace
 
 GaussianInformation
-pointToPointSandwich(const BaselineProblem& problem,
-                     const IcpFit& fit,
-                     double variance,
-                     double noise)
+pointToPointSandwich(const BaselineProblem& problem, const IcpFit& fit, double noise)
 {
   const Vector3d centre = problem.centreAt(fit.pose);
   const GaussNewton sums = gaussNewton(fit.matches, centre);
@@ -184,7 +181,7 @@ pointToPointSandwich(const BaselineProblem& problem,
   const Matrix6d J =
       scoreCovarianceOf(coordinateScores(problem, fit.matches, centre),
                         scoresOf(fit.matches, centre),
-                        sums.hessian + variance * maker.priorPrecision());
+                        sums.hessian + fit.variance * maker.priorPrecision());
   Matrix6d covariance = maker.firstCovariance();
   GaussianInformation result;
   for (int round = 0; round < num_rounds; ++round) {

@@ -12,12 +12,8 @@ namespace bayesian_icp::evaluate {
  * covariance of the score with clusters in space, H its curvature with correspondences
  * made anew, less its noise.
  * \param[in] fit point-to-point, at its minimum
- * \param[in] variance naive variance of a residual's coordinate [m^2]
  * \param[in] noise of the target across its surface [m]: the shortest step */
 GaussianInformation
-pointToPointSandwich(const BaselineProblem& problem,
-                     const IcpFit& fit,
-                     double variance,
-                     double noise);
+pointToPointSandwich(const BaselineProblem& problem, const IcpFit& fit, double noise);
 
 } // namespace bayesian_icp::evaluate

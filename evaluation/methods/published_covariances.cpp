@@ -56,20 +56,24 @@ planeResidualScale(const MatchedPoints& matches)
   return 1.4826 * *middle;
 }
 
-/** \p sigma, or if that is NaN \p estimate. */
-double
-sigmaOr(double sigma, double estimate)
+/** \param[in] sigma noise of a point's coordinate [m]; NaN: that of the fit */
+TwistGaussian
+closedForm(const BaselineProblem& problem, const IcpFit& fit, double sigma)
 {
-  return std::isnan(sigma) ? estimate : sigma;
+  const Vector3d centre = problem.centreAt(fit.pose);
+  return {fit.pose,
+          closedFormCovariance(closedFormDerivatives(fit.matches, centre),
+                               std::isnan(sigma) ? fit.pointSigma() : sigma),
+          centre};
 }
 
 } // namespace
 
-PlaneFit
+IcpFit
 fitPlanes(const BaselineProblem& problem)
 {
-  double variance = 0.0;
-  IcpFit fit = fitNaively(problem, variance);
+  IcpFit fit = fitNaively(problem);
+  double variance = fit.variance;
   IcpCost cost;
   cost.normals = planeNormals(problem.target());
   // A few steps by the naive scale, the rest by the planes' own.
@@ -79,22 +83,15 @@ fitPlanes(const BaselineProblem& problem)
     fit = fitIcp(problem, cost, fit.pose);
     variance = std::pow(planeResidualScale(fit.matches), 2);
   }
-  // The noise of a distance is that of two points.
-  return {fit, std::sqrt(0.5 * variance)};
+  fit.variance = variance;
+  return fit;
 }
 
 TwistGaussian
 pointClosedForm(const CoverageCase& coverage_case, double sigma)
 {
   const BaselineProblem problem(coverage_case, coverage_case.source.cols());
-  double variance = 0.0;
-  const IcpFit fit = fitNaively(problem, variance);
-  const Vector3d centre = problem.centreAt(fit.pose);
-  // The noise of a difference is that of two points.
-  return {fit.pose,
-          closedFormCovariance(closedFormDerivatives(fit.matches, centre),
-                               sigmaOr(sigma, std::sqrt(0.5 * variance))),
-          centre};
+  return closedForm(problem, fitNaively(problem), sigma);
 }
 
 TwistGaussian
@@ -102,25 +99,19 @@ planeClosedForm(const CoverageCase& coverage_case, double sigma, Index max_point
 {
   const BaselineProblem problem(
       coverage_case, max_points > 0 ? max_points : coverage_case.source.cols());
-  const PlaneFit planes = fitPlanes(problem);
-  const Vector3d centre = problem.centreAt(planes.fit.pose);
-  return {planes.fit.pose,
-          closedFormCovariance(closedFormDerivatives(planes.fit.matches, centre),
-                               sigmaOr(sigma, planes.sigma)),
-          centre};
+  return closedForm(problem, fitPlanes(problem), sigma);
 }
 
 TwistGaussian
 pointHessian(const CoverageCase& coverage_case)
 {
   const BaselineProblem problem(coverage_case, coverage_case.source.cols());
-  double variance = 0.0;
-  const IcpFit fit = fitNaively(problem, variance);
+  const IcpFit fit = fitNaively(problem);
   const Vector3d centre = problem.centreAt(fit.pose);
-  return {
-      fit.pose,
-      hessianCovariance(gaussNewton(fit.matches, centre).hessian, std::sqrt(variance)),
-      centre};
+  return {fit.pose,
+          hessianCovariance(gaussNewton(fit.matches, centre).hessian,
+                            std::sqrt(fit.variance)),
+          centre};
 }
 
 TwistGaussian

@@ -8,15 +8,9 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief Where point-to-plane ICP ended, and the noise of a point's coordinate [m]. */
-struct PlaneFit {
-  IcpFit fit;
-  double sigma = 0.0;
-};
-
 /** \brief Point-to-plane ICP with the prior, from where point-to-point ICP ends; the
- * noise is estimated from the residuals. */
-PlaneFit
+ * variance is a robust one of the distances to the planes. */
+IcpFit
 fitPlanes(const BaselineProblem& problem);
 
 /** \brief A Gaussian of left twists (v, w) about \p centre, target frame [m, rad]. */

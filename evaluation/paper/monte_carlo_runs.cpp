@@ -37,15 +37,10 @@ stopOf(std::string_view name)
 
 /** A row of the file. */
 struct KeptRun {
+  static constexpr int num_name_columns = 1;
+
   struct Name {
     int index = 0;
-
-    template <typename Self, typename Column>
-    static void
-    columns(Self& self, const Column& column)
-    {
-      column("index", self.index);
-    }
   };
 
   Name name;
@@ -57,7 +52,7 @@ struct KeptRun {
   {
     auto& run = self.run;
     std::string stop = toString(run.stop);
-    Name::columns(self.name, column);
+    column("index", self.name.index);
     unitColumns("start_", run.start, column);
     unitColumns("", run.end, column);
     column("stop", stop);

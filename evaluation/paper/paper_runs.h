@@ -21,22 +21,13 @@ struct PaperRunName {
   std::uint64_t seed = 0;
   /** What else tells the runs of an experiment apart. */
   int number = 0;
-
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
-  {
-    column("key", self.key);
-    column("pair", self.pair);
-    column("method", self.method);
-    column("seed", self.seed);
-    column("number", self.number);
-  }
 };
 
 /** \brief A run of a method against the baseline and the truth, behind Table I. Numbers
  * are NaN, or divergences infinite, where there are fewer than 10 draws. */
 struct DistributionRun {
+  static constexpr int num_name_columns = 4;
+
   PaperRunName name;
   /** KL(baseline || method) and the like [nats]; Wasserstein-1 in standard deviations
    * of the baseline. */
@@ -86,6 +77,8 @@ using CurveDivergences = Eigen::Matrix<double, 7, 1>;
 /** \brief One run at one value of the axis of a curve; its method is a variant, its
  * number the value. */
 struct CurvePoint {
+  static constexpr int num_name_columns = 5;
+
   PaperRunName name;
   CurveDivergences divergences = CurveDivergences::Zero();
 
@@ -105,6 +98,8 @@ struct CurvePoint {
 
 /** \brief The time of a run; its number is that of the threads. */
 struct RuntimeRun {
+  static constexpr int num_name_columns = 5;
+
   PaperRunName name;
   double wall_seconds = 0.0;
   /** Of all threads. */
@@ -129,6 +124,8 @@ struct RuntimeRun {
 /** \brief Errors of the pose that is found from a start, which is a function of the
  * seed and the name's number. */
 struct AccuracyRun {
+  static constexpr int num_name_columns = 5;
+
   PaperRunName name;
   /** Euclidean [m]. */
   double translation_error = 0.0;

@@ -25,16 +25,6 @@ struct RunName {
   std::uint64_t seed = 0;
   /** Hash of inputs and options of the gold standard. */
   std::string gold_key;
-
-  /** \brief Of those that tell runs apart: the gold standard's hash has the others. */
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
-  {
-    column("gold_key", self.gold_key);
-    column("sampler", self.sampler);
-    column("seed", self.seed);
-  }
 };
 
 /** \brief Distance of the draws to the gold standard, and their diagnostics. */
@@ -81,6 +71,8 @@ struct Score {
 
 /** \brief A run of a sampler. */
 struct ScoredRun {
+  static constexpr int num_name_columns = 6;
+
   RunName name;
   Score score;
 

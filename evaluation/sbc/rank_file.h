@@ -13,17 +13,11 @@ namespace bayesian_icp::evaluate {
 
 /** \brief One run of one sampler. */
 struct RankRun {
+  static constexpr int num_name_columns = 2;
+
   struct Name {
     std::string sampler;
     std::uint64_t seed = 0;
-
-    template <typename Self, typename Column>
-    static void
-    columns(Self& self, const Column& column)
-    {
-      column("sampler", self.sampler);
-      column("seed", self.seed);
-    }
   };
 
   Name name;
@@ -36,7 +30,8 @@ struct RankRun {
   static void
   columns(Self& self, const Column& column)
   {
-    Name::columns(self.name, column);
+    column("sampler", self.name.sampler);
+    column("seed", self.name.seed);
     column("valid", self.is_valid);
     coordinateColumns("rank_", self.ranks, column);
     if (self.ranks.minCoeff() < 0 || self.ranks.maxCoeff() > num_ranked_draws)

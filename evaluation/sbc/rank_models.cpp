@@ -132,12 +132,12 @@ FarPointsModel::FarPointsModel(Random& random)
 }
 
 LinearScoreModel::LinearScoreModel(bool is_yaw_free, Random& random)
-: prior_(linearScorePrior(is_yaw_free, random))
-, truth_(drawFrom(prior_, random))
+: prior(linearScorePrior(is_yaw_free, random))
+, truth(drawFrom(prior, random))
 {
   setInformation(is_yaw_free, random);
   drawScores(random);
-  CalibratedEstimate& e = estimate_;
+  CalibratedEstimate& e = estimate;
   e.covariance = (e.information + e.prior.precision).inverse();
   e.mean =
       -e.covariance * (e.curvature * e.score_covariance.ldlt().solve(e.scores.total) +
@@ -147,11 +147,11 @@ LinearScoreModel::LinearScoreModel(bool is_yaw_free, Random& random)
 void
 LinearScoreModel::setInformation(bool is_yaw_free, Random& random)
 {
-  CalibratedEstimate& e = estimate_;
-  e.mode = isometryOf(prior_.mean());
-  e.centre = e.mode * prior_.referencePoint();
-  e.prior = twistPrior(prior_, e.mode, e.centre);
-  const Vector6d prior_sd = prior_.variance().cwiseSqrt();
+  CalibratedEstimate& e = estimate;
+  e.mode = isometryOf(prior.mean());
+  e.centre = e.mode * prior.referencePoint();
+  e.prior = twistPrior(prior, e.mode, e.centre);
+  const Vector6d prior_sd = prior.variance().cwiseSqrt();
   e.directions = prior_sd.asDiagonal() * randomAxes(is_yaw_free ? 5 : 6, random);
   e.keep = Vector6d::Ones();
   Vector6d rates;
@@ -177,11 +177,11 @@ LinearScoreModel::setInformation(bool is_yaw_free, Random& random)
 void
 LinearScoreModel::drawScores(Random& random)
 {
-  CalibratedEstimate& e = estimate_;
+  CalibratedEstimate& e = estimate;
   e.scores.total.setZero();
   const ProductCoordinates coordinates(e);
   const Vector6d at_truth =
-      coordinates.scoredTwist(coordinates.heldPart(isometryOf(truth_)));
+      coordinates.scoredTwist(coordinates.heldPart(isometryOf(truth)));
   const Matrix6d factor = e.score_covariance.llt().matrixL();
   SurfaceScores& scores = e.scores;
   scores.total = factor * random.normal6() - e.curvature * at_truth;
@@ -209,8 +209,8 @@ LinearScoreModel::score() const
                 const std::vector<std::size_t>& indices,
                 PatchHints&,
                 Vector6d& total) {
-    const SurfaceScores& scores = estimate_.scores;
-    const Vector6d xi = twistBetween(estimate_.mode, T_target_source, estimate_.centre);
+    const SurfaceScores& scores = estimate.scores;
+    const Vector6d xi = twistBetween(estimate.mode, T_target_source, estimate.centre);
     total.setZero();
     for (const std::size_t index : indices) {
       const auto i = static_cast<Index>(index);

@@ -39,8 +39,7 @@ struct FarPointsModel {
  *
  * The estimate is linearised at the prior's mean, whatever the data. Scores of single
  * points have errors that cancel in the total, so that mini-batches are noisy. */
-class LinearScoreModel {
-public:
+struct LinearScoreModel {
   /** \param[in] is_yaw_free no point measures the yaw, whose prior is wide */
   LinearScoreModel(bool is_yaw_free, Random& random);
 
@@ -48,24 +47,10 @@ public:
   BatchScore
   score() const;
 
-  const Prior&
-  prior() const
-  {
-    return prior_;
-  }
-
-  /** \brief (x, y, z, roll, pitch, yaw) [m, rad]. */
-  const Vector6d&
-  truth() const
-  {
-    return truth_;
-  }
-
-  const CalibratedEstimate&
-  estimate() const
-  {
-    return estimate_;
-  }
+  Prior prior;
+  /** (x, y, z, roll, pitch, yaw) [m, rad]. */
+  Vector6d truth;
+  CalibratedEstimate estimate;
 
 private:
   /** Directions, H and J, before any data. */
@@ -76,9 +61,6 @@ private:
   void
   drawScores(Random& random);
 
-  Prior prior_;
-  Vector6d truth_;
-  CalibratedEstimate estimate_;
   /** What the residual of a point changes by away from the mode. */
   Eigen::VectorXd errors_;
 };

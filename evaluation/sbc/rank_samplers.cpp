@@ -44,12 +44,12 @@ runLinearScores(std::uint64_t seed)
   options.seed = seed;
   options.num_threads = 1;
   const ChainSet chains = sampleCalibrated(
-      model.score(), model.prior(), {{model.estimate()}}, CalibratedOptions(), options);
+      model.score(), model.prior, {{model.estimate}}, CalibratedOptions(), options);
   const PosteriorEstimate estimate = {
       summarize(chains), {}, pooledDraws(chains.chains)};
   if (!hasUsableMean(estimate.summary.status))
     return std::nullopt;
-  return ranksOf(model.truth(), estimate.samples, model.prior());
+  return ranksOf(model.truth, estimate.samples, model.prior);
 }
 
 std::optional<Ranks>

@@ -90,13 +90,13 @@ ResultOptions::report() const
 }
 
 void
-addResultOptions(ResultOptions& result, po::options_description& description)
+addResultOptions(ResultOptions& result,
+                 po::options_description& description,
+                 const char* file_help)
 {
   // clang-format off
   description.add_options()
-    ("output", outputName("file", result.file),
-     "CSV file of the results, one row for each run. Runs that it already has are "
-     "skipped")
+    ("output", outputName("file", result.file), file_help)
     ("report", io::flag(result.has_report),
      "also make a report, with figures, of all results in that folder")
     ("help", "show this text");
@@ -107,10 +107,11 @@ std::optional<po::variables_map>
 readOptions(int argc,
             const char* const* argv,
             const po::options_description& description,
-            const std::string& help)
+            const std::string& help,
+            const char* positional_name)
 {
   const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, nullptr);
+      io::splitCommandLine(argc, argv, description, positional_name);
   const auto helpText = [&] {
     std::ostringstream text;
     text << help << '\n' << description;

@@ -72,19 +72,25 @@ struct ResultOptions {
   report() const;
 };
 
-/** \brief Add --output, --report and --help to \p description. */
+/** \brief Add --output, --report and --help to \p description.
+ * \param[in] file_help of --output */
 void
 addResultOptions(ResultOptions& result,
-                 boost::program_options::options_description& description);
+                 boost::program_options::options_description& description,
+                 const char* file_help =
+                     "CSV file of the results, one row for each run. Runs that it "
+                     "already has are skipped");
 
 /** \brief Read a command line, and fill the places of its options.
  * \param[in] help is printed before the options if it is asked for
+ * \param[in] positional_name as in io::splitCommandLine()
  * \return what is given; nothing if that was help
  * \throws io::UsageError with a message for the user */
 std::optional<boost::program_options::variables_map>
 readOptions(int argc,
             const char* const* argv,
             const boost::program_options::options_description& description,
-            const std::string& help);
+            const std::string& help,
+            const char* positional_name = nullptr);
 
 } // namespace bayesian_icp::evaluate

@@ -3,8 +3,8 @@
  *
  * A type of rows says its columns once: `Run::columns(run, column)` calls
  * `column(title, value)` for each, in their order; the values are std::string, bool (0
- * or 1) or numbers. `Run::name` is what tells runs apart, its `columns` are those that
- * do.
+ * or 1) or numbers. `Run::name` is what tells runs apart, and has the first
+ * `Run::num_name_columns` of them.
  */
 #pragma once
 
@@ -21,6 +21,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -62,7 +63,7 @@ headerOf()
   return row.text();
 }
 
-/** \brief The values, of a run or of a name. */
+/** \brief The values. */
 template <typename Run>
 std::string
 rowOf(const Run& run)
@@ -142,7 +143,7 @@ public:
   find(const Name& name) const
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const auto found = places_.find(rowOf(name));
+    const auto found = places_.find(keyOf(name));
     return found == places_.end() ? nullptr : &runs_[found->second];
   }
 
@@ -175,10 +176,24 @@ public:
   }
 
 private:
+  static std::string
+  keyOf(const Name& name)
+  {
+    Run run;
+    run.name = name;
+    CsvRow key;
+    int num_left = Run::num_name_columns;
+    Run::columns(std::as_const(run), [&](const std::string&, const auto& value) {
+      if (num_left-- > 0)
+        key.add(value);
+    });
+    return key.text();
+  }
+
   const Run&
   keep(const Run& run)
   {
-    const auto [place, is_new] = places_.emplace(rowOf(run.name), runs_.size());
+    const auto [place, is_new] = places_.emplace(keyOf(run.name), runs_.size());
     if (is_new)
       return runs_.emplace_back(run);
     return runs_[place->second] = run;

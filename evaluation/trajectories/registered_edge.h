@@ -21,22 +21,12 @@ struct EdgeName {
   std::string method;
   /** Hash of the points, the guess and the version of this program. */
   std::string inputs;
-
-  template <typename Name, typename Column>
-  static void
-  columns(Name& name, const Column& column)
-  {
-    column("recording", name.recording);
-    column("seed", name.seed);
-    column("target", name.target);
-    column("source", name.source);
-    column("method", name.method);
-    column("inputs", name.inputs);
-  }
 };
 
 /** \brief What a method says about two scans. */
 struct EdgeRun {
+  static constexpr int num_name_columns = 6;
+
   EdgeName name;
   /** Empty, or why there is no edge; \p mean is then where the registration began. */
   std::string complaint;
@@ -50,7 +40,12 @@ struct EdgeRun {
   static void
   columns(Run& run, const Column& column)
   {
-    EdgeName::columns(run.name, column);
+    column("recording", run.name.recording);
+    column("seed", run.name.seed);
+    column("target", run.name.target);
+    column("source", run.name.source);
+    column("method", run.name.method);
+    column("inputs", run.name.inputs);
     column("complaint", run.complaint);
     coordinateColumns("mean_", run.mean, column);
     for (int row = 0, k = 0; row < 6; ++row)

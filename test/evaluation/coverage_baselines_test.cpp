@@ -211,12 +211,11 @@ TEST(BaselineProblem, NaiveFitIsAMinimumForItsMatches)
 {
   const CoverageCase c = waves(8);
   const BaselineProblem problem(c);
-  double variance = 0.0;
-  const IcpFit fit = fitNaively(problem, variance);
+  const IcpFit fit = fitNaively(problem);
   const Vector3d centre = problem.centreAt(fit.pose);
   const GaussNewton sums = gaussNewton(fit.matches, centre);
   const MethodResult result = problem.combineWithPrior(
-      fit.pose, {sums.hessian / variance, sums.gradient / variance});
+      fit.pose, {sums.hessian / fit.variance, sums.gradient / fit.variance});
   // The fit's last weight was another one, by a step of ICP.
   EXPECT_LT(twistBetween(fit.pose, result.mean, centre).norm(), 1e-5);
   EXPECT_GT(problem.numQueries(), 2 * problem.source().cols());

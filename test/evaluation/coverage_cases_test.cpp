@@ -3,6 +3,7 @@
  * the prior that they state? Statistical bounds are two-sided at 1e-6, seeds fixed.
  */
 #include "coverage/coverage_cases.h"
+#include "study/draw_statistics.h"
 
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/prior.h>
@@ -25,14 +26,6 @@ namespace {
 
 /** Standard normal quantile at 1 - 5e-7. */
 constexpr double bound_in_sigmas = 4.9;
-
-double
-median(std::vector<double> values)
-{
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /** \brief Distances of points to the surfaces of a scene [m]. */
 double

@@ -11,6 +11,7 @@
 #include "coverage/coverage_score.h"
 #include "coverage/coverage_summary.h"
 #include "io/numbers.h"
+#include "study/draw_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,6 @@
 
 #include <Eigen/LU>
 
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -104,9 +104,7 @@ medianShareOfPrior(const std::vector<CoverageRun>& runs, int coordinate)
   shares.reserve(runs.size());
   for (const CoverageRun& run : runs)
     shares.push_back(run.score.relative_sd[coordinate]);
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  return *middle;
+  return median(shares);
 }
 
 TEST(CoverageOfCalibrated, IsRightOnTheTunedScenes)

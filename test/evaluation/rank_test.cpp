@@ -72,7 +72,7 @@ TEST(SimulationBasedCalibration, RanksOfNarrowDrawsAreNot)
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Random random(seed, 0);
     const LinearScoreModel model(false, random);
-    CalibratedEstimate narrow = model.estimate();
+    CalibratedEstimate narrow = model.estimate;
     narrow.score_covariance /= 3.0;
     narrow.information *= 3.0;
     narrow.covariance = (narrow.information + narrow.prior.precision).inverse();
@@ -80,8 +80,8 @@ TEST(SimulationBasedCalibration, RanksOfNarrowDrawsAreNot)
     options.seed = seed;
     options.num_threads = 1;
     const ChainSet chains = sampleCalibrated(
-        model.score(), model.prior(), {{narrow}}, CalibratedOptions(), options);
-    runs.push_back(ranksOf(model.truth(), pooledDraws(chains.chains), model.prior()));
+        model.score(), model.prior, {{narrow}}, CalibratedOptions(), options);
+    runs.push_back(ranksOf(model.truth, pooledDraws(chains.chains), model.prior));
   }
   EXPECT_GT(largestChiSquare(runs), 2.0 * max_rank_chi_square);
 }
@@ -94,10 +94,10 @@ TEST(LinearScoreModel, HasScoresAboutTheTruthWithTheStatedCovariance)
     for (std::uint64_t seed = 1; seed <= num_models; ++seed) {
       Random random(seed, 0);
       const LinearScoreModel model(is_yaw_free, random);
-      const CalibratedEstimate& e = model.estimate();
+      const CalibratedEstimate& e = model.estimate;
       // The truth is z = (a, b) again once its free part is taken off.
       const ProductCoordinates coordinates(e);
-      const Vector6d held = coordinates.heldPart(isometryOf(model.truth()));
+      const Vector6d held = coordinates.heldPart(isometryOf(model.truth));
       std::vector<std::size_t> all(400);
       for (std::size_t i = 0; i < all.size(); ++i)
         all[i] = i;

@@ -20,17 +20,11 @@ namespace {
 
 /** A run with a column of each type. */
 struct SomeRun {
+  static constexpr int num_name_columns = 2;
+
   struct Name {
     std::string word;
     std::uint64_t seed = 0;
-
-    template <typename Self, typename Column>
-    static void
-    columns(Self& self, const Column& column)
-    {
-      column("word", self.word);
-      column("seed", self.seed);
-    }
   };
 
   Name name;
@@ -42,7 +36,8 @@ struct SomeRun {
   static void
   columns(Self& self, const Column& column)
   {
-    Name::columns(self.name, column);
+    column("word", self.name.word);
+    column("seed", self.name.seed);
     column("valid", self.is_valid);
     column("number", self.number);
     column("notes", self.notes);
