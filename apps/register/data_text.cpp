@@ -3,6 +3,7 @@
 #include "io/numbers.h"
 #include "register/text_layout.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace bayesian_icp::app {
@@ -33,16 +34,10 @@ std::string
 flagNames(const DataFlags& flags)
 {
   std::string names;
-  const auto add = [&names](bool is_raised, const char* name) {
-    if (is_raised)
-      names += (names.empty() ? "" : ", ") + std::string(name);
-  };
-  add(flags.wrong_basin, "wrong basin");
-  add(flags.low_support, "low support");
-  add(flags.few_patches, "few patches");
-  add(flags.misfit, "misfit");
-  add(flags.no_information, "no information");
-  add(flags.prior_conflict, "prior conflict");
+  for (const DataFlag& flag : data_flags)
+    if (flags.*flag.is_raised)
+      names += (names.empty() ? "" : ", ") + std::string(flag.key);
+  std::replace(names.begin(), names.end(), '_', ' ');
   return names;
 }
 

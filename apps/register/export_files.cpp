@@ -100,10 +100,8 @@ addExports(const ExportRequest& request,
   std::vector<std::string> refusals;
   for (const std::string& format : request.formats)
     try {
-      for (const ExportFile& file : filesOf(format)) {
-        const std::string text = file.text(estimate, request.options);
-        folder.add(file.name, [&text](std::ostream& stream) { stream << text; });
-      }
+      for (const ExportFile& file : filesOf(format))
+        folder.add(file.name, file.text(estimate, request.options));
     }
     catch (const std::invalid_argument& error) {
       refusals.push_back("--export " + format + ": not written: " + error.what());

@@ -10,16 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
+#include <type_traits>
 
 namespace bayesian_icp::app {
-
-inline nlohmann::ordered_json
-jsonOf(double number)
-{
-  return std::isfinite(number) ? nlohmann::ordered_json(number)
-                               : nlohmann::ordered_json(nullptr);
-}
 
 /** \brief A vector as a list, a matrix as a list of its rows. */
 template <typename Derived>
@@ -29,7 +22,7 @@ jsonOf(const Eigen::MatrixBase<Derived>& matrix)
   auto list = nlohmann::ordered_json::array();
   if constexpr (Derived::ColsAtCompileTime == 1)
     for (Eigen::Index i = 0; i < matrix.size(); ++i)
-      list.push_back(jsonOf(double(matrix(i, 0))));
+      list.push_back(double(matrix(i, 0)));
   else
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
       list.push_back(jsonOf(matrix.row(i).transpose().eval()));
@@ -47,7 +40,7 @@ struct FieldWriter {
     nlohmann::ordered_json& place = document[field.group][field.key];
     if constexpr (std::is_enum_v<T>)
       place = toString(value);
-    else if constexpr (std::is_integral_v<T>)
+    else if constexpr (std::is_arithmetic_v<T>)
       place = value;
     else
       place = jsonOf(value);
@@ -57,11 +50,8 @@ struct FieldWriter {
   void
   operator()(const Field& field, const Vector6d& value)
   {
-    nlohmann::ordered_json& place = document[field.group][field.key];
-    if (value.array().isNaN().all())
-      place = nullptr;
-    else
-      place = jsonOf(value);
+    const bool is_given = !value.array().isNaN().all();
+    document[field.group][field.key] = is_given ? jsonOf(value) : nullptr;
   }
 
   template <typename T>

@@ -100,8 +100,7 @@ addReport(const Request& request, const Run& run, io::OutputFolder& folder)
   if (request.wants_report)
     try {
       plot::requireGnuplot(name);
-      const std::string page = reportHtml(run, request.command);
-      folder.add(name, [&page](std::ostream& stream) { stream << page; });
+      folder.add(name, reportHtml(run, request.command));
       return "";
     }
     catch (const plot::GnuplotError& error) {

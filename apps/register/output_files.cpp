@@ -39,8 +39,7 @@ addPosteriorFiles(const Run& run, io::OutputFolder& folder)
 {
   folder.add("samples.csv",
              [&](std::ostream& stream) { writeSamples(run.result.chains, stream); });
-  folder.add("posterior.json",
-             [&](std::ostream& stream) { stream << posteriorJson(run); });
+  folder.add("posterior.json", posteriorJson(run));
 }
 
 } // namespace bayesian_icp::app

@@ -2,10 +2,13 @@
 
 #include "io/coordinates.h"
 #include "io/posterior_file.h"
+#include "register/data_text.h"
 #include "register/json_values.h"
 #include "register/settings_json.h"
 
 #include <bayesian_icp/pose.h>
+
+#include <cmath>
 
 namespace bayesian_icp::app {
 
@@ -54,8 +57,7 @@ icpJson(const RegistrationResult& result)
 {
   const bool has_fitness = result.icp_fitness < std::numeric_limits<double>::max();
   return {{"has_converged", result.icp_has_converged},
-          {"mean_squared_distance_m2",
-           has_fitness ? jsonOf(result.icp_fitness) : ordered_json(nullptr)},
+          {"mean_squared_distance_m2", has_fitness ? result.icp_fitness : std::nan("")},
           {"T_target_source", jsonOf(result.icp_matrix)}};
 }
 
@@ -64,7 +66,7 @@ meanJson(const Vector6d& mean)
 {
   ordered_json json;
   for (std::size_t k = 0; k < 6; ++k)
-    json[coordinateKey(k)] = jsonOf(mean[static_cast<Eigen::Index>(k)]);
+    json[coordinateKey(k)] = mean[static_cast<Eigen::Index>(k)];
   json["T_target_source"] = jsonOf(matrixOf(mean));
   return json;
 }
@@ -97,15 +99,15 @@ coordinatesJson(const Summary& summary)
     const CoordinateSummary& coordinate = summary.coordinates[k];
     list.push_back({{"name", coordinate_names[k]},
                     {"unit", k < 3 ? "m" : "rad"},
-                    {"mean", jsonOf(coordinate.mean)},
-                    {"standard_deviation", jsonOf(coordinate.standard_deviation)},
-                    {"quantile_2.5_percent", jsonOf(coordinate.quantile_2_5)},
-                    {"median", jsonOf(coordinate.median)},
-                    {"quantile_97.5_percent", jsonOf(coordinate.quantile_97_5)},
-                    {"rhat", jsonOf(coordinate.rhat)},
-                    {"bulk_ess", jsonOf(coordinate.bulk_ess)},
-                    {"tail_ess", jsonOf(coordinate.tail_ess)},
-                    {"mcse_of_mean", jsonOf(coordinate.mcse)}});
+                    {"mean", coordinate.mean},
+                    {"standard_deviation", coordinate.standard_deviation},
+                    {"quantile_2.5_percent", coordinate.quantile_2_5},
+                    {"median", coordinate.median},
+                    {"quantile_97.5_percent", coordinate.quantile_97_5},
+                    {"rhat", coordinate.rhat},
+                    {"bulk_ess", coordinate.bulk_ess},
+                    {"tail_ess", coordinate.tail_ess},
+                    {"mcse_of_mean", coordinate.mcse}});
   }
   return list;
 }
@@ -126,7 +128,7 @@ modesJson(const std::vector<Mode>& modes)
   auto list = ordered_json::array();
   for (const Mode& mode : modes)
     list.push_back(
-        {{"weight", jsonOf(mode.weight)},
+        {{"weight", mode.weight},
          {"chains", mode.chains},
          {"mean", meanJson(mode.mean)},
          {"covariance",
@@ -170,9 +172,9 @@ directionsJson(const std::vector<DataDirection>& directions)
     list.push_back(
         {{"description", direction.description},
          {"observability", toString(direction.observability)},
-         {"standard_deviation_m", jsonOf(direction.standard_deviation)},
-         {"prior_standard_deviation_m", jsonOf(direction.prior_standard_deviation)},
-         {"information_in_units_of_the_prior", jsonOf(direction.relative_information)},
+         {"standard_deviation_m", direction.standard_deviation},
+         {"prior_standard_deviation_m", direction.prior_standard_deviation},
+         {"information_in_units_of_the_prior", direction.relative_information},
          {"twist", jsonOf(direction.twist)}});
   return list;
 }
@@ -180,12 +182,10 @@ directionsJson(const std::vector<DataDirection>& directions)
 ordered_json
 flagsJson(const DataFlags& flags)
 {
-  return {{"wrong_basin", flags.wrong_basin},
-          {"low_support", flags.low_support},
-          {"few_patches", flags.few_patches},
-          {"misfit", flags.misfit},
-          {"no_information", flags.no_information},
-          {"prior_conflict", flags.prior_conflict}};
+  ordered_json json;
+  for (const DataFlag& flag : data_flags)
+    json[flag.key] = flags.*flag.is_raised;
+  return json;
 }
 
 /** What the clouds say about the pose, units in the names of keys; null if nothing. */
@@ -195,15 +195,15 @@ dataJson(const DataReport& report)
   if (!report.is_available)
     return nullptr;
   return {
-      {"noise_scale_m", jsonOf(report.noise_scale)},
-      {"noise_scale_in_units_of_the_target", jsonOf(report.residual_scale)},
-      {"effective_patches", jsonOf(report.effective_patches)},
+      {"noise_scale_m", report.noise_scale},
+      {"noise_scale_in_units_of_the_target", report.residual_scale},
+      {"effective_patches", report.effective_patches},
       {"degrees_of_freedom", report.degrees_of_freedom},
-      {"correlation_factor", jsonOf(report.correlation_factor)},
-      {"active_fraction", jsonOf(report.active_fraction)},
-      {"basin_distance_in_standard_deviations", jsonOf(report.basin_distance)},
-      {"other_start_cost_ratio", jsonOf(report.other_cost_ratio)},
-      {"prior_probability", jsonOf(report.prior_probability)},
+      {"correlation_factor", report.correlation_factor},
+      {"active_fraction", report.active_fraction},
+      {"basin_distance_in_standard_deviations", report.basin_distance},
+      {"other_start_cost_ratio", report.other_cost_ratio},
+      {"prior_probability", report.prior_probability},
       {"flags", flagsJson(report.flags)},
       {"flag_messages", describeFlags(report)},
       {"centre_m", jsonOf(report.centre)},

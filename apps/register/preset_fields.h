@@ -37,11 +37,24 @@ visitLengths(PresetT& preset, Visitor& visit)
          "Number of steps for each kept draw."}, preset.thinning);
 }
 
-/** \brief Call visit(field, value) for the constants of Algorithm 1. */
-template <typename SgldT, typename Visitor>
+/** \brief Call visit(field, value) for the settings of preset `paper`. */
+template <typename SettingsT, typename Visitor>
 void
-visitSgld(SgldT& sgld, Visitor& visit)
+visitPaper(SettingsT& settings, Visitor& visit)
 {
+  auto& paper = settings.options.paper;
+  visitScale(paper.scale, visit);
+  visitLengths(paper, visit);
+  visit({"chains", "initial_spread_m_rad", "initial-spread", "LIST",
+         "Standard deviation of the chains' starts about the guess, "
+         "x,y,z,roll,pitch,yaw [m, rad]: six numbers, or one for all."},
+        paper.initial_spread);
+  visit({"mini_batch", "batch_size", "batch-size", "N",
+         "Number of source points in each step."}, paper.batch_size);
+  visit({"mini_batch", "sampling", "batch-sampling", "NAME",
+         "How the source points of a step are chosen."}, paper.sampling);
+  // The constants of Algorithm 1.
+  auto& sgld = paper.sgld;
   visit({"sgld", "step_size", "step-size", "A",
          "Step size alpha of eqs. (5), (8), (9)."}, sgld.step_size);
   visit({"sgld", "decay_rate", "decay-rate", "B",
@@ -61,25 +74,6 @@ visitSgld(SgldT& sgld, Visitor& visit)
   visit({"sgld", "block_decay_start", "block-decay-start", "P",
          "Where these reductions begin, as a fraction of the steps of a chain."},
         sgld.block_decay_start);
-}
-
-/** \brief Call visit(field, value) for the settings of preset `paper`. */
-template <typename SettingsT, typename Visitor>
-void
-visitPaper(SettingsT& settings, Visitor& visit)
-{
-  auto& paper = settings.options.paper;
-  visitScale(paper.scale, visit);
-  visitLengths(paper, visit);
-  visit({"chains", "initial_spread_m_rad", "initial-spread", "LIST",
-         "Standard deviation of the chains' starts about the guess, "
-         "x,y,z,roll,pitch,yaw [m, rad]: six numbers, or one for all."},
-        paper.initial_spread);
-  visit({"mini_batch", "batch_size", "batch-size", "N",
-         "Number of source points in each step."}, paper.batch_size);
-  visit({"mini_batch", "sampling", "batch-sampling", "NAME",
-         "How the source points of a step are chosen."}, paper.sampling);
-  visitSgld(paper.sgld, visit);
   visit({"registration", "normalize_cloud", "normalize-cloud", "",
          "Divide both clouds by their largest |x|, |y| or |z| before the registration. "
          "--sigma (1 unless stated), --step-size and --lambda-rms are then in units of "

@@ -79,7 +79,7 @@ sgdJson(const SgdRun& run)
 {
   ordered_json pose;
   for (std::size_t k = 0; k < 6; ++k)
-    pose[coordinateKey(k)] = jsonOf(run.result.pose[static_cast<Eigen::Index>(k)]);
+    pose[coordinateKey(k)] = run.result.pose[static_cast<Eigen::Index>(k)];
   const ordered_json document = {
       {"schema", "pcl_bayesian_icp/sgd_icp"},
       {"schema_version", 1},
@@ -92,7 +92,7 @@ sgdJson(const SgdRun& run)
       {"iterations", run.result.num_iterations},
       {"pose", pose},
       {"T_target_source", jsonOf(matrixOf(run.result.pose))},
-      {"mean_squared_distance_m2", jsonOf(run.mean_squared_distance)},
+      {"mean_squared_distance_m2", run.mean_squared_distance},
       {"options", jsonOf(run.settings)},
       {"time",
        {{"reading_s", run.reading_seconds},

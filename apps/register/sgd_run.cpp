@@ -78,7 +78,7 @@ writeFiles(const SgdRun& run, io::OutputFolder& folder)
   folder.add("aligned.pcd", [&](std::ostream& stream) {
     writeAligned(run.source, run.target, matrixOf(run.result.pose), stream);
   });
-  folder.add("sgd_icp.json", [&](std::ostream& stream) { stream << sgdJson(run); });
+  folder.add("sgd_icp.json", sgdJson(run));
   folder.commit();
 }
 

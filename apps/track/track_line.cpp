@@ -100,7 +100,7 @@ trackLine(const TrackRequest& request, const Track& track)
                              {"edge", edgeJson(step.edge)},
                              {"more_edges", more_edges},
                              {"is_velocity_doubted", step.is_velocity_doubted},
-                             {"innovation", jsonOf(track.innovations().back())},
+                             {"innovation", track.innovations().back()},
                              {"pose_in_scan_0", poseJson(track.poses().back())},
                              {"seconds", step.seconds},
                              {"settings_id", settingsIdOf(request)}};

@@ -92,17 +92,6 @@ class ExportFormats(ExportTest):
                     product[a][b] * scale[b] / scale[a], float(a == b), delta=1e-6
                 )
 
-    def test_g2o_takes_its_own_error_for_a_normal_variate(self):
-        """With g2o's error as it computes it, the mean of e^T I e is 6 (n - 1) / n but for
-        terms of second order in the angle."""
-        *_, information = formats.read_g2o_edge(self.text("pose.g2o"))
-        product = formats.product(information, self.moment(formats.g2o_quaternion_error))
-        angle = max(
-            math.dist(formats.right_twist(self.mean, draw)[1], (0, 0, 0)) for draw in self.draws
-        )
-        trace = sum(product[k][k] for k in range(6))
-        self.assertAlmostEqual(trace, 6, delta=6 * angle**2 + 1e-6)
-
     def test_gtsam(self):
         lines = self.text("pose_gtsam.txt").splitlines()
         rows = [list(map(float, line.split())) for line in lines if not line.startswith("#")]

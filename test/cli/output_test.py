@@ -149,57 +149,7 @@ class Files(ToolTest):
 
 
 class AlignedCloud(ToolTest):
-    FIELDS = cloud_files.XYZ + [
-        ("intensity", "f"),
-        ("normal_x", "f"),
-        ("normal_y", "f"),
-        ("normal_z", "f"),
-        ("curvature", "f"),
-        ("rgb", "I"),
-        ("ring", "H"),
-        ("label", "i"),
-        ("time", "d"),
-        ("flag", "B"),
-    ]
-
-    def source(self, **writing):
-        rows = []
-        for i, point in enumerate(cloud_files.box_surface(seed=2)):
-            normal = [0.0, 0.0, 0.0]
-            normal[i % 3] = 1.0
-            extras = (0.1 * i, 0xFF0000 + i, i, -i, 1e9 + i / 7, i % 256)
-            rows.append((*point, i / 3, *normal, *extras))
-        rows[7] = (math.nan,) * 3 + rows[7][3:]
-        rows[8] = rows[8][:4] + (math.nan,) * 3 + rows[8][7:]
-        return self.file("fields.pcd", cloud_files.pcd_bytes(rows, self.FIELDS, **writing))
-
-    def check(self, row, original, matrix):
-        moving = ("x", "y", "z", "normal_x", "normal_y", "normal_z")
-        for name, _ in self.FIELDS:
-            if name not in moving:
-                self.assertEqual(row[name], original[name], name)
-        for fields, move in ((moving[:3], cloud_files.moved), (moving[3:], cloud_files.rotated)):
-            before = cloud_files.numbers(original, *fields)
-            after = cloud_files.numbers(row, *fields)
-            if any(map(math.isnan, before)):
-                self.assertEqual([row[n] for n in fields], [original[n] for n in fields])
-                continue
-            self.assert_close(after, move(matrix, before), delta=1e-6)
-
-    def test_fields_and_order_are_kept(self):
-        for encoding, height in (("binary", 1), ("ascii", 10), ("binary_compressed", 10)):
-            source = self.source(encoding=encoding, height=height)
-            target = self.small_pair()[1]
-            _, document = self.run_to_files(source, target, *FAST)
-            header, rows = cloud_files.read_pcd(self.folder / "output" / "aligned.pcd")
-            self.assertEqual(header["HEIGHT"], [str(height)])
-            self.assertEqual(header["FIELDS"], [name for name, _ in self.FIELDS])
-            self.assertEqual(header["DATA"], ["binary_compressed"])
-            matrix = document["final_transformation"]["T_target_source"]
-            originals = cloud_files.read_pcd(self.source())[1]
-            self.assertEqual(len(rows), len(originals))
-            for row, original in zip(rows, originals):
-                self.check(row, original, matrix)
+    """transform_test has that aligned.pcd is the source, moved, with all its fields."""
 
     def test_viewpoint_is_the_targets(self):
         source, _ = self.small_pair()

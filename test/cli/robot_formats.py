@@ -116,15 +116,6 @@ def g2o_error(mean, draw):
     return [*v, *(c / 2 for c in w)]
 
 
-def g2o_quaternion_error(mean, draw):
-    """What g2o computes: translation and vector part of the quaternion of mean^-1 draw."""
-    inverse = conjugate(quaternion_of(*mean[3:]))
-    q = multiplied(inverse, quaternion_of(*draw[3:]))
-    sign = -1 if q[3] < 0 else 1
-    t = turned(inverse, [b - a for a, b in zip(mean[:3], draw[:3])])
-    return [*t, *(sign * c for c in q[:3])]
-
-
 def gtsam_error(mean, draw):
     """Pose3::Logmap: rotation first."""
     v, w = right_twist(mean, draw)

@@ -15,6 +15,8 @@ POSE = (-0.1, 0.2, 0.3, 0.4, -0.5, 0.6)
 WORDS = ",".join(map(str, POSE))
 FIELDS = [("intensity", "f"), ("x", "f"), ("y", "f"), ("z", "f"), ("ring", "H")]
 FIELDS += [("normal_x", "f"), ("normal_y", "f"), ("normal_z", "f"), ("time", "d")]
+# Further ones, of which PLY has no like.
+MORE_FIELDS = [("rgb", "I"), ("label", "i"), ("flag", "B"), ("curvature", "f")]
 # x, y, z below 1 m are rounded to 32 bits before and after.
 FLOAT_ROUNDING = 1e-6
 
@@ -26,17 +28,26 @@ def transform(*arguments):
 class TransformTest(ToolTest):
     program = "pcl_bayesian_icp_transform"
 
-    def cloud(self, name="in.pcd", fields=tuple(FIELDS), **writing):
-        """Points with a value of each kind in every field, the last without coordinates."""
+    def cloud(self, more_fields=(), **writing):
+        """Points with a value of each kind in every field, one without coordinates and one
+        without a normal."""
         generator = random.Random(3)
+        nan = math.nan
         points = []
         for i in range(50):
-            values = [cloud_files.as_float32(generator.uniform(-0.5, 0.5)) for _ in fields]
+            values = [cloud_files.as_float32(generator.uniform(-0.5, 0.5)) for _ in FIELDS]
             values[4] = i * 1000
-            points.append(tuple(values))
-        nan = math.nan
-        points.append((7.0, nan, nan, nan, 9, nan, nan, nan, 1e300))
-        return self.file(name, cloud_files.pcd_bytes(points, list(fields), **writing))
+            points.append((*values, 0xFF0000 + i, -i, 5 * i, i / 3))
+        points[7] = (7.0, nan, nan, nan, 9, *points[7][5:8], 1e300, *points[7][9:])
+        points[8] = (*points[8][:5], nan, nan, nan, *points[8][8:])
+        fields = [*FIELDS, *more_fields]
+        points = [point[: len(fields)] for point in points]
+        return self.file("in.pcd", cloud_files.pcd_bytes(points, fields, **writing))
+
+    def assert_others_kept(self, before, after, more_fields=()):
+        for a, b in zip(before, after):
+            for name in ("intensity", "ring", "time", *(name for name, _ in more_fields)):
+                self.assertEqual(a[name], b[name])
 
     def assert_done(self, result):
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
@@ -59,15 +70,17 @@ class TransformTest(ToolTest):
 
 class TransformMotion(TransformTest):
     def test_pose_in_words(self):
-        source, output = self.cloud(), self.folder / "out.pcd"
-        self.assert_done(transform(source, output, "--pose", WORDS))
-        _, before = cloud_files.read_pcd(source)
-        header, after = cloud_files.read_pcd(output)
-        self.assertEqual(header["FIELDS"], [name for name, _ in FIELDS])
-        self.assert_moved(before, after, cloud_files.matrix_of(*POSE))
-        for a, b in zip(before, after):
-            for name in ("intensity", "ring", "time"):
-                self.assertEqual(a[name], b[name])
+        output = self.folder / "out.pcd"
+        _, before = cloud_files.read_pcd(self.cloud(MORE_FIELDS))
+        for encoding, height in (("binary", 1), ("ascii", 10), ("binary_compressed", 10)):
+            source = self.cloud(MORE_FIELDS, encoding=encoding, height=height)
+            self.assert_done(transform(source, output, "--pose", WORDS))
+            header, after = cloud_files.read_pcd(output)
+            self.assertEqual(header["HEIGHT"], [str(height)])
+            self.assertEqual(header["DATA"], ["binary_compressed"])
+            self.assertEqual(header["FIELDS"], [name for name, _ in FIELDS + MORE_FIELDS])
+            self.assert_moved(before, after, cloud_files.matrix_of(*POSE))
+            self.assert_others_kept(before, after, MORE_FIELDS)
 
     def test_matrix_file_and_inverse(self):
         source, moved, back = self.cloud(), self.folder / "moved.pcd", self.folder / "back.pcd"
@@ -96,7 +109,7 @@ class TransformMotion(TransformTest):
         self.assert_close(looks_along, cloud_files.rotated(matrix, (0, 1, 0)), delta=1e-5)
 
     def test_posterior(self):
-        source, target = self.small_pair()
+        source, target = self.cloud(MORE_FIELDS), self.small_pair()[1]
         output = self.folder / "output"
         result = run(source, target, *FAST, "-o", output, "--quiet")
         self.assert_ran(result)
@@ -110,7 +123,7 @@ class TransformMotion(TransformTest):
             transform(source, moved, "--pose", output / "posterior.json", "--use", "mean")
         )
         matrix = document["posterior"]["mean"]["T_target_source"]
-        self.assert_moved(before, cloud_files.read_pcd(moved)[1], matrix, normals=False)
+        self.assert_moved(before, cloud_files.read_pcd(moved)[1], matrix)
 
     def test_ply_keeps_all_fields_and_the_viewpoint(self):
         half = math.sqrt(0.5)
@@ -122,9 +135,7 @@ class TransformMotion(TransformTest):
         header, after = cloud_files.read_pcd(pcd)
         self.assertEqual(header["FIELDS"], [name for name, _ in FIELDS])
         self.assert_moved(before, after, cloud_files.matrix_of(0, 0, 0, 0, 0, 0))
-        for a, b in zip(before, after):
-            for name in ("intensity", "ring", "time"):
-                self.assertEqual(a[name], b[name])
+        self.assert_others_kept(before, after)
         # The camera is the last element: 17 floats from its position on, two ints, two floats.
         position = struct.unpack("<3f", ply.read_bytes()[-84:-72])
         expected = cloud_files.moved(cloud_files.matrix_of(*POSE), (1, 2, 3))
