@@ -27,8 +27,7 @@ scriptOf(const Drawing& drawing)
 {
   return "reset session\nset encoding utf8\nset terminal svg noenhanced rounded size " +
          std::to_string(drawing.width) + ", " + std::to_string(drawing.height) +
-         " font 'sans-serif," + std::to_string(drawing.font_size) + "'\nset output\n" +
-         drawing.script + '\n';
+         " font 'sans-serif,12'\nset output\n" + drawing.script + '\n';
 }
 
 constexpr std::string_view svg_end = "</svg>";

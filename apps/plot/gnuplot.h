@@ -36,10 +36,9 @@ dataBlock(const std::string& name, const std::string& lines);
 
 /** \brief One picture to be drawn as SVG. */
 struct Drawing {
-  /** Of the picture and of its text [pixels]. */
+  /** [pixels] */
   int width = 360;
   int height = 260;
-  int font_size = 12;
   /** Commands and inline data that draw it; settings of earlier drawings are gone. */
   std::string script;
 };

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 
 namespace bayesian_icp::app {
@@ -18,11 +19,11 @@ struct Chart {
   /** Unique in the page: letters, digits and '-'. */
   std::string id;
   std::string title;
+  std::string caption;
   /** What there is to see, for those who cannot. */
   std::string description;
-  std::string caption;
-  html::FigureWidth width = html::FigureWidth::Small;
   plot::Drawing drawing;
+  html::FigureWidth width = html::FigureWidth::Small;
 };
 
 /** \brief Colours that colour-blind readers can tell apart (Okabe and Ito 2008, and two
@@ -54,6 +55,17 @@ plotNumber(double value)
   return std::isfinite(value) ? io::textOf(value, num_digits) : "NaN";
 }
 
+/** \brief A line of numbers with spaces between. */
+template <typename Numbers = std::initializer_list<double>>
+std::string
+plotLine(const Numbers& numbers)
+{
+  std::string line;
+  for (const double number : numbers)
+    line += (line.empty() ? "" : " ") + plotNumber(number);
+  return line + '\n';
+}
+
 /** \brief "[low:high]" */
 inline std::string
 plotRange(double low, double high)
@@ -78,14 +90,30 @@ inline constexpr const char* chart_style = "unset key\nset border 3 linewidth 0.
                                            "set tics nomirror scale 0.5\n"
                                            "set style fill transparent solid 0.3\n";
 
-/** \brief Dots at what \p data names ("$block using 1:2"): strokes a thousandth of the
- * x range long with round ends, a third of the bytes of gnuplot's points. */
+/** \brief Settings that place the next plot; borders as parts of the whole picture. */
+inline std::string
+placedAt(double left, double right, double bottom, double top)
+{
+  return "set lmargin at screen " + plotNumber(left) + "\nset rmargin at screen " +
+         plotNumber(right) + "\nset bmargin at screen " + plotNumber(bottom) +
+         "\nset tmargin at screen " + plotNumber(top) + '\n';
+}
+
+/** \brief The colour of what is plotted. */
+inline std::string
+colouredAs(const std::string& colour)
+{
+  return " linecolor rgb '" + colour + '\'';
+}
+
+/** \brief Faint dots at what \p data names ("$block using 1:2"): strokes a thousandth
+ * of the x range long with round ends, a third of the bytes of gnuplot's points. */
 inline std::string
 dots(const std::string& data, double x_span, double size, const std::string& colour)
 {
   return data + ":(" + plotNumber(1e-3 * x_span) +
          "):(0) with vectors nohead linewidth " + plotNumber(size) +
-         " linecolor rgb '" + colour + '\'';
+         colouredAs("#30" + colour.substr(1));
 }
 
 } // namespace bayesian_icp::app

@@ -13,9 +13,9 @@
 
 namespace bayesian_icp::app {
 
-/** \brief The density of each coordinate with its mean and its 95 % interval. */
-std::vector<Chart>
-densityCharts(const DrawSet& draws);
+/** \brief The density of coordinate \p k with its mean and its 95 % interval. */
+Chart
+densityChart(const DrawSet& draws, int k);
 
 /** \brief Draws of all pairs of coordinates, coloured by chain, and their correlations.
  * \param[in] covariance CovarianceConvention::Parameters */
@@ -27,10 +27,10 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance);
 Chart
 directionChart(const DataReport& report);
 
-/** \brief Whether the chains agree: for each coordinate the draws in their order, and
+/** \brief Whether the chains agree about coordinate \p k: the draws in their order, and
  * below the histogram of each chain's ranks among all draws (Vehtari et al. 2021). */
-std::vector<Chart>
-chainCharts(const DrawSet& draws);
+Chart
+chainChart(const DrawSet& draws, int k);
 
 /** \brief Both clouds in the target frame from above and from a side, with the source
  * at the initial guess and at the final transformation: four charts with equal scales

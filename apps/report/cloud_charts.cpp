@@ -85,18 +85,8 @@ pointsBlock(const std::string& name, const Eigen::Matrix3Xd& points)
 {
   std::string lines;
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    lines += plotNumber(points(0, i)) + ' ' + plotNumber(points(1, i)) + ' ' +
-             plotNumber(points(2, i)) + '\n';
+    lines += plotLine(points.col(i));
   return plot::dataBlock(name, lines);
-}
-
-std::string
-marginsScript(double width, double height)
-{
-  return "set lmargin at screen " + plotNumber(left_margin / width) +
-         "\nset rmargin at screen " + plotNumber(1.0 - right_margin / width) +
-         "\nset bmargin at screen " + plotNumber(bottom_margin / height) +
-         "\nset tmargin at screen " + plotNumber(1.0 - top_margin / height) + '\n';
 }
 
 /** One metre is as long on both axes: the picture's height is made to fit, or else what
@@ -113,50 +103,43 @@ viewOf(const Scene& scene, Eigen::Index horizontal, Eigen::Index vertical)
   const double height = plot_height + bottom_margin + top_margin;
   const std::string columns =
       " using " + std::to_string(horizontal + 1) + ':' + std::to_string(vertical + 1);
-  plot::Drawing drawing;
-  drawing.width = static_cast<int>(width);
-  drawing.height = static_cast<int>(height);
-  drawing.script =
-      pointsBlock("target", scene.target) + pointsBlock("source", scene.source) +
-      chart_style + marginsScript(width, height) + "set border 15\nset xrange " +
-      plotRange(x.low, x.high) + "\nset yrange " + plotRange(y.low, y.high) +
-      "\nset xlabel '" + axis_names[horizontal] + " [m]' offset 0, 0.4\nset ylabel '" +
-      axis_names[vertical] + " [m]' offset 1, 0\nplot " +
-      dots("$target" + columns,
-           x.span(),
-           2.0,
-           std::string("#30") + (target_colour + 1)) +
-      ", " +
-      dots("$source" + columns,
-           x.span(),
-           2.0,
-           std::string("#30") + (source_colour + 1)) +
-      '\n';
-  return drawing;
+  return {static_cast<int>(width),
+          static_cast<int>(height),
+          pointsBlock("target", scene.target) + pointsBlock("source", scene.source) +
+              chart_style +
+              placedAt(left_margin / width,
+                       1.0 - right_margin / width,
+                       bottom_margin / height,
+                       1.0 - top_margin / height) +
+              "set border 15\nset xrange " + plotRange(x.low, x.high) +
+              "\nset yrange " + plotRange(y.low, y.high) + "\nset xlabel '" +
+              axis_names[horizontal] + " [m]' offset 0, 0.4\nset ylabel '" +
+              axis_names[vertical] + " [m]' offset 1, 0\nplot " +
+              dots("$target" + columns, x.span(), 2.0, target_colour) + ", " +
+              dots("$source" + columns, x.span(), 2.0, source_colour) + '\n'};
 }
 
-void
-addViews(const Scene& scene,
-         const std::string& id,
-         const std::string& when,
-         std::vector<Chart>& charts)
+/** From above and from the side that shows more. */
+std::vector<Chart>
+viewsOf(const Scene& scene, const std::string& when)
 {
+  const auto chartOf = [&](const char* view, const std::string& words, auto... axes) {
+    const std::string title = "Clouds " + when + ", " + words;
+    return Chart{
+        "clouds-" + when + '-' + view,
+        title,
+        title + '.',
+        "Points of the target in blue and of the source in orange, in metres of "
+        "the target frame, " +
+            when + ", " + words + '.',
+        viewOf(scene, axes...)};
+  };
   const Eigen::Index wide =
       rangeOf(scene, 0).span() >= rangeOf(scene, 1).span() ? 0 : 1;
-  const std::string side = std::string("from the side (") + axis_names[wide] + ", z)";
-  const auto add = [&](const char* view, const std::string& words, auto... axes) {
-    Chart chart;
-    chart.id = "clouds-" + id + '-' + view;
-    chart.title = "Clouds " + when + ", " + words;
-    chart.caption = chart.title + '.';
-    chart.description = "Points of the target in blue and of the source in orange, in "
-                        "metres of the target frame, " +
-                        when + ", " + words + '.';
-    chart.drawing = viewOf(scene, axes...);
-    charts.push_back(std::move(chart));
-  };
-  add("above", "from above (x, y)", 0, 1);
-  add("side", side, wide, 2);
+  return {
+      chartOf("above", "from above (x, y)", 0, 1),
+      chartOf(
+          "side", std::string("from the side (") + axis_names[wide] + ", z)", wide, 2)};
 }
 
 } // namespace
@@ -166,9 +149,11 @@ cloudCharts(const Run& run)
 {
   const Eigen::Matrix3Xd target = chosenPoints(run.target);
   const Eigen::Matrix3Xd source = chosenPoints(run.source);
-  std::vector<Chart> charts;
-  addViews({target, moved(run.settings.guess, source)}, "before", "before", charts);
-  addViews({target, moved(run.result.final_matrix, source)}, "after", "after", charts);
+  std::vector<Chart> charts =
+      viewsOf({target, moved(run.settings.guess, source)}, "before");
+  for (Chart& chart :
+       viewsOf({target, moved(run.result.final_matrix, source)}, "after"))
+    charts.push_back(std::move(chart));
   return charts;
 }
 

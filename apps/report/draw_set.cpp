@@ -55,6 +55,12 @@ errorsOf(const PoseMatrix& draws, const Vector6d& means, const DrawSet& set)
 
 } // namespace
 
+std::string
+differenceLabel(const Axis& axis)
+{
+  return axis.name + " − mean [" + axis.unit + ']';
+}
+
 DrawSet
 drawSetOf(const RegistrationResult& result)
 {

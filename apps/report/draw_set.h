@@ -27,6 +27,10 @@ struct Axis {
   double quantile_97_5 = 0.0;
 };
 
+/** \brief What charts of the differences from the mean show, with its unit. */
+std::string
+differenceLabel(const Axis& axis);
+
 /** \brief Draws of one chain. */
 struct ChainDraws {
   /** Index among all chains, the diverged ones included. */

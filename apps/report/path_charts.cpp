@@ -91,10 +91,8 @@ ellipseLines(const std::vector<GaussianPose>& poses, const Axes& axes, double& f
   for (const Ellipse& ellipse : ellipses) {
     // gnuplot has a size of its own for ellipses without one.
     const double x = ellipse.width > 0.0 ? ellipse.x : std::nan("");
-    for (const double number :
-         {x, ellipse.y, factor * ellipse.width, factor * ellipse.height, ellipse.angle})
-      lines += plotNumber(number) + ' ';
-    lines += '\n';
+    lines += plotLine(
+        {x, ellipse.y, factor * ellipse.width, factor * ellipse.height, ellipse.angle});
   }
   return lines;
 }
@@ -102,7 +100,7 @@ ellipseLines(const std::vector<GaussianPose>& poses, const Axes& axes, double& f
 std::string
 pointLine(const GaussianPose& pose, const Axes& axes)
 {
-  return plotNumber(pose.mean[axes[0]]) + ' ' + plotNumber(pose.mean[axes[1]]) + '\n';
+  return plotLine({pose.mean[axes[0]], pose.mean[axes[1]]});
 }
 
 std::string
@@ -117,8 +115,7 @@ pathLines(const std::vector<GaussianPose>& poses, const Axes& axes)
 std::string
 lineStyle(double width, const char* colour)
 {
-  return " with lines linewidth " + plotNumber(width) + " linecolor rgb '" + colour +
-         '\'';
+  return " with lines linewidth " + plotNumber(width) + colouredAs(colour);
 }
 
 std::string
@@ -131,8 +128,8 @@ pathScript(const PathData& path, const Axes& axes, const std::string& ellipses)
           pointLine(path.poses.at(std::size_t(k)), axes) + (k == second ? "\n" : "");
   std::string blocks = plot::dataBlock("path", pathLines(path.poses, axes)) +
                        plot::dataBlock("ellipses", ellipses);
-  std::string plots = "plot $ellipses using 1:2:3:4:5 with ellipses linecolor rgb '" +
-                      std::string(ellipse_colour) + '\'';
+  std::string plots =
+      "plot $ellipses using 1:2:3:4:5 with ellipses" + colouredAs(ellipse_colour);
   if (!path.before.empty()) {
     blocks += plot::dataBlock("before", pathLines(path.before, axes));
     plots += ", $before using 1:2" + lineStyle(1.0, before_colour) + " dashtype 2";
@@ -144,9 +141,8 @@ pathScript(const PathData& path, const Axes& axes, const std::string& ellipses)
   return blocks + chart_style + "set size ratio -1\nset grid linewidth 0.3\n" +
          "set xlabel '" + "xyz"[axes[0]] + " [m]'\nset ylabel '" + "xyz"[axes[1]] +
          " [m]'\n" + plots +
-         ", $path using 1:2 with linespoints pointtype 7 pointsize 0.3 linewidth 1.5 "
-         "linecolor rgb '" +
-         path_colour + "'\n";
+         ", $path using 1:2 with linespoints pointtype 7 pointsize 0.3 linewidth 1.5" +
+         colouredAs(path_colour) + '\n';
 }
 
 /** A line of each pose: x and what \p deviationOf says of its covariance. */
@@ -158,8 +154,7 @@ deviationLines(const std::vector<double>& x,
 {
   std::string lines;
   for (std::size_t k = 0; k < poses.size(); ++k)
-    lines +=
-        plotNumber(x.at(k)) + ' ' + plotNumber(deviationOf(poses[k].covariance)) + '\n';
+    lines += plotLine({x.at(k), deviationOf(poses[k].covariance)});
   return lines;
 }
 
@@ -171,18 +166,16 @@ pathChart(const PathData& path)
   const Axes axes = longestAxes(path.poses);
   double factor = 1.0;
   const std::string ellipses = ellipseLines(path.poses, axes, factor);
-  Chart chart;
-  chart.id = "path";
-  chart.title = "The trajectory";
-  chart.caption =
-      "Positions in the frame of scan 0, along the two axes along which the "
-      "trajectory is longest. Ellipses are 95 % regions" +
-      (factor > 1.0 ? ", enlarged " + io::textOf(factor) + " times."
-                    : std::string("."));
-  chart.description = chart.caption;
-  chart.width = html::FigureWidth::Scrolled;
-  chart.drawing = {720, 480, 12, pathScript(path, axes, ellipses)};
-  return chart;
+  const std::string caption =
+      "Positions in the frame of scan 0, along the two axes along which the trajectory "
+      "is longest. Ellipses are 95 % regions" +
+      (factor > 1.0 ? ", enlarged " + io::textOf(factor) + " times." : ".");
+  return {"path",
+          "The trajectory",
+          caption,
+          caption,
+          {720, 480, pathScript(path, axes, ellipses)},
+          html::FigureWidth::Scrolled};
 }
 
 std::vector<Chart>
@@ -223,16 +216,15 @@ lineChart(const std::string& id,
           const std::string& y_label,
           const std::string& script)
 {
-  Chart chart;
-  chart.id = id;
-  chart.title = chart.caption = chart.description = caption;
-  chart.drawing = {420,
-                   240,
-                   12,
-                   chart_style + std::string("set grid linewidth 0.3\nset xlabel ") +
-                       plot::quotedForGnuplot(x_label) + "\nset ylabel " +
-                       plot::quotedForGnuplot(y_label) + '\n' + script};
-  return chart;
+  return {id,
+          caption,
+          caption,
+          caption,
+          {420,
+           240,
+           chart_style + std::string("set grid linewidth 0.3\nset xlabel ") +
+               plot::quotedForGnuplot(x_label) + "\nset ylabel " +
+               plot::quotedForGnuplot(y_label) + '\n' + script}};
 }
 
 } // namespace bayesian_icp::app

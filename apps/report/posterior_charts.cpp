@@ -24,10 +24,8 @@ drawsBlock(const DrawSet& draws, Eigen::Index max_rows, const char* separator)
   const Eigen::Index share = std::max<Eigen::Index>(
       1, max_rows / static_cast<Eigen::Index>(draws.chains.size()));
   for (const ChainDraws& chain : draws.chains) {
-    for (const Eigen::Index row : evenlySpaced(chain.errors.rows(), share)) {
-      for (int k = 0; k < 6; ++k)
-        lines += plotNumber(chain.errors(row, k)) + (k < 5 ? ' ' : '\n');
-    }
+    for (const Eigen::Index row : evenlySpaced(chain.errors.rows(), share))
+      lines += plotLine(chain.errors.row(row));
     lines += separator;
   }
   return plot::dataBlock("draws", lines);
@@ -58,12 +56,6 @@ reachesOf(const DrawSet& draws)
 }
 
 std::string
-differenceLabel(const Axis& axis)
-{
-  return axis.name + " − mean [" + axis.unit + ']';
-}
-
-std::string
 intervalText(const Axis& axis)
 {
   constexpr int num_digits = 3;
@@ -91,7 +83,7 @@ densityScript(const DrawSet& draws, int k)
       "set arrow from first 0, graph 0 to first 0, graph 1 nohead dashtype 2\n";
   if (!(width > 0.0)) // the draws are all alike
     return script + mean_line + "set yrange [0:1]\nplot NaN\n";
-  const std::string colour = std::string(" linecolor rgb '") + chart_colours[0] + '\'';
+  const std::string colour = colouredAs(chart_colours[0]);
   return script + "set table $density\nplot $draws using " + std::to_string(k + 1) +
          ":(1) smooth kdensity bandwidth " + plotNumber(width) + "\nunset table\n" +
          mean_line + "plot $density using 1:($1 >= " + plotNumber(axis.quantile_2_5) +
@@ -100,32 +92,14 @@ densityScript(const DrawSet& draws, int k)
          ", $density using 1:2 with lines linewidth 2" + colour + '\n';
 }
 
-Chart
-densityChart(const DrawSet& draws, int k)
-{
-  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
-  Chart chart;
-  chart.id = "density-" + axis.name;
-  chart.title = "Density of " + axis.name;
-  chart.caption = axis.name + ": " +
-                  (std::isfinite(axis.quantile_2_5) ? intervalText(axis)
-                                                    : std::string("no interval"));
-  chart.description = "Curve of the posterior density of " + axis.name +
-                      " about its mean, the 95 % interval filled. " + chart.caption;
-  chart.drawing = {340, 190, 12, densityScript(draws, k)};
-  return chart;
-}
-
 /** Places the next panel of a 6x6 grid. */
 std::string
-placedAt(int row, int column)
+panelAt(int row, int column)
 {
   constexpr double left = 0.085, bottom = 0.075, step = 0.151, size = 0.14;
   const double x = left + step * column;
   const double y = bottom + step * (5 - row);
-  return "set lmargin at screen " + plotNumber(x) + "\nset rmargin at screen " +
-         plotNumber(x + size) + "\nset bmargin at screen " + plotNumber(y) +
-         "\nset tmargin at screen " + plotNumber(y + size) + '\n';
+  return placedAt(x, x + size, y, y + size);
 }
 
 /** A panel without axes that says something; darker the stronger. */
@@ -177,19 +151,25 @@ scatterPanel(const DrawSet& draws, const Vector6d& reaches, int row, int column)
                       std::to_string(column + 1) + ':' + std::to_string(row + 1),
                   2.0 * reaches[column],
                   2.2,
-                  std::string("#30") + (colourOf(draws.chains[i].chain) + 1));
+                  colourOf(draws.chains[i].chain));
   return script + plots + '\n';
 }
 
 } // namespace
 
-std::vector<Chart>
-densityCharts(const DrawSet& draws)
+Chart
+densityChart(const DrawSet& draws, int k)
 {
-  std::vector<Chart> charts(6);
-  for (std::size_t k = 0; k < charts.size(); ++k)
-    charts[k] = densityChart(draws, static_cast<int>(k));
-  return charts;
+  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  const std::string caption =
+      axis.name + ": " +
+      (std::isfinite(axis.quantile_2_5) ? intervalText(axis) : "no interval");
+  return {"density-" + axis.name,
+          "Density of " + axis.name,
+          caption,
+          "Curve of the posterior density of " + axis.name +
+              " about its mean, the 95 % interval filled. " + caption,
+          {340, 190, densityScript(draws, k)}};
 }
 
 Chart
@@ -201,21 +181,21 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance)
   for (int row = 0; row < 6; ++row)
     for (int column = 0; column < 6; ++column)
       script +=
-          placedAt(row, column) +
+          panelAt(row, column) +
           (column == row ? textPanel(draws.axes[static_cast<std::size_t>(row)].name, 16)
            : column > row ? correlationPanel(covariance, row, column)
                           : scatterPanel(draws, reaches, row, column));
-  Chart chart;
-  chart.id = "pairs-of-coordinates";
-  chart.title = "Pairs of coordinates";
-  chart.caption = "Each pair of coordinates, as differences from their means: up to " +
-                  io::textOf(max_pair_draws) +
-                  " draws, coloured by chain, a few stray ones outside; above the "
-                  "diagonal the correlations of all draws.";
-  chart.description = chart.caption;
-  chart.width = html::FigureWidth::Scrolled;
-  chart.drawing = {860, 860, 12, script + "unset multiplot\n"};
-  return chart;
+  const std::string caption =
+      "Each pair of coordinates, as differences from their means: up to " +
+      io::textOf(max_pair_draws) +
+      " draws, coloured by chain, a few stray ones outside; above the diagonal the "
+      "correlations of all draws.";
+  return {"pairs-of-coordinates",
+          "Pairs of coordinates",
+          caption,
+          caption,
+          {860, 860, script + "unset multiplot\n"},
+          html::FigureWidth::Scrolled};
 }
 
 } // namespace bayesian_icp::app

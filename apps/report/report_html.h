@@ -4,10 +4,9 @@
 #pragma once
 
 #include "register/run.h"
-#include "report/sections.h"
+#include "report/section.h"
 
 #include <string>
-#include <vector>
 
 namespace bayesian_icp::app {
 
@@ -18,10 +17,5 @@ namespace bayesian_icp::app {
  * \throws plot::GnuplotError if gnuplot cannot draw */
 std::string
 reportHtml(const Run& run, const std::string& command);
-
-/** \brief Parts of such a page, with their charts drawn.
- * \throws plot::GnuplotError if gnuplot cannot draw */
-std::string
-sectionsHtml(const std::vector<Section>& sections);
 
 } // namespace bayesian_icp::app

@@ -53,24 +53,25 @@ deviationText(double deviation, bool is_angle)
                      : space + "m");
 }
 
-template <typename Mean, typename Deviation>
 std::string
-poseText(const Mean& mean, const Deviation& deviation)
+poseText(const Vector6d& mean, const Vector6d& standard_deviations)
 {
   std::string text;
   for (int k = 0; k < 6; ++k)
-    text += (k > 0 ? ", " : "") + uncertainText(k, mean(k), deviation(k));
+    text += (k > 0 ? ", " : "") + uncertainText(k, mean[k], standard_deviations[k]);
   return text;
 }
 
 std::string
 poseText(const Summary& summary)
 {
-  const auto coordinate = [&summary](int k) {
-    return summary.coordinates[static_cast<std::size_t>(k)];
-  };
-  return poseText([&](int k) { return coordinate(k).mean; },
-                  [&](int k) { return coordinate(k).standard_deviation; });
+  Vector6d mean, standard_deviations;
+  for (int k = 0; k < 6; ++k) {
+    const auto& coordinate = summary.coordinates[static_cast<std::size_t>(k)];
+    mean[k] = coordinate.mean;
+    standard_deviations[k] = coordinate.standard_deviation;
+  }
+  return poseText(mean, standard_deviations);
 }
 
 std::string
@@ -87,9 +88,8 @@ modesText(const std::vector<Mode>& modes)
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const Mode& mode = modes[i];
     text += (i > 0 ? "; or " : "") + std::string("pose ") + io::textOf(i + 1) +
-            " (weight " + weightText(mode.weight) + "): " +
-            poseText([&](int k) { return mode.mean[k]; },
-                     [&](int k) { return std::sqrt(mode.covariance(k, k)); });
+            " (weight " + weightText(mode.weight) +
+            "): " + poseText(mode.mean, mode.covariance.diagonal().cwiseSqrt());
   }
   return text;
 }

@@ -1,12 +1,15 @@
 #include "simulator/sensors.h"
 
-#include "simulator/beams.h"
 #include "simulator/noise_field.h"
+#include "simulator/rays.h"
 #include "threads/first_exception.h"
 
 #include <bayesian_icp/random.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace bayesian_icp::simulator {
 
@@ -15,25 +18,196 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** \brief The points of one image row or ring, with their columns. */
-struct ScanRow {
-  std::vector<Vector3d> points;
-  std::vector<int> columns;
+constexpr double pi = 3.14159265358979323846;
+constexpr double radians_per_degree = pi / 180.0;
+
+Vector3d
+cameraDirection(const DepthCameraOptions& camera, double x, double y)
+{
+  const double focal_length =
+      0.5 * camera.width / std::tan(0.5 * camera.horizontal_fov * radians_per_degree);
+  return Vector3d((x - 0.5 * camera.width) / focal_length,
+                  (y - 0.5 * camera.height) / focal_length,
+                  1.0);
+}
+
+Vector3d
+lidarDirection(const LidarOptions& lidar, double azimuth_steps, int ring)
+{
+  const double between_rings =
+      lidar.rings > 1 ? (lidar.max_elevation - lidar.min_elevation) / (lidar.rings - 1)
+                      : 0.0;
+  const double elevation =
+      (lidar.min_elevation + ring * between_rings) * radians_per_degree;
+  const double azimuth = azimuth_steps * lidar.azimuth_step * radians_per_degree;
+  return Vector3d(std::cos(elevation) * std::cos(azimuth),
+                  std::cos(elevation) * std::sin(azimuth),
+                  std::sin(elevation));
+}
+
+/** \brief The random numbers of one ray, drawn whether they are needed or not: a change
+ * of one source of error leaves the others as they were. */
+struct RayDraws {
+  explicit RayDraws(Random& random)
+  : jitter_x(random.uniform() - 0.5)
+  , jitter_y(random.uniform() - 0.5)
+  , reading(random.normal())
+  , lateral_x(random.normal())
+  , lateral_y(random.normal())
+  , dropout(random.uniform())
+  , outlier(random.uniform())
+  , outlier_offset(2.0 * random.uniform() - 1.0)
+  {}
+
+  /** Uniform in [-0.5, 0.5). */
+  double jitter_x, jitter_y;
+  /** Standard normal. */
+  double reading, lateral_x, lateral_y;
+  /** Uniform in [0, 1). */
+  double dropout, outlier;
+  /** Uniform in [-1, 1). */
+  double outlier_offset;
 };
+
+/** \brief What the rays of one scan have in common. */
+struct ScanState {
+  /** Pose of the sensor as it takes each column. */
+  std::vector<Isometry3d> T_world_sensor;
+  /** Added to the readings of each row [m]. */
+  std::vector<double> offsets;
+  /** Turns all rays of a LiDAR [azimuth steps]. */
+  double azimuth_phase = 0.0;
+};
+
+double
+quantised(const SensorOptions& options, double reading)
+{
+  constexpr double kinect_depth_times_disparity = 575.0 * 0.075 * 8.0;
+  switch (options.quantisation) {
+  case Quantisation::Kinect:
+    return kinect_depth_times_disparity /
+           std::round(kinect_depth_times_disparity / reading);
+  case Quantisation::Step:
+    return options.quantisation_step * std::round(reading / options.quantisation_step);
+  case Quantisation::None:
+    break;
+  }
+  return reading;
+}
+
+/** \brief The rays of a sensor in a scene. */
+class Beams {
+public:
+  Beams(const Scene& scene, const SensorOptions& options, const ScanState& state)
+  : scene_(scene)
+  , options_(options)
+  , state_(state)
+  {}
+
+  /** \brief The measured point of one ray in the sensor frame [m], if there is one. */
+  std::optional<Vector3d>
+  measure(int row, int column, const RayDraws& draws) const
+  {
+    const double x = column + options_.jitter * draws.jitter_x;
+    const double y = row + options_.jitter * draws.jitter_y;
+    const bool is_camera = options_.kind == SensorKind::DepthCamera;
+    // The centre of pixel 0 lies half a pixel inside the image; a ring is never
+    // displaced.
+    const Vector3d direction =
+        is_camera ? cameraDirection(options_.camera, x + 0.5, y + 0.5)
+                  : lidarDirection(options_.lidar, x + state_.azimuth_phase, row);
+    const bool is_displaced = is_camera && options_.camera.lateral_noise > 0.0;
+    const auto hit = is_displaced ? castDisplaced(x + 0.5, y + 0.5, column, draws)
+                                  : cast(direction, column);
+    if (!hit)
+      return std::nullopt;
+    const auto reading = disturbed(*hit, row, draws);
+    if (!reading)
+      return std::nullopt;
+    return *reading * direction;
+  }
+
+private:
+  struct Hit {
+    double reading;
+    /** [rad] */
+    double angle_of_incidence;
+  };
+
+  /** \param[in] direction in the sensor frame, scaled such that the reading times the
+   *            direction is the point: of unit depth (camera) or unit length (LiDAR) */
+  std::optional<Hit>
+  cast(const Vector3d& direction, int column) const
+  {
+    const Eigen::Isometry3d& T_world_sensor = state_.T_world_sensor[column];
+    const double length = direction.norm();
+    const Ray ray{T_world_sensor.translation(),
+                  T_world_sensor.linear() * (direction / length)};
+    const auto range = castRay(scene_, ray, options_.max_range * length);
+    if (!range)
+      return std::nullopt;
+    const Vector3d normal = surfaceNormal(scene_, ray.origin + *range * ray.direction);
+    const double cosine = std::clamp(-normal.dot(ray.direction), 0.0, 1.0);
+    return Hit{*range / length, std::acos(cosine)};
+  }
+
+  /** \brief Where the ray that belongs to a pixel hits after lateral noise. */
+  std::optional<Hit>
+  castDisplaced(double x, double y, int column, const RayDraws& draws) const
+  {
+    const DepthCameraOptions& camera = options_.camera;
+    const auto undisplaced = cast(cameraDirection(camera, x, y), column);
+    const double angle = undisplaced ? undisplaced->angle_of_incidence : 0.0;
+    // The formula has a pole at 90 degrees, far beyond what was measured.
+    const double clipped = std::min(angle, 80.0 * radians_per_degree);
+    const double sigma =
+        camera.lateral_noise * (0.8 + 0.035 * clipped / (0.5 * pi - clipped));
+    return cast(cameraDirection(
+                    camera, x + sigma * draws.lateral_x, y + sigma * draws.lateral_y),
+                column);
+  }
+
+  /** \brief The reading with all its errors, unless it is lost. */
+  std::optional<double>
+  disturbed(const Hit& hit, int row, const RayDraws& draws) const
+  {
+    const double grazing = options_.dropout_from * radians_per_degree;
+    if (hit.angle_of_incidence > grazing &&
+        draws.dropout < (hit.angle_of_incidence - grazing) / (0.5 * pi - grazing))
+      return std::nullopt;
+    const double sigma = readingSigma(options_, hit.reading) *
+                         incidenceFactor(options_, hit.angle_of_incidence);
+    double reading = hit.reading + sigma * draws.reading + state_.offsets[row];
+    if (draws.outlier < options_.outliers)
+      reading += options_.outlier_spread * draws.outlier_offset;
+    reading = quantised(options_, reading);
+    if (!(reading >= options_.min_range && reading <= options_.max_range))
+      return std::nullopt;
+    return reading;
+  }
+
+  const Scene& scene_;
+  const SensorOptions& options_;
+  const ScanState& state_;
+};
+
+/** \brief The points of one image row or ring, each with its column. */
+using ScanRow = std::vector<std::pair<int, Vector3d>>;
 
 Scan
 joinRows(const std::vector<ScanRow>& rows, int rays_per_row)
 {
+  std::size_t num_points = 0;
+  for (const ScanRow& row : rows)
+    num_points += row.size();
   Scan scan;
+  scan.points.resize(3, static_cast<Eigen::Index>(num_points));
   for (std::size_t row = 0; row < rows.size(); ++row)
-    for (const int column : rows[row].columns)
+    for (const auto& [column, point] : rows[row]) {
+      scan.points.col(static_cast<Eigen::Index>(scan.ray_indices.size())) = point;
       scan.ray_indices.push_back(
           static_cast<std::uint32_t>(row * rays_per_row + column));
-  scan.points.resize(3, static_cast<Eigen::Index>(scan.ray_indices.size()));
-  Eigen::Index next = 0;
-  for (const ScanRow& row : rows)
-    for (const Vector3d& point : row.points)
-      scan.points.col(next++) = point;
+    }
   return scan;
 }
 
@@ -107,11 +281,8 @@ scanScene(const Scene& scene,
       for (int column = 0; column < rays_per_row; ++column) {
         RayDraws draws(random);
         draws.reading = noise_field.mixed(draws.reading, row, column);
-        const auto point = beams.measure(row, column, draws);
-        if (!point)
-          continue;
-        rows[row].points.push_back(*point);
-        rows[row].columns.push_back(column);
+        if (const auto point = beams.measure(row, column, draws))
+          rows[row].emplace_back(column, *point);
       }
     });
   failure.rethrow();

@@ -1,10 +1,9 @@
 /** \file
- * \brief The parts of the report in their order: words, tables and charts.
+ * \brief The parts of a report: words, tables and charts.
  */
 #pragma once
 
 #include "html/page.h"
-#include "register/run.h"
 #include "report/chart.h"
 
 #include <string>
@@ -18,14 +17,14 @@ struct Section {
   std::string heading;
   /** What stands above and below the charts. */
   std::string above_html;
-  std::vector<Chart> charts;
-  std::string below_html;
+  std::vector<Chart> charts = {};
+  std::string below_html = {};
   html::FigureGrid grid = html::FigureGrid::Any;
 };
 
-/** \brief All parts below the verdict, of a run with at least one draw.
- * \param[in] command that made the run, as a shell takes it */
-std::vector<Section>
-reportSections(const Run& run, const std::string& command);
+/** \brief The parts with their charts drawn.
+ * \throws plot::GnuplotError if gnuplot cannot draw */
+std::string
+sectionsHtml(const std::vector<Section>& sections);
 
 } // namespace bayesian_icp::app

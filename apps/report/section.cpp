@@ -1,0 +1,46 @@
+#include "report/section.h"
+
+#include "html/inline_svg.h"
+
+namespace bayesian_icp::app {
+
+namespace {
+
+/** Takes the pictures of the section's charts, in their order, from \p svgs. */
+std::string
+sectionHtml(const Section& section, std::vector<std::string>::const_iterator& svgs)
+{
+  std::string figures, wide_figures;
+  for (const Chart& chart : section.charts) {
+    const std::string figure = html::figureHtml(
+        html::inlineSvg(*svgs++, chart.id, chart.title, chart.description),
+        chart.caption,
+        chart.width);
+    (chart.width == html::FigureWidth::Small ? figures : wide_figures) += figure;
+  }
+  return html::sectionHtml(
+      section.id,
+      section.heading,
+      section.above_html +
+          (figures.empty() ? "" : html::figureGridHtml(figures, section.grid)) +
+          wide_figures + section.below_html);
+}
+
+} // namespace
+
+std::string
+sectionsHtml(const std::vector<Section>& sections)
+{
+  std::vector<plot::Drawing> drawings;
+  for (const Section& section : sections)
+    for (const Chart& chart : section.charts)
+      drawings.push_back(chart.drawing);
+  const std::vector<std::string> svgs = plot::drawSvgs(drawings);
+  auto next_svg = svgs.begin();
+  std::string body;
+  for (const Section& section : sections)
+    body += sectionHtml(section, next_svg);
+  return body;
+}
+
+} // namespace bayesian_icp::app
