@@ -36,6 +36,17 @@ fontSizeFor(const Eigen::Vector2i& size)
   return std::clamp(size.y() / 48, 11, 40);
 }
 
+/** Writes at the left of a panel, \p y pixels above its lower edge. */
+void
+write(
+    const LegendLine& line, int y, const std::string& id, int viewport, Window& window)
+{
+  const int font_size = fontSizeFor(window.panelSize());
+  const auto [red, green, blue] = line.color;
+  window.visualizer().addText(
+      line.text, font_size, y, font_size, red, green, blue, id, viewport);
+}
+
 } // namespace
 
 PictureArea
@@ -56,19 +67,10 @@ addLegend(const std::vector<LegendLine>& lines, int viewport, Window& window)
 {
   const Eigen::Vector2i size = window.panelSize();
   const int font_size = fontSizeFor(size);
+  const std::string id = "legend/" + std::to_string(viewport) + "/";
   int y = size.y() - 2 * font_size;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const Color& color = lines[i].color;
-    window.visualizer().addText(lines[i].text,
-                                font_size,
-                                y,
-                                font_size,
-                                color[0],
-                                color[1],
-                                color[2],
-                                "legend/" + std::to_string(viewport) + "/" +
-                                    std::to_string(i),
-                                viewport);
+    write(lines[i], y, id + std::to_string(i), viewport, window);
     y -= 3 * font_size / 2;
   }
 }
@@ -78,17 +80,12 @@ addStatus(const LegendLine& status, int viewport, Window& window)
 {
   const Eigen::Vector2i size = window.panelSize();
   const int font_size = fontSizeFor(size);
-  const Color& color = status.color;
   const auto width = static_cast<std::size_t>(size.x() / (0.55 * font_size));
-  window.visualizer().addText(wrapped(status.text, width),
-                              font_size,
-                              font_size,
-                              font_size,
-                              color[0],
-                              color[1],
-                              color[2],
-                              "status",
-                              viewport);
+  write({wrapped(status.text, width), status.color},
+        font_size,
+        "status",
+        viewport,
+        window);
 }
 
 void

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <sstream>
 #include <vector>
 
@@ -37,35 +39,6 @@ readColor(const std::string& text, Color& color)
       part /= 255.0;
 }
 
-void
-readPointSize(const std::string& text, int& size)
-{
-  if (!readBetween(text, 1, 64, size))
-    io::refuseValue(text, "a point size, 1 to 64");
-}
-
-void
-readOpacity(const std::string& text, double& opacity)
-{
-  if (!readBetween(text, 0.0, 1.0, opacity))
-    io::refuseValue(text, "an opacity, 0 to 1");
-}
-
-void
-readLength(const std::string& text, double& length)
-{
-  if (!io::readNumber(text, length) || !std::isfinite(length) || length < 0.0)
-    io::refuseValue(text, "a length [m]");
-}
-
-void
-readSwitch(const std::string& text, bool& is_on)
-{
-  if (text != "0" && text != "1")
-    io::refuseValue(text, "0 or 1");
-  is_on = text == "1";
-}
-
 /** Names of layers separated by commas, or "all". */
 void
 readLayers(const std::string& text, Layers& layers)
@@ -84,13 +57,6 @@ readLayers(const std::string& text, Layers& layers)
   }
 }
 
-void
-readNumDraws(const std::string& text, int& number)
-{
-  if (!readBetween(text, 1, 1000, number))
-    io::refuseValue(text, "a number of draws, 1 to 1000");
-}
-
 /** A positive number, or "auto", which is 0. */
 void
 readMagnification(const std::string& text, double& factor)
@@ -101,12 +67,26 @@ readMagnification(const std::string& text, double& factor)
     io::refuseValue(text, "a positive number or auto");
 }
 
+/** Which of two names a text is. */
+bool
+isSecond(const std::string& text, const std::string& first, const std::string& second)
+{
+  if (text != first && text != second)
+    io::refuseValue(text, first + " or " + second);
+  return text == second;
+}
+
+void
+readSwitch(const std::string& text, bool& is_on)
+{
+  is_on = isSecond(text, "0", "1");
+}
+
 void
 readReference(const std::string& text, Reference& reference)
 {
-  if (text != "centroid" && text != "origin")
-    io::refuseValue(text, "centroid or origin");
-  reference = text == "origin" ? Reference::Origin : Reference::Centroid;
+  reference =
+      isSecond(text, "centroid", "origin") ? Reference::Origin : Reference::Centroid;
 }
 
 void
@@ -119,21 +99,30 @@ readSize(const std::string& text, ViewOptions& view)
   view.is_size_given = true;
 }
 
+/** Reads a number from \p lowest to \p highest. */
+template <typename Number>
+auto
+within(Number lowest, Number highest, const char* expected)
+{
+  return [=](const std::string& text, Number& value) {
+    if (!readBetween(text, lowest, highest, value))
+      io::refuseValue(text, expected);
+  };
+}
+
 /** An option with a value that \p read reads. */
-template <typename Value>
+template <typename Read, typename Value>
 po::typed_value<std::string>*
-value(const char* placeholder, void (*read)(const std::string&, Value&), Value& value)
+value(const char* placeholder, const Read& read, Value& value)
 {
   return io::taken(placeholder,
                    [read, &value](const std::string& text) { read(text, value); });
 }
 
 /** The same, given up to once for each cloud. */
-template <typename Value>
+template <typename Read, typename Value>
 po::typed_value<std::vector<std::string>>*
-oncePerCloud(const char* placeholder,
-             void (*read)(const std::string&, Value&),
-             std::vector<Value>& values)
+oncePerCloud(const char* placeholder, const Read& read, std::vector<Value>& values)
 {
   const auto take = [read, &values](const std::vector<std::string>& texts) {
     for (const std::string& text : texts)
@@ -159,6 +148,7 @@ layersHelp()
 po::options_description
 describeOptions(Request& request)
 {
+  constexpr double largest = std::numeric_limits<double>::max();
   ViewOptions& view = request.view;
   po::options_description general("General");
   po::options_description pcl_viewers(
@@ -174,11 +164,11 @@ describeOptions(Request& request)
      "Background, each 0 to 1 or 0 to 255. (default 0,0,0)")
     ("fc", oncePerCloud("R,G,B", readColor, view.foregrounds),
      "Colour of a cloud. (default depends on the cloud)")
-    ("ps", oncePerCloud("N", readPointSize, view.point_sizes),
+    ("ps", oncePerCloud("N", within(1, 64, "a point size, 1 to 64"), view.point_sizes),
      "Point size, 1 to 64. (default 3)")
-    ("opaque", oncePerCloud("X", readOpacity, view.opacities),
+    ("opaque", oncePerCloud("X", within(0.0, 1.0, "an opacity, 0 to 1"), view.opacities),
      "Opacity, 0 to 1. (default 1)")
-    ("ax", value("X", readLength, view.axes_scale),
+    ("ax", value("X", within(0.0, largest, "a length [m]"), view.axes_scale),
      "Length of the target frame's axes [m]. (default 0: none)")
     ("cam", io::fileName("CAMERA", view.camera),
      "Initial view: what key c prints, or a .cam file. (default: all in sight, from "
@@ -187,7 +177,7 @@ describeOptions(Request& request)
      "Show four pictures: before, after, likely poses, deviations. (default 0)");
   own.add_options()
     ("show", value("LAYERS", readLayers, view.layers), layersHelp().c_str())
-    ("draws", value("N", readNumDraws, view.num_draws),
+    ("draws", value("N", within(1, 1000, "a number of draws, 1 to 1000"), view.num_draws),
      "Number of draws to show, spread evenly over the chains. (default 20)")
     ("magnify", value("X", readMagnification, view.magnification),
      "Factor on the deviations from the mean in the layers draws, position and "
@@ -245,21 +235,13 @@ Example:
   return help.str();
 }
 
-bool
-isPosterior(const std::string& name)
-{
-  const std::string ending = ".json";
-  return name.size() > ending.size() &&
-         name.compare(name.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 /** Two clouds, or a posterior with or without the two clouds. */
 void
 takeFiles(const po::variables_map& given, Request& request)
 {
   std::vector<std::string> clouds;
   for (const std::string& file : io::optionTexts(given, "file")) {
-    if (!isPosterior(file))
+    if (std::filesystem::path(file).extension() != ".json")
       clouds.push_back(file);
     else if (request.posterior_file.empty())
       request.posterior_file = file;

@@ -32,11 +32,39 @@ pointOf(const Eigen::Vector3d& position, const Color& color)
   return point;
 }
 
-/** One layer of one panel. */
-class LayerDrawing {
+/** \p colors is one for all or one for each. */
+Cloud::Ptr
+cloudOf(const Eigen::Matrix3Xd& points, const std::vector<Color>& colors)
+{
+  Cloud::Ptr cloud(new Cloud);
+  cloud->reserve(static_cast<std::size_t>(points.cols()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    cloud->push_back(pointOf(
+        points.col(i), colors[colors.size() == 1 ? 0 : static_cast<std::size_t>(i)]));
+  return cloud;
+}
+
+void
+addCloud(const Cloud::Ptr& cloud,
+         int point_size,
+         double opacity,
+         const std::string& id,
+         int viewport,
+         Window& window)
+{
+  auto& visualizer = window.visualizer();
+  visualizer.addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport);
+  visualizer.setPointCloudRenderingProperties(
+      pcl::visualization::PCL_VISUALIZER_POINT_SIZE, point_size, id, viewport);
+  visualizer.setPointCloudRenderingProperties(
+      pcl::visualization::PCL_VISUALIZER_OPACITY, opacity, id, viewport);
+}
+
+/** Draws the layers of one panel. */
+class PanelDrawing {
 public:
   /** \p uncertainty may be null if no layer is drawn that needs draws. */
-  LayerDrawing(const Scene& scene,
+  PanelDrawing(const Scene& scene,
                const Uncertainty* uncertainty,
                const ViewOptions& options,
                int viewport,
@@ -51,105 +79,76 @@ public:
   void
   draw(Layer layer)
   {
+    const std::string id =
+        std::string(nameOf(layer).name) + "/" + std::to_string(viewport_);
+    const auto add = [&](const Eigen::Matrix3Xd& points, const PointStyle& style) {
+      addPoints(points, style, id, viewport_, window_);
+    };
     const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
     switch (layer) {
     case Layer::Source:
-      return addCloud(layer, movedPoints(scene_.guess, scene_.source));
+      return add(movedPoints(scene_.guess, scene_.source), styleOf(layer, options_));
     case Layer::Target:
-      return addCloud(layer, movedPoints(identity, scene_.target));
+      return add(movedPoints(identity, scene_.target), styleOf(layer, options_));
     case Layer::Aligned:
-      return addCloud(layer, movedPoints(scene_.final_matrix, scene_.source));
+      return add(movedPoints(scene_.final_matrix, scene_.source),
+                 styleOf(layer, options_));
     case Layer::Deviation:
-      return addDeviations();
+      return addDeviations(id);
     case Layer::Draws:
-      return addDraws();
+      return add(pointsAtDraws(scene_, *uncertainty_, max_points_of_draws),
+                 {colorOf(layer, options_), 2, 0.35});
     case Layer::Position:
-      return addEllipsoid();
+      return addMesh(
+          positionEllipsoid(*uncertainty_), colorOf(layer, options_), 0.7, id);
     case Layer::Rotation:
-      return addCones();
+      return addCones(id);
     }
   }
 
 private:
-  std::string
-  idOf(Layer layer) const
-  {
-    return std::string(nameOf(layer).name) + "/" + std::to_string(viewport_);
-  }
-
   void
-  addCloud(Layer layer, const Eigen::Matrix3Xd& points)
-  {
-    addPoints(points, styleOf(layer, options_), idOf(layer), viewport_, window_);
-  }
-
-  void
-  addDeviations()
+  addDeviations(const std::string& id)
   {
     const double maximum = niceMaximum(uncertainty_->largest_point_deviation);
-    const Eigen::Matrix3Xd points =
-        movedPoints(uncertainty_->spread.meanMatrix(), scene_.source);
-    Cloud::Ptr cloud(new Cloud);
-    Eigen::Index num_finite = 0;
+    std::vector<Color> colors;
     for (const double deviation : uncertainty_->point_deviations)
       if (std::isfinite(deviation))
-        cloud->push_back(
-            pointOf(points.col(num_finite++), mapColor(deviation / maximum)));
-    const std::string id = idOf(Layer::Deviation);
-    auto& visualizer = window_.visualizer();
-    visualizer.addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport_);
+        colors.push_back(mapColor(deviation / maximum));
     const PointStyle style = styleOf(Layer::Aligned, options_);
-    visualizer.setPointCloudRenderingProperties(
-        pcl::visualization::PCL_VISUALIZER_POINT_SIZE, style.size + 1, id, viewport_);
-    visualizer.setPointCloudRenderingProperties(
-        pcl::visualization::PCL_VISUALIZER_OPACITY, style.opacity, id, viewport_);
+    addCloud(
+        cloudOf(movedPoints(uncertainty_->spread.meanMatrix(), scene_.source), colors),
+        style.size + 1,
+        style.opacity,
+        id,
+        viewport_,
+        window_);
     addColorBar(maximum, textColorOn(options_.background), viewport_, window_);
   }
 
   void
-  addDraws()
-  {
-    addPoints(pointsAtDraws(scene_, *uncertainty_, max_points_of_draws),
-              {colorOf(Layer::Draws, options_), 2, 0.35},
-              idOf(Layer::Draws),
-              viewport_,
-              window_);
-  }
-
-  void
-  addEllipsoid()
-  {
-    addMesh(positionEllipsoid(*uncertainty_),
-            {colorOf(Layer::Position, options_), 1, 0.7},
-            idOf(Layer::Position));
-  }
-
-  void
-  addCones()
+  addCones(const std::string& id)
   {
     const std::array<Mesh, 3> cones = rotationCones(scene_, *uncertainty_);
     for (std::size_t k = 0; k < 3; ++k) {
       Color color = {0.15, 0.15, 0.15};
       color[k] = 0.9;
-      addMesh(
-          cones[k], {color, 1, 0.6}, idOf(Layer::Rotation) + "/" + std::to_string(k));
+      addMesh(cones[k], color, 0.6, id + "/" + std::to_string(k));
     }
   }
 
   void
-  addMesh(const Mesh& mesh, const PointStyle& style, const std::string& id)
+  addMesh(const Mesh& mesh, const Color& color, double opacity, const std::string& id)
   {
-    Cloud::Ptr vertices(new Cloud);
-    for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i)
-      vertices->push_back(pointOf(mesh.vertices.col(i), style.color));
     std::vector<pcl::Vertices> triangles(mesh.triangles.cols());
     for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i)
       for (int k = 0; k < 3; ++k)
         triangles[i].vertices.push_back(mesh.triangles(k, i));
     auto& visualizer = window_.visualizer();
-    visualizer.addPolygonMesh<pcl::PointXYZRGB>(vertices, triangles, id, viewport_);
+    visualizer.addPolygonMesh<pcl::PointXYZRGB>(
+        cloudOf(mesh.vertices, {color}), triangles, id, viewport_);
     visualizer.setPointCloudRenderingProperties(
-        pcl::visualization::PCL_VISUALIZER_OPACITY, style.opacity, id, viewport_);
+        pcl::visualization::PCL_VISUALIZER_OPACITY, opacity, id, viewport_);
   }
 
   const Scene& scene_;
@@ -202,16 +201,8 @@ addPoints(const Eigen::Matrix3Xd& points,
           int viewport,
           Window& window)
 {
-  Cloud::Ptr cloud(new Cloud);
-  cloud->reserve(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    cloud->push_back(pointOf(points.col(i), style.color));
-  auto& visualizer = window.visualizer();
-  visualizer.addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport);
-  visualizer.setPointCloudRenderingProperties(
-      pcl::visualization::PCL_VISUALIZER_POINT_SIZE, style.size, id, viewport);
-  visualizer.setPointCloudRenderingProperties(
-      pcl::visualization::PCL_VISUALIZER_OPACITY, style.opacity, id, viewport);
+  addCloud(
+      cloudOf(points, {style.color}), style.size, style.opacity, id, viewport, window);
 }
 
 void
@@ -225,7 +216,7 @@ drawScene(const Scene& scene,
   Layers shown;
   std::size_t num_lines = 0;
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    LayerDrawing drawing(scene, uncertainty, options, viewports[i], window);
+    PanelDrawing drawing(scene, uncertainty, options, viewports[i], window);
     for (const Layer layer : panels[i].layers)
       drawing.draw(layer);
     shown.insert(panels[i].layers.begin(), panels[i].layers.end());

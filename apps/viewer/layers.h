@@ -10,6 +10,8 @@
 
 namespace bayesian_icp::viewer {
 
+/** \brief From Deviation on they are about the posterior, so that there must be draws.
+ */
 enum class Layer { Source, Target, Aligned, Deviation, Draws, Position, Rotation };
 
 /** \brief How users call a layer. */
@@ -53,13 +55,6 @@ inline const LayerName&
 nameOf(Layer layer)
 {
   return layer_names[static_cast<std::size_t>(layer)];
-}
-
-/** \brief Whether a layer is about the posterior, so that there must be draws. */
-inline bool
-needsDraws(Layer layer)
-{
-  return layer >= Layer::Deviation;
 }
 
 } // namespace bayesian_icp::viewer

@@ -55,9 +55,7 @@ bool
 isMagnified(const Panel& panel, const Uncertainty* uncertainty)
 {
   return uncertainty != nullptr && uncertainty->magnification != 1.0 &&
-         panel.layers.count(Layer::Draws) + panel.layers.count(Layer::Position) +
-                 panel.layers.count(Layer::Rotation) >
-             0;
+         panel.layers.lower_bound(Layer::Draws) != panel.layers.end();
 }
 
 } // namespace

@@ -29,17 +29,6 @@ tell(const std::string& message)
   std::cerr << "pcl_bayesian_icp_viewer: " << message << '\n';
 }
 
-/** Where a screenshot goes; it is known before the work whether it can be written. */
-struct Screenshot {
-  explicit Screenshot(const std::string& file)
-  : folder(io::folderOf(file))
-  , name(std::filesystem::path(file).filename().string())
-  {}
-
-  io::OutputFolder folder;
-  std::string name;
-};
-
 void
 registerWithoutWindow(bool is_quiet, app::Run& run)
 {
@@ -107,9 +96,10 @@ show(const Request& request)
   io::silencePcl();
   if (!request.note.empty() && !request.is_quiet)
     tell("note: " + request.note);
-  std::optional<Screenshot> screenshot;
+  // It is known before the work whether the picture can be written.
+  std::optional<io::OutputFolder> folder;
   if (request.view.isOffScreen())
-    screenshot.emplace(request.view.screenshot_file);
+    folder.emplace(io::folderOf(request.view.screenshot_file));
   io::catchInterrupt();
   std::optional<Window> window;
   const Scene scene = prepareScene(request, window);
@@ -118,24 +108,18 @@ show(const Request& request)
   if (!window)
     openWindow(request, {scene.source_file, scene.target_file}, window);
   // A live screenshot is of the chains, which are in the window already.
-  if (!(screenshot && request.view.is_live)) {
+  if (!(folder && request.view.is_live)) {
     const auto uncertainty = uncertaintyOf(scene, request.view);
     drawScene(scene, uncertainty ? &*uncertainty : nullptr, request.view, *window);
   }
-  if (screenshot)
-    window->save(screenshot->name, screenshot->folder);
+  if (folder)
+    window->save(std::filesystem::path(request.view.screenshot_file).filename(),
+                 *folder);
   else
     letUserLook(*window);
   if (scene.status != toString(Status::Ok))
     tell(scene.status + ": " + scene.status_message);
   return exitCodeFor(scene);
-}
-
-int
-runTool(int argc, char** argv)
-{
-  const std::optional<Request> request = parseCommandLine(argc, argv);
-  return request ? show(*request) : Good;
 }
 
 } // namespace
@@ -145,6 +129,8 @@ int
 main(int argc, char** argv)
 {
   using namespace bayesian_icp;
-  return io::runProgram("pcl_bayesian_icp_viewer",
-                        [&] { return viewer::runTool(argc, argv); });
+  return io::runProgram("pcl_bayesian_icp_viewer", [&]() -> int {
+    const auto request = viewer::parseCommandLine(argc, argv);
+    return request ? viewer::show(*request) : viewer::Good;
+  });
 }

@@ -10,14 +10,11 @@ namespace bayesian_icp::viewer {
 
 namespace {
 
-double
-largestFinite(const Eigen::VectorXd& values)
+void
+append(const Eigen::Matrix3Xd& more, Eigen::Matrix3Xd& points)
 {
-  double largest = 0.0;
-  for (const double value : values)
-    if (value > largest)
-      largest = value;
-  return largest;
+  points.conservativeResize(3, points.cols() + more.cols());
+  points.rightCols(more.cols()) = more;
 }
 
 } // namespace
@@ -33,7 +30,9 @@ uncertaintyOf(const Scene& scene, const ViewOptions& options)
                                         : Eigen::Vector3d::Zero();
   result.spread = spreadAt(reference, scene.draws);
   result.point_deviations = pointDeviations(scene.source, scene.draws);
-  result.largest_point_deviation = largestFinite(result.point_deviations);
+  for (const double deviation : result.point_deviations) // NaN is not larger
+    if (deviation > result.largest_point_deviation)
+      result.largest_point_deviation = deviation;
   result.magnification =
       options.magnification > 0.0
           ? options.magnification
@@ -64,19 +63,15 @@ Eigen::Matrix3Xd
 shownPoints(const Scene& scene, const Uncertainty* uncertainty, const Layers& layers)
 {
   Eigen::Matrix3Xd points = movedPoints(scene.final_matrix, scene.source);
-  const auto add = [&points](const Eigen::Matrix3Xd& more) {
-    points.conservativeResize(3, points.cols() + more.cols());
-    points.rightCols(more.cols()) = more;
-  };
   if (layers.count(Layer::Target) > 0)
-    add(movedPoints(Eigen::Matrix4d::Identity(), scene.target));
+    append(movedPoints(Eigen::Matrix4d::Identity(), scene.target), points);
   if (layers.count(Layer::Source) > 0)
-    add(movedPoints(scene.guess, scene.source));
+    append(movedPoints(scene.guess, scene.source), points);
   if (uncertainty != nullptr && layers.count(Layer::Position) > 0)
-    add(positionEllipsoid(*uncertainty).vertices);
+    append(positionEllipsoid(*uncertainty).vertices, points);
   if (uncertainty != nullptr && layers.count(Layer::Rotation) > 0)
     for (const Mesh& cone : rotationCones(scene, *uncertainty))
-      add(cone.vertices);
+      append(cone.vertices, points);
   return points;
 }
 
@@ -122,9 +117,7 @@ pointsAtDraws(const Scene& scene,
   for (const Eigen::Matrix4d& draw : uncertainty.shown_draws) {
     const Eigen::Matrix3Xf chosen =
         scene.source(Eigen::all, randomChoice(scene.source.cols(), wanted, random));
-    const Eigen::Matrix3Xd points = movedPoints(draw, chosen);
-    all.conservativeResize(3, all.cols() + points.cols());
-    all.rightCols(points.cols()) = points;
+    append(movedPoints(draw, chosen), all);
   }
   return all;
 }
