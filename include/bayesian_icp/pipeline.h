@@ -72,7 +72,8 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const ProgressCallback& progress = ProgressCallback());
 
 /** \brief A typical coordinate of points: the median of their largest |x|, |y|, |z|
- * [m]. \param[in] points 3 x n, finite; 0 if there are none */
+ * [m]; 0 if none is finite.
+ * \param[in] points 3 x n; those that are not finite do not count */
 BAYESIAN_ICP_EXPORT double
 usualCoordinate(const Eigen::Matrix3Xd& points);
 

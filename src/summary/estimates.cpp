@@ -67,11 +67,14 @@ estimateOf(ChainSet chain_set)
 double
 usualCoordinate(const Eigen::Matrix3Xd& points)
 {
-  if (points.cols() == 0)
+  std::vector<double> largest;
+  for (const auto& point : points.colwise())
+    if (point.allFinite())
+      largest.push_back(point.cwiseAbs().maxCoeff());
+  if (largest.empty())
     return 0.0;
-  Eigen::RowVectorXd largest = points.cwiseAbs().colwise().maxCoeff();
-  double* const middle = largest.data() + largest.size() / 2;
-  std::nth_element(largest.data(), middle, largest.data() + largest.size());
+  const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
+  std::nth_element(largest.begin(), middle, largest.end());
   return *middle;
 }
 

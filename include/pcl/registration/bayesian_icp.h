@@ -82,7 +82,11 @@ public:
   /** \brief Draws of chain \p index, diverged or not; empty if there is no such chain.
    */
   Samples
-  getChain(std::size_t index) const;
+  getChain(std::size_t index) const
+  {
+    return (index < estimate_.chains.size() ? estimate_.chains[index].draws
+                                            : Samples(0, 6));
+  }
 
   /** \brief Whether chain \p index ran away or became non-finite; its draws are not
    * among getSamples(). False if there is no such chain. */
@@ -101,7 +105,10 @@ public:
 
   /** \brief T_target_source of getMean(). */
   Matrix4
-  getMeanTransformation() const;
+  getMeanTransformation() const
+  {
+    return (bayesian_icp::matrixOf(estimate_.summary.mean).template cast<Scalar>());
+  }
 
   /** \brief Covariance of the draws about getMean(), by default of the parameters
    * (x, y, z, roll, pitch, yaw) [m, rad]. */
@@ -254,7 +261,10 @@ protected:
   using Base::use_reciprocal_correspondence_;
 
   void
-  forgetResult() override;
+  forgetResult() override
+  {
+    estimate_ = bayesian_icp::PosteriorEstimate();
+  }
 
   /** \brief ICP, then the posterior. */
   bool
@@ -291,22 +301,10 @@ private:
   void
   reportStatus() const;
 
-  /** \brief Whether the target tree is not a ready one of the user's, or of a selection
-   * of the target: only then may another tree over the target stand in for it. */
-  bool
-  isTreeOfWholeTarget() const;
-
-  /** \brief This library's tree where ICP searches in it; null where it does not. */
-  std::shared_ptr<const bayesian_icp::KdTree>
-  ownTree() const;
-
-  /** \brief This library's tree over the whole target. */
+  /** \brief This library's tree over the whole target where presets `exact` and `paper`
+   * may search in it, null where they have to ask what the user has installed. */
   std::shared_ptr<const bayesian_icp::KdTree>
   targetTree() const;
-
-  /** \brief The state of a registration without ICP and without a mean. */
-  void
-  stayAt(const Matrix4& guess);
 
   bool
   moveToMean(const PointCloudSource& source);

@@ -124,7 +124,10 @@ protected:
   using typename Base::State;
 
   void
-  forgetResult() override;
+  forgetResult() override
+  {
+    result_ = Result();
+  }
 
   bool
   registerUsable(const PointCloudSourceConstPtr& source,
@@ -132,7 +135,11 @@ protected:
                  const Matrix4& guess) override;
 
   void
-  keepFailure(bool is_guess_finite, const char* reason) override;
+  keepFailure(bool is_guess_finite, const char* /* reason */) override
+  {
+    result_.end = is_guess_finite ? bayesian_icp::DescentEnd::TooFewCorrespondences
+                                  : bayesian_icp::DescentEnd::InvalidInput;
+  }
 
 private:
   using Search = bayesian_icp_detail::PairSearch<PointTarget>;

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <memory>
 #include <utility>
-#include <vector>
 
 namespace pcl {
 
@@ -24,23 +23,6 @@ smallerGate(double gate, double pcl_gate)
   return (std::abs(pcl_gate) < no_gate ? std::min(gate, std::abs(pcl_gate)) : gate);
 }
 
-/** Median of the points' largest |x|, |y|, |z| [m]; 0 if none is finite. */
-template <typename PointT>
-double
-usualCoordinate(const PointCloud<PointT>& cloud)
-{
-  std::vector<float> largest;
-  largest.reserve(cloud.size());
-  for (const auto& point : cloud)
-    if (isXYZFinite(point))
-      largest.push_back(point.getVector3fMap().cwiseAbs().maxCoeff());
-  if (largest.empty())
-    return (0.0);
-  const auto middle = largest.begin() + largest.size() / 2;
-  std::nth_element(largest.begin(), middle, largest.end());
-  return (static_cast<double>(*middle));
-}
-
 } // namespace bayesian_icp_detail
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -49,23 +31,6 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
 {
   reg_name_ = "BayesianIterativeClosestPoint";
   setOptions(options_);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-bayesian_icp::PoseMatrix
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getChain(
-    std::size_t index) const
-{
-  return (index < estimate_.chains.size() ? estimate_.chains[index].draws
-                                          : Samples(0, 6));
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-typename BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::Matrix4
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::getMeanTransformation()
-    const
-{
-  return (bayesian_icp::matrixOf(estimate_.summary.mean).template cast<Scalar>());
 }
 
 // Not inline: PCL's function has threads only where it is compiled with OpenMP, as this
@@ -84,13 +49,6 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setNumberOfThre
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::forgetResult()
-{
-  estimate_ = bayesian_icp::PosteriorEstimate();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
     const PointCloudSourceConstPtr& source,
@@ -103,7 +61,13 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
     return (true);
   }
   samplePosterior(source, guess);
-  stayAt(guess);
+  // Without ICP, and as long as there is no mean, the source stays at the guess.
+  this->nr_iterations_ = 0;
+  this->correspondences_->clear();
+  this->converged_ = false;
+  convergence_criteria_->setConvergenceState(
+      Base::State::CONVERGENCE_CRITERIA_NOT_CONVERGED);
+  final_transformation_ = guess;
   if (moveToMean(*source) ||
       estimate_.summary.status == bayesian_icp::Status::Cancelled)
     return (false);
@@ -175,10 +139,11 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
     return;
   }
   estimate_ = estimateByPreset(source, bayesian_icp::poseOf(initial));
-  bayesian_icp::doubtRounding(std::max(bayesian_icp_detail::usualCoordinate(*source),
-                                       bayesian_icp_detail::usualCoordinate(*target_)),
-                              options_,
-                              summary);
+  const auto usualCoordinate = [](const auto& cloud) {
+    return (bayesian_icp::usualCoordinate(bayesian_icp_detail::pointMatrix(cloud)));
+  };
+  bayesian_icp::doubtRounding(
+      std::max(usualCoordinate(*source), usualCoordinate(*target_)), options_, summary);
   reportStatus();
 }
 
@@ -212,11 +177,9 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
   double& gate =
       is_exact ? options.exact.residual.max_distance : options.paper.max_distance;
   gate = bayesian_icp_detail::smallerGate(gate, corr_dist_threshold_);
-  // A tree, or a point representation, of the user's own is asked itself by `paper`.
-  if ((is_exact || ownTree()) && hasPlainCorrespondences() && isTreeOfWholeTarget()) {
+  if (const auto tree = targetTree())
     return (bayesian_icp::estimatePosterior(
-        points, *targetTree(), start, options, progress_callback_));
-  }
+        points, *tree, start, options, progress_callback_));
   const auto search =
       this->makeCorrespondenceSearch(source, std::min(gate, corr_dist_threshold_));
   return (bayesian_icp::estimatePosterior(
@@ -285,41 +248,19 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::prepareTarget()
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-bool
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::isTreeOfWholeTarget()
-    const
-{
-  return (!force_no_recompute_ && !correspondence_estimation_->getIndicesTarget());
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-std::shared_ptr<const bayesian_icp::KdTree>
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::ownTree() const
-{
-  return (tree_ == this->own_tree_ ? this->own_tree_->seeded->get() : nullptr);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
 std::shared_ptr<const bayesian_icp::KdTree>
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::targetTree() const
 {
-  if (const auto tree = ownTree())
-    return (tree);
+  // The user's may be a ready tree, or one of a selection of the target.
+  if (!hasPlainCorrespondences() || force_no_recompute_ ||
+      correspondence_estimation_->getIndicesTarget())
+    return (nullptr);
+  const auto own = tree_ == this->own_tree_ ? this->own_tree_->seeded->get() : nullptr;
+  // `paper` asks a tree, or a point representation, of the user's own itself.
+  if (own || options_.preset == bayesian_icp::Preset::Paper)
+    return (own);
   return (std::make_shared<const bayesian_icp::KdTree>(
       bayesian_icp_detail::pointMatrix<float>(*target_), options_.chains.num_threads));
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::stayAt(
-    const Matrix4& guess)
-{
-  this->nr_iterations_ = 0;
-  this->correspondences_->clear();
-  this->converged_ = false;
-  convergence_criteria_->setConvergenceState(
-      Base::State::CONVERGENCE_CRITERIA_NOT_CONVERGED);
-  final_transformation_ = guess;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

@@ -261,7 +261,22 @@ public:
    * NaN.
    */
   void
-  setInputTarget(const PointCloudTargetConstPtr& cloud) override;
+  setInputTarget(const PointCloudTargetConstPtr& cloud) override
+  {
+    const auto is_too_far = [](const PointTarget& point) {
+      return (isXYZFinite(point) && !canBeQueried(point.getVector3fMap()));
+    };
+    if (!cloud || std::none_of(cloud->begin(), cloud->end(), is_too_far)) {
+      Base::setInputTarget(cloud);
+      return;
+    }
+    const PointCloudTargetPtr usable(new PointCloudTarget(*cloud));
+    for (auto& point : *usable)
+      if (is_too_far(point))
+        point.getVector3fMap().setConstant(std::numeric_limits<float>::quiet_NaN());
+    usable->is_dense = false;
+    Base::setInputTarget(usable);
+  }
 
   /** \brief Set the search tree of the target, as PCL's. Refused, with a message, are a
    * null pointer, and a tree that cannot be told of the point representation that was
@@ -269,7 +284,18 @@ public:
    * \param[in] tree where points are searched
    * \param[in] force_no_recompute whether it is ready, and not given the target */
   void
-  setSearchMethodTarget(const KdTreePtr& tree, bool force_no_recompute = false);
+  setSearchMethodTarget(const KdTreePtr& tree, bool force_no_recompute = false)
+  {
+    if (refuse(!tree, "setSearchMethodTarget", "the search tree is a null pointer"))
+      return;
+    // A ready tree may be in use by others, and PCL leaves it as it is.
+    if (!force_no_recompute &&
+        refuse(fillHollow(*tree) && point_representation_,
+               "setSearchMethodTarget",
+               "the search tree cannot be given the point representation"))
+      return;
+    Base::setSearchMethodTarget(tree, force_no_recompute);
+  }
 
   /** \brief Set the search tree of the source, for reciprocal pairs, as PCL's; a null
    * pointer is refused.
@@ -277,12 +303,28 @@ public:
    * \param[in] force_no_recompute whether it is ready, and not given the source */
   void
   setSearchMethodSource(const KdTreeReciprocalPtr& tree,
-                        bool force_no_recompute = false);
+                        bool force_no_recompute = false)
+  {
+    if (refuse(!tree, "setSearchMethodSource", "the search tree is a null pointer"))
+      return;
+    if (!force_no_recompute)
+      fillHollow(*tree);
+    Base::setSearchMethodSource(tree, force_no_recompute);
+  }
 
   /** \brief Set how points are compared, as PCL's. Refused, with a message, if the
    * search tree of the target cannot be told [see setSearchMethodTarget]. */
   void
-  setPointRepresentation(const PointRepresentationConstPtr& representation);
+  setPointRepresentation(const PointRepresentationConstPtr& representation)
+  {
+    if (representation && !force_no_recompute_ &&
+        refuse(fillHollow(*tree_),
+               "setPointRepresentation",
+               "the search tree cannot be given the point representation"))
+      return;
+    point_representation_ = representation;
+    Base::setPointRepresentation(representation);
+  }
 
   /** \brief Mean squared distance [m^2] of the transformed source to the target, as
    * PCL's, leaving out non-finite points (PCL 1.13 aborts on them, also where it is
@@ -290,7 +332,28 @@ public:
    * \param[in] max_range largest squared distance that counts [m^2]
    * \return the largest double if no point is in range */
   double
-  getFitnessScore(double max_range = std::numeric_limits<double>::max());
+  getFitnessScore(double max_range = std::numeric_limits<double>::max())
+  {
+    PointCloudSource moved;
+    transformPointCloud(*input_, moved, final_transformation_);
+    Indices index(1);
+    std::vector<float> squared_distance(1);
+    double sum = 0.0;
+    std::size_t num_in_range = 0;
+    PointTarget query;
+    for (const auto& point : moved) {
+      if (!canBeQueried(point.getVector3fMap()))
+        continue;
+      copyPoint(point, query);
+      if (tree_->nearestKSearch(query, 1, index, squared_distance) > 0 &&
+          squared_distance[0] <= max_range) {
+        sum += squared_distance[0];
+        ++num_in_range;
+      }
+    }
+    return (num_in_range > 0 ? sum / static_cast<double>(num_in_range)
+                             : std::numeric_limits<double>::max());
+  }
 
 protected:
   using Base::converged_;
@@ -318,7 +381,49 @@ protected:
 
   /** Registers the usable points, and moves the whole source to where they went. */
   void
-  computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
+  computeTransformation(PointCloudSource& output, const Matrix4& guess) override
+  {
+    forgetResult();
+    const PointCloudSourceConstPtr whole = input_;
+    const SourceSelection<PointSource, PointTarget, Scalar> selection(
+        *correspondence_estimation_, *whole, *indices_);
+    const Eigen::Matrix4f float_guess = guess.template cast<float>();
+    const Indices usable = usablePoints(*whole, selection.indices(), float_guess);
+    const bool is_target_usable =
+        std::any_of(target_->begin(), target_->end(), [](const PointTarget& point) {
+          return (isXYZFinite(point));
+        });
+    if (!float_guess.allFinite() || !is_target_usable ||
+        usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
+      failWithoutCorrespondences(output, guess);
+      return;
+    }
+
+    // PCL's ICP takes all points of input_, and writes to output while it still needs
+    // them if both are one cloud (icp.align(*source)).
+    PointCloudSourceConstPtr source = whole;
+    const bool is_subset = !isWholeCloud(usable, whole->size());
+    if (is_subset || &output == whole.get()) {
+      PointCloudSourcePtr copy(new PointCloudSource);
+      copyPointCloud(*whole, usable, *copy);
+      source = copy;
+    }
+    PointCloudSource scratch;
+    bool is_output_moved = false;
+    {
+      const Substitution<PointCloudSourceConstPtr> input(input_, source);
+      is_output_moved =
+          registerUsable(source, source == whole ? output : scratch, guess);
+    }
+    if (is_subset)
+      for (auto& correspondence : *correspondences_)
+        correspondence.index_query =
+            usable[static_cast<std::size_t>(correspondence.index_query)];
+    if (source != whole || !is_output_moved) {
+      output = *whole;
+      transformCloud(*whole, output, final_transformation_);
+    }
+  }
 
   /** Forget the last registration. */
   virtual void
@@ -337,12 +442,46 @@ protected:
   keepFailure(bool is_guess_finite, const char* reason) = 0;
 
   bool
-  hasDefaultEstimation() const;
+  hasDefaultEstimation() const
+  {
+    const auto& estimation = *correspondence_estimation_;
+    if (correspondence_estimation_ != own_estimation_ &&
+        typeid(estimation) != typeid(registration::CorrespondenceEstimation<PointSource,
+                                                                            PointTarget,
+                                                                            Scalar>))
+      return (false);
+    return (isDefaultTree(*tree_) &&
+            (!use_reciprocal_correspondence_ || isDefaultTree(*tree_reciprocal_)));
+  }
 
   /** A search among the pairs that the estimation and the rejectors would find for
    * points of \p source within \p max_distance [m]. */
   std::unique_ptr<PairSearch<PointTarget>>
-  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source, double max_distance);
+  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source, double max_distance)
+  {
+    std::unique_ptr<KdTreeSearch<PointSource, PointTarget>> default_search;
+    if (hasDefaultEstimation())
+      default_search.reset(new KdTreeSearch<PointSource, PointTarget>(
+          tree_,
+          target_,
+          max_distance,
+          use_reciprocal_correspondence_ ? source : PointCloudSourceConstPtr()));
+    if (default_search && correspondence_rejectors_.empty())
+      return default_search;
+
+    typename PluginSearch<PointSource, PointTarget, Scalar>::Plugins plugins;
+    plugins.default_search = std::move(default_search);
+    plugins.estimation = correspondence_estimation_;
+    plugins.rejectors = correspondence_rejectors_;
+    plugins.max_distance = max_distance;
+    plugins.is_reciprocal = use_reciprocal_correspondence_;
+    plugins.source_has_normals = source_has_normals_;
+    plugins.transform = [this](const PointCloudSource& in,
+                               PointCloudSource& out,
+                               const Matrix4& T) { transformCloud(in, out, T); };
+    return (std::unique_ptr<PairSearch<PointTarget>>(
+        new PluginSearch<PointSource, PointTarget, Scalar>(plugins, source, target_)));
+  }
 
   /** The transformation next to \p to that the transformation estimation allows: a
    * user's own may know some motions only (2-D, translation), so it is asked for the
@@ -350,7 +489,22 @@ protected:
   Matrix4
   asEstimationAllows(const PointCloudSource& source,
                      const Matrix4& from,
-                     const Matrix4& to);
+                     const Matrix4& to)
+  {
+    const auto& estimation = *transformation_estimation_;
+    if (typeid(estimation) ==
+        typeid(registration::
+                   TransformationEstimationSVD<PointSource, PointTarget, Scalar>))
+      return (to);
+    PointCloudSource there = source, here = source;
+    transformCloud(source, here, from);
+    transformCloud(source, there, to);
+    PointCloudTarget goal;
+    copyPointCloud(there, goal);
+    Matrix4 motion = Matrix4::Identity();
+    estimation.estimateRigidTransformation(here, goal, motion);
+    return (motion * from);
+  }
 
   /** The search tree of the target, unless the user installs another one. */
   const shared_ptr<SeededKdTree<PointTarget>> own_tree_ =
@@ -364,257 +518,40 @@ private:
   /** Says why a plug-in is not taken.
    * \return \p is_refused */
   bool
-  refuse(bool is_refused, const char* setter, const char* reason) const;
-
-  bool
-  targetIsUsable() const;
+  refuse(bool is_refused, const char* setter, const char* reason) const
+  {
+    if (is_refused)
+      PCL_ERROR(
+          "[pcl::%s::%s] Not taken: %s.\n", getClassName().c_str(), setter, reason);
+    return (is_refused);
+  }
 
   void
-  failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess);
+  failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess)
+  {
+    const bool is_guess_finite = guess.template cast<float>().allFinite();
+    const char* reason = is_guess_finite
+                             ? "fewer finite points than the registration needs"
+                             : "the initial guess is not finite";
+    PCL_ERROR("[pcl::%s::computeTransformation] No registration: %s.\n",
+              getClassName().c_str(),
+              reason);
+    keepFailure(is_guess_finite, reason);
+    nr_iterations_ = 0;
+    converged_ = false;
+    correspondences_->clear();
+    convergence_criteria_->setConvergenceState(
+        State::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
+    output = *input_;
+    if (is_guess_finite) {
+      final_transformation_ = guess;
+      transformCloud(*input_, output, guess);
+    }
+  }
 
   /** PCL's class keeps it for itself. */
   PointRepresentationConstPtr point_representation_;
 };
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-bool
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::refuse(
-    bool is_refused, const char* setter, const char* reason) const
-{
-  if (is_refused)
-    PCL_ERROR("[pcl::%s::%s] Not taken: %s.\n", getClassName().c_str(), setter, reason);
-  return (is_refused);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setSearchMethodTarget(
-    const KdTreePtr& tree, bool force_no_recompute)
-{
-  if (refuse(!tree, "setSearchMethodTarget", "the search tree is a null pointer"))
-    return;
-  // A ready tree may be in use by others, and PCL leaves it as it is.
-  if (!force_no_recompute &&
-      refuse(fillHollow(*tree) && point_representation_,
-             "setSearchMethodTarget",
-             "the search tree cannot be given the point representation"))
-    return;
-  Base::setSearchMethodTarget(tree, force_no_recompute);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setSearchMethodSource(
-    const KdTreeReciprocalPtr& tree, bool force_no_recompute)
-{
-  if (refuse(!tree, "setSearchMethodSource", "the search tree is a null pointer"))
-    return;
-  if (!force_no_recompute)
-    fillHollow(*tree);
-  Base::setSearchMethodSource(tree, force_no_recompute);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setPointRepresentation(
-    const PointRepresentationConstPtr& representation)
-{
-  if (representation && !force_no_recompute_ &&
-      refuse(fillHollow(*tree_),
-             "setPointRepresentation",
-             "the search tree cannot be given the point representation"))
-    return;
-  point_representation_ = representation;
-  Base::setPointRepresentation(representation);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::setInputTarget(
-    const PointCloudTargetConstPtr& cloud)
-{
-  const auto is_too_far = [](const PointTarget& point) {
-    return (isXYZFinite(point) && !canBeQueried(point.getVector3fMap()));
-  };
-  if (!cloud || std::none_of(cloud->begin(), cloud->end(), is_too_far)) {
-    Base::setInputTarget(cloud);
-    return;
-  }
-  const PointCloudTargetPtr usable(new PointCloudTarget(*cloud));
-  for (auto& point : *usable)
-    if (is_too_far(point))
-      point.getVector3fMap().setConstant(std::numeric_limits<float>::quiet_NaN());
-  usable->is_dense = false;
-  Base::setInputTarget(usable);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-double
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::getFitnessScore(
-    double max_range)
-{
-  PointCloudSource moved;
-  transformPointCloud(*input_, moved, final_transformation_);
-  Indices index(1);
-  std::vector<float> squared_distance(1);
-  double sum = 0.0;
-  std::size_t num_in_range = 0;
-  PointTarget query;
-  for (const auto& point : moved) {
-    if (!canBeQueried(point.getVector3fMap()))
-      continue;
-    copyPoint(point, query);
-    if (tree_->nearestKSearch(query, 1, index, squared_distance) > 0 &&
-        squared_distance[0] <= max_range) {
-      sum += squared_distance[0];
-      ++num_in_range;
-    }
-  }
-  return (num_in_range > 0 ? sum / static_cast<double>(num_in_range)
-                           : std::numeric_limits<double>::max());
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::computeTransformation(
-    PointCloudSource& output, const Matrix4& guess)
-{
-  forgetResult();
-  const PointCloudSourceConstPtr whole = input_;
-  const SourceSelection<PointSource, PointTarget, Scalar> selection(
-      *correspondence_estimation_, *whole, *indices_);
-  const Eigen::Matrix4f float_guess = guess.template cast<float>();
-  const Indices usable = usablePoints(*whole, selection.indices(), float_guess);
-  if (!float_guess.allFinite() || !targetIsUsable() ||
-      usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
-    failWithoutCorrespondences(output, guess);
-    return;
-  }
-
-  // PCL's ICP takes all points of input_, and writes to output while it still needs
-  // them if both are one cloud (icp.align(*source)).
-  PointCloudSourceConstPtr source = whole;
-  const bool is_subset = !isWholeCloud(usable, whole->size());
-  if (is_subset || &output == whole.get()) {
-    PointCloudSourcePtr copy(new PointCloudSource);
-    copyPointCloud(*whole, usable, *copy);
-    source = copy;
-  }
-  PointCloudSource scratch;
-  bool is_output_moved = false;
-  {
-    const Substitution<PointCloudSourceConstPtr> input(input_, source);
-    is_output_moved = registerUsable(source, source == whole ? output : scratch, guess);
-  }
-  if (is_subset)
-    for (auto& correspondence : *correspondences_)
-      correspondence.index_query =
-          usable[static_cast<std::size_t>(correspondence.index_query)];
-  if (source != whole || !is_output_moved) {
-    output = *whole;
-    transformCloud(*whole, output, final_transformation_);
-  }
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-bool
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::targetIsUsable() const
-{
-  for (const auto& point : *target_)
-    if (isXYZFinite(point))
-      return (true);
-  return (false);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess)
-{
-  const bool is_guess_finite = guess.template cast<float>().allFinite();
-  const char* reason = is_guess_finite
-                           ? "fewer finite points than the registration needs"
-                           : "the initial guess is not finite";
-  PCL_ERROR("[pcl::%s::computeTransformation] No registration: %s.\n",
-            getClassName().c_str(),
-            reason);
-  keepFailure(is_guess_finite, reason);
-  nr_iterations_ = 0;
-  converged_ = false;
-  correspondences_->clear();
-  convergence_criteria_->setConvergenceState(
-      State::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
-  output = *input_;
-  if (is_guess_finite) {
-    final_transformation_ = guess;
-    transformCloud(*input_, output, guess);
-  }
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-bool
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::hasDefaultEstimation()
-    const
-{
-  const auto& estimation = *correspondence_estimation_;
-  if (correspondence_estimation_ != own_estimation_ &&
-      typeid(estimation) !=
-          typeid(
-              registration::CorrespondenceEstimation<PointSource, PointTarget, Scalar>))
-    return (false);
-  return (isDefaultTree(*tree_) &&
-          (!use_reciprocal_correspondence_ || isDefaultTree(*tree_reciprocal_)));
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-std::unique_ptr<PairSearch<PointTarget>>
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    makeCorrespondenceSearch(const PointCloudSourceConstPtr& source,
-                             double max_distance)
-{
-  std::unique_ptr<KdTreeSearch<PointSource, PointTarget>> default_search;
-  if (hasDefaultEstimation())
-    default_search.reset(new KdTreeSearch<PointSource, PointTarget>(
-        tree_,
-        target_,
-        max_distance,
-        use_reciprocal_correspondence_ ? source : PointCloudSourceConstPtr()));
-  if (default_search && correspondence_rejectors_.empty())
-    return default_search;
-
-  typename PluginSearch<PointSource, PointTarget, Scalar>::Plugins plugins;
-  plugins.default_search = std::move(default_search);
-  plugins.estimation = correspondence_estimation_;
-  plugins.rejectors = correspondence_rejectors_;
-  plugins.max_distance = max_distance;
-  plugins.is_reciprocal = use_reciprocal_correspondence_;
-  plugins.source_has_normals = source_has_normals_;
-  plugins.transform = [this](const PointCloudSource& in,
-                             PointCloudSource& out,
-                             const Matrix4& T) { transformCloud(in, out, T); };
-  return (std::unique_ptr<PairSearch<PointTarget>>(
-      new PluginSearch<PointSource, PointTarget, Scalar>(plugins, source, target_)));
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-typename CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::Matrix4
-CheckedIterativeClosestPoint<PointSource, PointTarget, Scalar>::asEstimationAllows(
-    const PointCloudSource& source, const Matrix4& from, const Matrix4& to)
-{
-  const auto& estimation = *transformation_estimation_;
-  if (typeid(estimation) ==
-      typeid(
-          registration::TransformationEstimationSVD<PointSource, PointTarget, Scalar>))
-    return (to);
-  PointCloudSource there = source, here = source;
-  transformCloud(source, here, from);
-  transformCloud(source, there, to);
-  PointCloudTarget goal;
-  copyPointCloud(there, goal);
-  Matrix4 motion = Matrix4::Identity();
-  estimation.estimateRigidTransformation(here, goal, motion);
-  return (motion * from);
-}
 
 } // namespace bayesian_icp_detail
 } // namespace pcl

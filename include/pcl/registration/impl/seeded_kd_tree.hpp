@@ -159,22 +159,18 @@ private:
   void
   buildFlann() const
   {
-    buildOnce(is_flann_built_, [this] { buildFlannAnew(); });
-  }
-
-  void
-  buildFlannAnew() const
-  {
-    const auto copy = pcl::make_shared<PointCloud<PointT>>();
-    copy->resize(static_cast<std::size_t>(points().cols()));
-    for (std::size_t i = 0; i < copy->size(); ++i)
-      (*copy)[i].getVector3fMap() = points().col(static_cast<Eigen::Index>(i));
-    auto& self = const_cast<SeededFlann&>(*this);
-    const CloudConstPtr cloud = this->input_;
-    const float epsilon = this->epsilon_;
-    self.Base::setInputCloud(copy);
-    self.input_ = cloud;
-    self.epsilon_ = epsilon;
+    buildOnce(is_flann_built_, [this] {
+      const auto copy = pcl::make_shared<PointCloud<PointT>>();
+      copy->resize(static_cast<std::size_t>(points().cols()));
+      for (std::size_t i = 0; i < copy->size(); ++i)
+        (*copy)[i].getVector3fMap() = points().col(static_cast<Eigen::Index>(i));
+      auto& self = const_cast<SeededFlann&>(*this);
+      const CloudConstPtr cloud = this->input_;
+      const float epsilon = this->epsilon_;
+      self.Base::setInputCloud(copy);
+      self.input_ = cloud;
+      self.epsilon_ = epsilon;
+    });
   }
 
   /** Builds unless that is done; other threads that ask wait meanwhile. */
@@ -253,7 +249,7 @@ public:
     correspondences.erase(std::remove_if(correspondences.begin(),
                                          correspondences.end(),
                                          [](const Correspondence& pair) {
-                                           return (pair.index_match == no_match);
+                                           return (pair.index_match == UNAVAILABLE);
                                          }),
                           correspondences.end());
     this->deinitCompute();
@@ -271,9 +267,8 @@ protected:
   using Base::tree_;
 
 private:
-  static constexpr index_t no_match = static_cast<index_t>(-1);
-
-  /** The pairs of some of the indices; index_match is no_match where there is none. */
+  /** The pairs of some of the indices; index_match is UNAVAILABLE where there is none.
+   */
   void
   findPairs(std::size_t begin,
             std::size_t end,
@@ -296,7 +291,7 @@ private:
       const index_t index = (*indices_)[i];
       const PointSource& point = (*input_)[static_cast<std::size_t>(index)];
       const auto nearest = tree.nearest(point.getVector3fMap(), gate, last_answers_[i]);
-      pairs[i] = Correspondence(index, no_match, 0.f);
+      pairs[i] = Correspondence(index, UNAVAILABLE, 0.f);
       if (nearest.index == bayesian_icp::KdTree::none)
         continue;
       last_answers_[i] = nearest.index;
@@ -315,9 +310,6 @@ private:
   /** One for each of the indices. */
   std::vector<std::uint32_t> last_answers_;
 };
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-constexpr index_t SeededEstimation<PointSource, PointTarget, Scalar>::no_match;
 
 } // namespace bayesian_icp_detail
 } // namespace pcl

@@ -45,23 +45,6 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void
-StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    forgetResult()
-{
-  result_ = Result();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    keepFailure(bool is_guess_finite, const char* /* reason */)
-{
-  result_.end = is_guess_finite ? bayesian_icp::DescentEnd::TooFewCorrespondences
-                                : bayesian_icp::DescentEnd::InvalidInput;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
     registerUsable(const PointCloudSourceConstPtr& source,
