@@ -59,9 +59,9 @@ SgldChain::SgldChain(const SgldOptions& options,
                      MiniBatchGradient gradient,
                      RunsAway runs_away,
                      Random& random)
-: options_(options)
+: SamplingChain(start)
+, options_(options)
 , num_steps_(num_steps)
-, pose_(start)
 , gradient_(std::move(gradient))
 , runs_away_(std::move(runs_away))
 , preconditioner_(options)
@@ -71,25 +71,19 @@ SgldChain::SgldChain(const SgldOptions& options,
 void
 SgldChain::step()
 {
-  const EnergyGradient gradient = gradient_(pose_, random_);           // (2, 3, 6, 7)
+  const Vector6d pose = position_;
+  const EnergyGradient gradient = gradient_(pose, random_);            // (2, 3, 6, 7)
   const Vector6d A = preconditioner_.update(gradient.mini_batch_mean); // (10, 11)
   const double alpha = stepSizeAt(options_, steps_made_++, num_steps_);
-  const Vector6d last_pose = pose_;
-  pose_ = sgldStep(
-      pose_, gradient.energy, A, alpha, options_.noise_factor, random_); // (5, 8, 9)
-  num_jumps_ += (pose_ - last_pose).tail<3>().cwiseAbs().maxCoeff() > half_a_turn;
-}
-
-const Vector6d&
-SgldChain::position() const
-{
-  return pose_;
+  position_ = sgldStep(
+      pose, gradient.energy, A, alpha, options_.noise_factor, random_); // (5, 8, 9)
+  num_jumps_ += (position_ - pose).tail<3>().cwiseAbs().maxCoeff() > half_a_turn;
 }
 
 bool
 SgldChain::hasDiverged() const
 {
-  return SamplingChain::hasDiverged() || runs_away_(pose_);
+  return SamplingChain::hasDiverged() || runs_away_(position_);
 }
 
 } // namespace bayesian_icp

@@ -65,7 +65,8 @@ sgldStep(const Vector6d& pose,
 /** \brief Whether a pose is so far out that the chain has to be stopped. */
 using RunsAway = std::function<bool(const Vector6d& pose)>;
 
-/** \brief One chain of Algorithm 1. */
+/** \brief One chain of Algorithm 1. Its position is the pose [m, rad], whose angles may
+ * lie beyond one turn. */
 class SgldChain : public SamplingChain {
 public:
   /** \param[in] options constants of Algorithm 1; must outlive this object
@@ -84,10 +85,6 @@ public:
   void
   step() override;
 
-  /** \brief The pose [m, rad]; its angles may lie beyond one turn. */
-  const Vector6d&
-  position() const override;
-
   bool
   hasDiverged() const override;
 
@@ -105,7 +102,6 @@ private:
   long num_steps_;
   long steps_made_ = 0;
   long num_jumps_ = 0;
-  Vector6d pose_;
   MiniBatchGradient gradient_;
   RunsAway runs_away_;
   RmsPropPreconditioner preconditioner_;

@@ -87,12 +87,12 @@ LangevinChain::LangevinChain(const StepPlan& plan,
                              const Vector6d& start,
                              StochasticGradient& gradient,
                              Random& random)
-: plan_(plan)
+: SamplingChain(start)
+, plan_(plan)
 , noise_amplitudes_(
       (2.0 * plan.step_sizes.array() * (1.0 - plan.noise_shares.array())).sqrt())
 , gradient_(gradient)
 , random_(random)
-, position_(start)
 , last_noise_(random.normal6())
 {}
 
@@ -107,12 +107,6 @@ LangevinChain::step()
   const Vector6d kick = 0.5 * noise_amplitudes_.cwiseProduct(noise + last_noise_);
   position_ += plan_.directions * (kick - drift);
   last_noise_ = noise;
-}
-
-const Vector6d&
-LangevinChain::position() const
-{
-  return position_;
 }
 
 bool

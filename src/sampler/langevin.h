@@ -56,9 +56,6 @@ public:
   void
   step() override;
 
-  const Vector6d&
-  position() const override;
-
   bool
   hasDiverged() const override;
 
@@ -67,7 +64,6 @@ private:
   Vector6d noise_amplitudes_;
   StochasticGradient& gradient_;
   Random& random_;
-  Vector6d position_;
   Vector6d last_noise_;
 };
 

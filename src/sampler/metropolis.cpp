@@ -14,9 +14,9 @@ constexpr double short_walk = 0.3;
 MetropolisChain::MetropolisChain(const Vector6d& start,
                                  StochasticEnergy& energy,
                                  Random& random)
-: energy_(energy)
+: SamplingChain(start)
+, energy_(energy)
 , random_(random)
-, position_(start)
 , position_energy_(energy.fullEnergy(start))
 {}
 
@@ -68,12 +68,6 @@ MetropolisChain::step()
   else
     walks_.add(walk(proposal_->walk_factor, 1.0));
   is_jump_next_ = !is_jump_next_;
-}
-
-const Vector6d&
-MetropolisChain::position() const
-{
-  return position_;
 }
 
 bool

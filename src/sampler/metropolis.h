@@ -43,9 +43,6 @@ public:
   bool
   walk(const Matrix6d& factor, double temperature);
 
-  const Vector6d&
-  position() const override;
-
   bool
   hasDiverged() const override;
 
@@ -92,7 +89,6 @@ private:
   StochasticEnergy& energy_;
   Random& random_;
   std::shared_ptr<const MetropolisProposal> proposal_;
-  Vector6d position_;
   double position_energy_;
   bool is_jump_next_ = false;
   Count walks_, jumps_;

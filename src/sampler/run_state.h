@@ -1,11 +1,9 @@
 /** \file
- * \brief What the chains of one run share: threads, progress, cancellation and the
- * first exception.
+ * \brief What the chains of one run share: threads, progress and cancellation.
  */
 #pragma once
 
-#include "threads/first_exception.h"
-#include "threads/num_threads.h"
+#include "threads/for_each_piece.h"
 
 #include <bayesian_icp/draws.h>
 
@@ -41,20 +39,11 @@ public:
     return cancelled_;
   }
 
-  /** \brief Runs \p work, keeping its exception for the thread that started the run:
-   * none may leave a parallel region. */
-  template <typename Work>
+  /** \brief Ends the run of all threads, which is not called cancelled. */
   void
-  guard(const Work& work)
+  stop()
   {
-    if (!first_exception_.guard(work))
-      stopped_ = true;
-  }
-
-  void
-  rethrow() const
-  {
-    first_exception_.rethrow();
+    stopped_ = true;
   }
 
   /** \brief Counts a step of \p chain and tells the callback. While the run has
@@ -92,7 +81,6 @@ private:
   long steps_ = 0;
   std::atomic<bool> stopped_{false};
   std::atomic<bool> cancelled_{false};
-  FirstException first_exception_;
   std::mutex mutex_;
 };
 
@@ -103,11 +91,15 @@ template <typename Work>
 void
 forEachChain(int num_chains, int num_threads, RunState& run, const Work& work)
 {
-#pragma omp parallel for schedule(dynamic, 1)                                          \
-    num_threads(numThreadsFor(num_threads, num_chains))
-  for (int i = 0; i < num_chains; ++i)
-    run.guard([&] { work(i); });
-  run.rethrow();
+  forEachPiece(num_chains, num_threads, [&](std::ptrdiff_t i) {
+    try {
+      work(static_cast<int>(i));
+    }
+    catch (...) {
+      run.stop();
+      throw;
+    }
+  });
 }
 
 } // namespace bayesian_icp

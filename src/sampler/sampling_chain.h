@@ -19,16 +19,24 @@ public:
   step() = 0;
 
   /** \brief Position of the chain in the sampler's space. */
-  virtual const Vector6d&
-  position() const = 0;
+  const Vector6d&
+  position() const
+  {
+    return position_;
+  }
 
   /** \brief Whether the chain is so far out that it has to be stopped; by default, if
    * it is not finite. */
   virtual bool
   hasDiverged() const
   {
-    return !position().allFinite();
+    return !position_.allFinite();
   }
+
+protected:
+  explicit SamplingChain(const Vector6d& start) : position_(start) {}
+
+  Vector6d position_;
 };
 
 } // namespace bayesian_icp

@@ -24,12 +24,12 @@ public:
   ProductFormChain(const ProductCoordinates& coordinates,
                    const Prior& prior,
                    Random& random)
-  : coordinates_(coordinates)
+  : SamplingChain(coordinates.gaussian().mean())
+  , coordinates_(coordinates)
   , prior_(prior)
   , random_(random)
   , walk_scales_(Vector6d::Zero())
   , held_(Vector6d::Ones())
-  , position_(coordinates.gaussian().mean())
   , energy_(energyAt(position_))
   {
     const int num_walking = coordinates.numPriorOnly();
@@ -46,12 +46,6 @@ public:
     proposeHeld();
     if (coordinates_.numPriorOnly() > 0)
       acceptOrStay(position_ + walk_scales_.cwiseProduct(random_.normal6()), 0.0);
-  }
-
-  const Vector6d&
-  position() const override
-  {
-    return position_;
   }
 
 private:
@@ -107,7 +101,6 @@ private:
   Vector6d walk_scales_;
   /** 1 where b is, 0 where a is. */
   Vector6d held_;
-  Vector6d position_;
   double energy_;
 };
 
