@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace bayesian_icp {
 
@@ -25,14 +24,6 @@ constexpr double max_step_length = 0.5, max_step_angle = 0.3; // [m], [rad]
 /** Span of the tempered Gaussian, in root mean square match distances. */
 constexpr double tempered_span = 3.0;
 constexpr double max_temperature = 4096.0;
-
-std::vector<std::size_t>
-upTo(std::size_t num_points)
-{
-  std::vector<std::size_t> points(num_points);
-  std::iota(points.begin(), points.end(), std::size_t(0));
-  return points;
-}
 
 double
 gainOf(int step)
@@ -55,7 +46,7 @@ ChainPoseEnergy::ChainPoseEnergy(const PoseEnergy& pose_energy,
 : pose_energy_(pose_energy)
 , settings_(settings)
 , prior_precision_(pose_energy.priorPrecision())
-, all_points_(upTo(pose_energy.numPoints()))
+, all_points_(pose_energy.allPoints())
 , workspace_(pose_energy.makeWorkspace())
 , batches_(all_points_)
 {}

@@ -16,13 +16,6 @@ namespace {
 /** Largest spread of the starts that is chosen automatically [m, rad]. */
 constexpr double max_automatic_spread = 0.5;
 
-Vector6d
-startSpread(const ExactOptions& options, const Prior& prior)
-{
-  return options.initial_spread.valueOr(
-      prior.variance().cwiseSqrt().cwiseMin(max_automatic_spread));
-}
-
 /** Smallest share of Tukey's kernel that the points together must use. A tenth of them
  * on the target's surface would use it. */
 constexpr double min_used_by_kernel = 0.1;
@@ -93,7 +86,8 @@ sampleExact(const PoseEnergy& energy,
 {
   PoseChainSettings settings;
   settings.start_centre = energy.toPhi(initial_pose);
-  settings.start_spread = startSpread(options, energy.prior());
+  settings.start_spread = options.initial_spread.valueOr(
+      energy.prior().variance().cwiseSqrt().cwiseMin(max_automatic_spread));
   settings.fixed_batch = evenlySpread(energy.numPoints(), fixed_batch_size);
   settings.has_diverged = has_diverged;
 

@@ -1,8 +1,7 @@
 #include "exact/modes.h"
 
 #include "algebra/decompositions.h"
-
-#include <bayesian_icp/summary.h>
+#include "summary/estimates.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,15 +39,6 @@ hasBarrier(const Vector6d& from, const Vector6d& to, StochasticEnergy& energy)
   return false;
 }
 
-PoseMatrix
-drawsOf(const ChainMode& mode, const std::vector<Chain>& chains)
-{
-  std::vector<Chain> members;
-  for (const int i : mode.members)
-    members.push_back(chains[static_cast<std::size_t>(i)]);
-  return pooledDraws(members);
-}
-
 bool
 drawsOverlap(const PoseMatrix& a, const PoseMatrix& b)
 {
@@ -71,8 +61,7 @@ mergeInto(ChainMode& mode, const ChainMode& other)
   mode.log_evidence = std::max(mode.log_evidence, other.log_evidence);
 }
 
-} // namespace
-
+/** log of the mean of exp(values). */
 double
 logMeanExp(const std::vector<double>& values)
 {
@@ -82,6 +71,8 @@ logMeanExp(const std::vector<double>& values)
     sum += std::exp(value - largest);
   return largest + std::log(sum / static_cast<double>(values.size()));
 }
+
+} // namespace
 
 double
 logEvidence(StochasticEnergy& energy, const Gaussian& gaussian, Random& random)

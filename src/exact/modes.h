@@ -18,10 +18,6 @@ constexpr double max_evidence_loss = 10.0;
 double
 logEvidence(StochasticEnergy& energy, const Gaussian& gaussian, Random& random);
 
-/** \brief log of the mean of exp(values). */
-double
-logMeanExp(const std::vector<double>& values);
-
 /** \brief Group chains whose Gaussians overlap, or between which there is no energy
  * barrier.
  * \param[in] energy of any chain: all have the same values */

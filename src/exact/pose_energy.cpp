@@ -120,14 +120,6 @@ addCurvature(const Eigen::Vector3f& arm,
     terms.plane_curvature.noalias() += rows * information * rows.transpose();
 }
 
-std::vector<std::size_t>
-allPoints(std::size_t num_points)
-{
-  std::vector<std::size_t> all(num_points);
-  std::iota(all.begin(), all.end(), std::size_t(0));
-  return all;
-}
-
 } // namespace
 
 PoseEnergy::PoseEnergy(const Eigen::Matrix3Xd& source_points,
@@ -157,8 +149,8 @@ PoseEnergy::energy(const Vector6d& theta) const
 double
 PoseEnergy::energy(const Vector6d& theta, EnergyWorkspace& workspace) const
 {
-  const auto terms = batchTerms(
-      toPhi(theta), allPoints(numPoints()), BatchTerms::Nothing, residual_, workspace);
+  const auto terms =
+      batchTerms(toPhi(theta), allPoints(), BatchTerms::Nothing, residual_, workspace);
   return weight_ * terms.energy + prior_.energy(theta);
 }
 
@@ -168,9 +160,7 @@ PoseEnergy::energyGradient(const Vector6d& theta) const
   EnergyWorkspace workspace = makeWorkspace();
   const Vector6d phi = toPhi(theta);
   Vector6d gradient =
-      batchTerms(
-          phi, allPoints(numPoints()), BatchTerms::Gradient, residual_, workspace)
-          .gradient;
+      batchTerms(phi, allPoints(), BatchTerms::Gradient, residual_, workspace).gradient;
   // phi's translation is theta's plus R c - c.
   const Eigen::Vector3d Rc = rotationOf(theta) * centroid_;
   gradient.tail<3>() += rotationAxes(theta) * Rc.cross(gradient.head<3>());
@@ -291,6 +281,14 @@ PoseEnergy::priorPrecision() const
     jacobian.block<3, 1>(0, 3 + k) = axes.row(k).transpose().cross(arm);
   return jacobian.transpose() * prior_.variance().cwiseInverse().asDiagonal() *
          jacobian;
+}
+
+std::vector<std::size_t>
+PoseEnergy::allPoints() const
+{
+  std::vector<std::size_t> all(numPoints());
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  return all;
 }
 
 EnergyWorkspace

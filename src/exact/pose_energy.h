@@ -110,6 +110,10 @@ public:
   EnergyWorkspace
   makeWorkspace() const;
 
+  /** \brief 0, 1, ..., numPoints() - 1. */
+  std::vector<std::size_t>
+  allPoints() const;
+
   std::size_t
   numPoints() const
   {

@@ -1,6 +1,6 @@
 #include "paper/paper.h"
 
-#include "paper/posterior_gradient.h"
+#include "paper/matched_batch.h"
 #include "sampler/sampling.h"
 
 namespace bayesian_icp {
@@ -58,6 +58,21 @@ runChains(const Vector6d& start,
   return result;
 }
 
+MiniBatchGradient
+posteriorGradient(const Eigen::Matrix3Xd& source_points,
+                  const CorrespondenceSearch& search,
+                  const Prior& prior,
+                  double weight,
+                  const MiniBatches& mini_batches)
+{
+  return [batch = MatchedBatch(source_points, search, mini_batches), &prior, weight](
+             const Vector6d& pose, Random& random) mutable {
+    batch.draw(pose, random);
+    const Vector6d mean = batch.meanGradient();
+    return EnergyGradient{weight * mean + prior.energyGradient(pose), mean};
+  };
+}
+
 ChainSet
 samplePaper(const Eigen::Matrix3Xd& source_points,
             const CorrespondenceSearch& search,
@@ -71,11 +86,11 @@ samplePaper(const Eigen::Matrix3Xd& source_points,
   const MiniBatches mini_batches(static_cast<std::size_t>(source_points.cols()),
                                  static_cast<std::size_t>(options.batch_size),
                                  options.sampling);
-  // Eqs. (2) and (3), weighted as in (5), and the prior's (6) and (7).
-  const PosteriorGradient gradient(
-      source_points, search, prior, options.scale.weight(), mini_batches);
   SampledDensity density;
-  density.make_gradient = [&gradient](int) { return PosteriorGradient(gradient); };
+  density.make_gradient = [&](int) {
+    return posteriorGradient(
+        source_points, search, prior, options.scale.weight(), mini_batches);
+  };
   density.has_diverged = has_diverged;
   density.is_thread_safe = search.isThreadSafe();
   return runChains(initial_pose, density, options, chains, progress);

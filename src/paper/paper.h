@@ -5,6 +5,7 @@
 
 #include "paper/sgld.h"
 #include "sampler/chain_set.h"
+#include "sampler/mini_batch.h"
 
 #include <bayesian_icp/correspondence.h>
 #include <bayesian_icp/options.h>
@@ -36,6 +37,22 @@ runChains(const Vector6d& start,
           const PaperOptions& options,
           const ChainOptions& chains,
           const ProgressCallback& progress = ProgressCallback());
+
+/** \brief Gradient of -log posterior of the pose for one chain, estimated from the next
+ * mini-batch: weight times the mean gradient, eqs. (2) and (3), plus the prior's, eqs.
+ * (6) and (7). It owns the chain's mini-batches and buffers.
+ * \param[in] source_points 3 x n, source frame [m]; must outlive the gradient, like
+ *            \p search and \p prior, which it only reads
+ * \param[in] search finds correspondences in the target
+ * \param[in] prior of the pose
+ * \param[in] weight N / sigma^2 [1/m^2]
+ * \param[in] mini_batches of this chain */
+MiniBatchGradient
+posteriorGradient(const Eigen::Matrix3Xd& source_points,
+                  const CorrespondenceSearch& search,
+                  const Prior& prior,
+                  double weight,
+                  const MiniBatches& mini_batches);
 
 /** \brief Run Algorithm 1 on a pair of clouds.
  * \param[in] source_points 3 x n, finite, source frame [m]

@@ -72,13 +72,15 @@ canonicalDirection(const Eigen::Vector3d& vector)
 }
 
 bool
+isFree(const DataDirection& direction)
+{
+  return direction.observability == Observability::PriorOnly;
+}
+
+bool
 hasFreeDirection(const DataReport& report)
 {
-  return std::any_of(report.directions.begin(),
-                     report.directions.end(),
-                     [](const DataDirection& direction) {
-                       return direction.observability == Observability::PriorOnly;
-                     });
+  return std::any_of(report.directions.begin(), report.directions.end(), isFree);
 }
 
 /** Largest residual_scale without a flag. */
@@ -133,11 +135,7 @@ flagsOf(const DataReport& report)
   flags.misfit = !(report.residual_scale >= min_residual_scale &&
                    report.residual_scale <= largestScale(report));
   flags.no_information =
-      std::all_of(report.directions.begin(),
-                  report.directions.end(),
-                  [](const DataDirection& direction) {
-                    return direction.observability == Observability::PriorOnly;
-                  });
+      std::all_of(report.directions.begin(), report.directions.end(), isFree);
   flags.prior_conflict = !(report.prior_probability >= min_prior_probability);
   return flags;
 }

@@ -19,6 +19,10 @@ namespace bayesian_icp {
 Summary
 summarize(const ChainSet& chain_set);
 
+/** \brief Draws of the chains of \p mode, but for diverged ones. */
+PoseMatrix
+drawsOf(const ChainMode& mode, const std::vector<Chain>& chains);
+
 /** \brief An estimate without draws, whose status says why. */
 PosteriorEstimate
 failure(Status status, const std::string& message);

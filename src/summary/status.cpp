@@ -1,51 +1,41 @@
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/summary.h>
 
+#include <utility>
+
 namespace bayesian_icp {
+
+namespace {
+
+constexpr std::pair<Status, const char*> status_names[] = {
+    {Status::NotRun, "not_run"},
+    {Status::Ok, "ok"},
+    {Status::Doubtful, "doubtful"},
+    {Status::NotMixed, "not_mixed"},
+    {Status::SeveralModes, "several_modes"},
+    {Status::Diverged, "diverged"},
+    {Status::Cancelled, "interrupted"},
+    {Status::TooFewCorrespondences, "too_few_correspondences"},
+    {Status::InvalidOptions, "invalid_options"},
+    {Status::InvalidInput, "invalid_input"}};
+
+} // namespace
 
 const char*
 toString(Status status)
 {
-  switch (status) {
-  case Status::NotRun:
-    return "not_run";
-  case Status::Ok:
-    return "ok";
-  case Status::Doubtful:
-    return "doubtful";
-  case Status::NotMixed:
-    return "not_mixed";
-  case Status::SeveralModes:
-    return "several_modes";
-  case Status::Diverged:
-    return "diverged";
-  case Status::Cancelled:
-    return "interrupted";
-  case Status::TooFewCorrespondences:
-    return "too_few_correspondences";
-  case Status::InvalidOptions:
-    return "invalid_options";
-  case Status::InvalidInput:
-    return "invalid_input";
-  }
+  for (const auto& [named, name] : status_names)
+    if (named == status)
+      return name;
   return "unknown";
 }
 
 bool
 readStatus(const std::string& name, Status& status)
 {
-  for (const Status candidate : {Status::NotRun,
-                                 Status::Ok,
-                                 Status::Doubtful,
-                                 Status::NotMixed,
-                                 Status::SeveralModes,
-                                 Status::Diverged,
-                                 Status::Cancelled,
-                                 Status::TooFewCorrespondences,
-                                 Status::InvalidOptions,
-                                 Status::InvalidInput})
-    if (name == toString(candidate)) {
-      status = candidate;
+  for (const auto& [named, its_name] : status_names)
+    if (its_name == name) {
+      status = named;
       return true;
     }
   return false;

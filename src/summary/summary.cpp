@@ -1,6 +1,5 @@
 #include "summary/estimates.h"
 #include "summary/plain_text.h"
-#include "summary/summary_modes.h"
 
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/summary.h>
@@ -111,6 +110,33 @@ summarizeCoordinate(const Eigen::VectorXd& errors,
   coordinate.mcse = mcseMean(errors_by_chain);
 }
 
+/** The modes of \p chain_set that have draws, heaviest first. */
+std::vector<Mode>
+summarizeModes(const ChainSet& chain_set)
+{
+  std::vector<Mode> modes;
+  double sum = 0.0;
+  for (const auto& chains : chain_set.modes) {
+    const PoseMatrix draws = drawsOf(chains, chain_set.chains);
+    if (draws.rows() == 0)
+      continue;
+    Mode mode;
+    mode.chains = chains.members;
+    mode.mean = meanPose(draws);
+    mode.covariance =
+        covarianceAbout(mode.mean, draws, CovarianceConvention::Parameters);
+    mode.weight = std::exp(chains.log_evidence - chain_set.modes.front().log_evidence);
+    sum += mode.weight;
+    modes.push_back(mode);
+  }
+  for (auto& mode : modes)
+    mode.weight /= sum;
+  std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
+    return a.weight > b.weight;
+  });
+  return modes;
+}
+
 /** The worst diagnostics over the coordinates; NaN as soon as one is undefined. */
 struct WorstDiagnostics {
   double rhat = 0.0;
@@ -165,6 +191,29 @@ particlesMessage(const ParticleReport& particles, Status status)
                    is_good ? ""
                            : "; mean and covariance describe them, not reliably the "
                              "posterior");
+}
+
+std::string
+modesMessage(const Summary& summary)
+{
+  std::string text =
+      "the chains found " + std::to_string(summary.modes.size()) + " modes, of weight";
+  for (const auto& mode : summary.modes)
+    text += formatted(" %.3f", mode.weight);
+  return text + "; mean and covariance mix them";
+}
+
+/** Addition to a message if chains were moved to a better mode. */
+std::string
+movedMessage(const ChainSet& chain_set)
+{
+  if (chain_set.num_moved_chains == 0)
+    return "";
+  return formatted("; %d of %d chains had ended in a mode at least %.0f nats worse and "
+                   "were moved to the best one",
+                   chain_set.num_moved_chains,
+                   static_cast<int>(chain_set.chains.size()),
+                   chain_set.moved_by_nats);
 }
 
 std::string
@@ -229,6 +278,15 @@ pooledDraws(const std::vector<Chain>& chains)
     row += chain->draws.rows();
   }
   return pooled;
+}
+
+PoseMatrix
+drawsOf(const ChainMode& mode, const std::vector<Chain>& chains)
+{
+  std::vector<Chain> members;
+  for (const int i : mode.members)
+    members.push_back(chains[static_cast<std::size_t>(i)]);
+  return pooledDraws(members);
 }
 
 Vector6d

@@ -9,7 +9,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include <numeric>
 #include <utility>
 
 namespace bayesian_icp {
@@ -248,8 +247,7 @@ TEST(BatchTerms, CurvatureIsTheGaussNewtonMatrixAndSecondMomentTheNoise)
       scan.source, target, somePrior({0, 0, 0}), 1.0, ResidualOptions());
   const Vector6d phi = energy.toPhi(scan.pose);
   auto workspace = energy.makeWorkspace();
-  std::vector<std::size_t> all(energy.numPoints());
-  std::iota(all.begin(), all.end(), std::size_t(0));
+  const std::vector<std::size_t> all = energy.allPoints();
   const auto terms = [&](const Vector6d& p,
                          const std::vector<std::size_t>& batch,
                          BatchTerms::Extras extras) {

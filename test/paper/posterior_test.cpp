@@ -1,7 +1,7 @@
 // Likelihood, prior and mini-batches: gradients against finite differences, scales, and
 // the stochastic gradient they add up to.
 #include "paper/likelihood.h"
-#include "paper/posterior_gradient.h"
+#include "paper/paper.h"
 #include "sampler/mini_batch.h"
 #include "support/test_support.h"
 
@@ -219,7 +219,7 @@ TEST_P(StochasticGradient, MeanOverAPartitionIsTheFullGradient)
 
   const auto meanOverEpoch = [&](std::size_t batch_size) {
     const MiniBatches batches(60, batch_size, MiniBatchSampling::ShuffledEpochs);
-    PosteriorGradient gradient(source, search, prior, weight, batches);
+    auto gradient = posteriorGradient(source, search, prior, weight, batches);
     Vector6d sum = Vector6d::Zero();
     for (std::size_t i = 0; i < 60 / batch_size; ++i)
       sum += gradient(pose, random).energy;
@@ -245,7 +245,7 @@ TEST(PosteriorGradientScale, IsWeightTimesMeanGradientPlusPrior)
   const MiniBatches batches(40, 8, MiniBatchSampling::WithReplacement);
   const Vector6d pose = test::randomPose(random);
   const EnergyGradient gradient =
-      PosteriorGradient(source, search, prior, 123.0, batches)(pose, random);
+      posteriorGradient(source, search, prior, 123.0, batches)(pose, random);
   EXPECT_LT(
       (gradient.energy - 123.0 * gradient.mini_batch_mean - prior.energyGradient(pose))
           .norm(),
