@@ -14,33 +14,22 @@ updateAverage(double decay_rate, const Vector6d& value, Vector6d& average)
   average = decay_rate * average + (1.0 - decay_rate) * value;
 }
 
-class FixedStep : public DescentOptimizer {
-public:
-  explicit FixedStep(double step_size) : step_size_(step_size) {}
-
-  Vector6d
-  step(const Vector6d& gradient) override
-  {
-    return -step_size_ * gradient;
-  }
-
-private:
-  double step_size_;
-};
-
 class Momentum : public DescentOptimizer {
 public:
-  explicit Momentum(double step_size) : step_size_(step_size) {}
+  Momentum(double share_kept, double step_size)
+  : share_kept_(share_kept)
+  , step_size_(step_size)
+  {}
 
   Vector6d
   step(const Vector6d& gradient) override
   {
-    constexpr double share_kept = 0.8;
-    momentum_ = share_kept * momentum_ + step_size_ * gradient;
+    momentum_ = share_kept_ * momentum_ + step_size_ * gradient;
     return -momentum_;
   }
 
 private:
+  double share_kept_;
   double step_size_;
   Vector6d momentum_ = Vector6d::Zero();
 };
@@ -158,9 +147,9 @@ makeDescentOptimizer(SgdOptimizer optimizer, double step_size)
   const double size = std::isnan(step_size) ? defaultStepSize(optimizer) : step_size;
   switch (optimizer) {
   case SgdOptimizer::FixedStep:
-    return std::make_unique<FixedStep>(size);
+    return std::make_unique<Momentum>(0.0, size);
   case SgdOptimizer::Momentum:
-    return std::make_unique<Momentum>(size);
+    return std::make_unique<Momentum>(0.8, size);
   case SgdOptimizer::AdaDelta:
     return std::make_unique<AdaDelta>();
   case SgdOptimizer::RmsProp:

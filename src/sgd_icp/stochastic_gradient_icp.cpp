@@ -15,111 +15,65 @@ constexpr std::size_t min_batch_pairs = 3;
 /** The descent gives up after this number of mini-batches with too few pairs. */
 constexpr int max_skipped_batches = 100;
 
-/** Notices that a pose has come to rest. */
-class RestDetector {
-public:
-  RestDetector(const Vector6d& start, const StochasticGradientIcpOptions& options)
-  : options_(options)
-  , rest_(start)
-  {}
-
-  /** Take in the pose after a step.
-   * \return whether it has been still for long enough */
-  bool
-  update(const Vector6d& pose)
-  {
-    if (isStill(pose)) {
-      ++num_still_;
-    }
-    else {
-      rest_ = pose;
-      num_still_ = 0;
-    }
-    return num_still_ >= options_.num_still_iterations;
-  }
-
-private:
-  bool
-  isStill(const Vector6d& pose) const
-  {
-    double sum_of_angles = 0.0;
-    for (int k = 3; k < 6; ++k)
-      sum_of_angles += std::abs(wrapAngle(pose[k] - rest_[k]));
-    return (pose - rest_).head<3>().norm() < options_.translation_epsilon &&
-           sum_of_angles < options_.rotation_epsilon;
-  }
-
-  const StochasticGradientIcpOptions& options_;
-  Vector6d rest_;
-  int num_still_ = 0;
-};
-
-/** Mini-batches that have enough correspondences, and their gradients. */
-class BatchGradient {
-public:
-  BatchGradient(const Eigen::Matrix3Xd& source_points,
-                const CorrespondenceSearch& search,
-                const StochasticGradientIcpOptions& options)
-  : batch_(source_points,
-           search,
-           MiniBatches(static_cast<std::size_t>(source_points.cols()),
-                       static_cast<std::size_t>(options.batch_size),
-                       MiniBatchSampling::ShuffledEpochs))
-  , is_one_to_one_(options.is_one_to_one)
-  , random_(options.seed, 0)
-  , num_skips_left_(options.batch_size < source_points.cols() ? max_skipped_batches : 1)
-  {}
-
-  /** \return false if there were too many mini-batches with too few pairs */
-  bool
-  find(const Vector6d& pose)
-  {
-    while (num_skips_left_ > 0) {
-      batch_.draw(pose, random_);
-      if (is_one_to_one_)
-        batch_.makeOneToOne();
-      if (batch_.numMatched() >= min_batch_pairs)
-        return true;
-      --num_skips_left_;
-    }
-    return false;
-  }
-
-  /** Mean over the pairs, where meanGradient() is that over all points. */
-  Vector6d
-  gradient() const
-  {
-    return static_cast<double>(batch_.numPoints()) /
-           static_cast<double>(batch_.numMatched()) * batch_.meanGradient();
-  }
-
-private:
-  MatchedBatch batch_;
-  bool is_one_to_one_;
-  Random random_;
-  int num_skips_left_;
-};
+/** Whether a pose has not moved from where it came to rest. */
+bool
+isStill(const Vector6d& pose,
+        const Vector6d& rest,
+        const StochasticGradientIcpOptions& options)
+{
+  double sum_of_angles = 0.0;
+  for (int k = 3; k < 6; ++k)
+    sum_of_angles += std::abs(wrapAngle(pose[k] - rest[k]));
+  return (pose - rest).head<3>().norm() < options.translation_epsilon &&
+         sum_of_angles < options.rotation_epsilon;
+}
 
 DescentEnd
-descend(const StochasticGradientIcpOptions& options,
+descend(const Eigen::Matrix3Xd& source_points,
+        const CorrespondenceSearch& search,
+        const StochasticGradientIcpOptions& options,
         const StochasticGradientIcpProgress& progress,
-        BatchGradient& batch,
         StochasticGradientIcpResult& result)
 {
+  MatchedBatch batch(source_points,
+                     search,
+                     MiniBatches(static_cast<std::size_t>(source_points.cols()),
+                                 static_cast<std::size_t>(options.batch_size),
+                                 MiniBatchSampling::ShuffledEpochs));
+  Random random(options.seed, 0);
+  // The whole source again would give the same pairs.
+  int num_skips_left =
+      options.batch_size < source_points.cols() ? max_skipped_batches : 1;
   const auto optimizer = makeDescentOptimizer(options.optimizer, options.step_size);
-  RestDetector rest(result.pose, options);
+  Vector6d rest = result.pose;
+  int num_still = 0;
   while (result.num_iterations < options.max_iterations) {
-    if (!batch.find(result.pose))
-      return DescentEnd::TooFewCorrespondences;
-    const Vector6d pose = result.pose + optimizer->step(batch.gradient());
+    batch.draw(result.pose, random);
+    if (options.is_one_to_one)
+      batch.makeOneToOne();
+    if (batch.numMatched() < min_batch_pairs) {
+      if (--num_skips_left == 0)
+        return DescentEnd::TooFewCorrespondences;
+      continue;
+    }
+    // Mean over the pairs, where meanGradient() is that over all points.
+    const Vector6d gradient = static_cast<double>(batch.numPoints()) /
+                              static_cast<double>(batch.numMatched()) *
+                              batch.meanGradient();
+    const Vector6d pose = result.pose + optimizer->step(gradient);
     if (!pose.allFinite())
       return DescentEnd::Diverged;
     result.pose = pose;
     ++result.num_iterations;
     if (progress && !progress(result.num_iterations, pose))
       return DescentEnd::Cancelled;
-    if (rest.update(pose))
+    if (!isStill(pose, rest, options)) {
+      rest = pose;
+      num_still = 0;
+    }
+    else if (++num_still >= options.num_still_iterations) {
       return DescentEnd::Converged;
+    }
   }
   return DescentEnd::MaxIterations;
 }
@@ -179,8 +133,7 @@ stochasticGradientIcp(const Eigen::Matrix3Xd& source_points,
   if (!options.validate().empty() || num_points < min_batch_pairs ||
       !initial_pose.allFinite())
     return result;
-  BatchGradient batch(source_points, search, options);
-  result.end = descend(options, progress, batch, result);
+  result.end = descend(source_points, search, options, progress, result);
   result.pose = canonicalPose(result.pose);
   result.has_converged = result.end == DescentEnd::Converged;
   return result;
