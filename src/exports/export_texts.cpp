@@ -72,24 +72,14 @@ require(const PoseEstimate& estimate,
     throw std::invalid_argument(complaint);
 }
 
-/** Seconds and, as nine digits, nanoseconds of a timestamp. */
-struct TimeText {
-  std::string seconds;
-  std::string nanoseconds;
-
-  explicit TimeText(std::int64_t timestamp_ns)
-  : seconds(std::to_string(timestamp_ns / nanoseconds_per_second))
-  , nanoseconds(std::to_string(timestamp_ns % nanoseconds_per_second))
-  {
-    nanoseconds.insert(0, 9 - nanoseconds.size(), '0');
-  }
-
-  std::string
-  decimal() const
-  {
-    return seconds + '.' + nanoseconds;
-  }
-};
+/** A timestamp in seconds with nine decimals. */
+std::string
+secondsOf(std::int64_t timestamp_ns)
+{
+  const std::string decimals = std::to_string(timestamp_ns % nanoseconds_per_second);
+  return std::to_string(timestamp_ns / nanoseconds_per_second) + '.' +
+         std::string(9 - decimals.size(), '0') + decimals;
+}
 
 /** "x: ...", "y: ...", one line each. */
 std::string
@@ -162,10 +152,11 @@ std::string
 rosYaml(const PoseEstimate& estimate, const ExportOptions& options)
 {
   require(estimate, false, options);
-  const TimeText time(options.timestamp_ns);
   const Matrix6d& covariance = estimate.covariance(CovarianceConvention::R3xSO3);
-  std::string text = "header:\n  stamp:\n    sec: " + time.seconds +
-                     "\n    nanosec: " + std::to_string(std::stol(time.nanoseconds)) +
+  std::string text = "header:\n  stamp:\n    sec: " +
+                     std::to_string(options.timestamp_ns / nanoseconds_per_second) +
+                     "\n    nanosec: " +
+                     std::to_string(options.timestamp_ns % nanoseconds_per_second) +
                      "\n  frame_id: \"" + options.target_frame +
                      "\"\npose:\n  pose:\n    position:\n" +
                      yamlFields(estimate.mean.head<3>()) + "    orientation:\n" +
@@ -183,15 +174,15 @@ std::string
 tumLine(const PoseEstimate& estimate, const ExportOptions& options)
 {
   require(estimate, false, options);
-  return TimeText(options.timestamp_ns).decimal() + ' ' +
-         poseText(matrixOf(estimate.mean)) + '\n';
+  return secondsOf(options.timestamp_ns) + ' ' + poseText(matrixOf(estimate.mean)) +
+         '\n';
 }
 
 std::string
 tumCovarianceLine(const PoseEstimate& estimate, const ExportOptions& options)
 {
   require(estimate, false, options);
-  std::string text = TimeText(options.timestamp_ns).decimal();
+  std::string text = secondsOf(options.timestamp_ns);
   const Matrix6d& covariance = estimate.covariance(CovarianceConvention::R3xSO3);
   for (Eigen::Index i = 0; i < 36; ++i)
     text += ' ' + textOf(covariance(i / 6, i % 6));
@@ -205,9 +196,8 @@ csvText(const PoseEstimate& estimate, const ExportOptions& options)
   const std::string names[] = {"x", "y", "z", "roll", "pitch", "yaw"};
   const char* const units[] = {"_rad2", "_m_rad", "_m2"};
   std::string header = "timestamp_s,target_frame,source_frame,status";
-  std::string row = TimeText(options.timestamp_ns).decimal() + ',' +
-                    options.target_frame + ',' + options.source_frame + ',' +
-                    toString(estimate.status);
+  std::string row = secondsOf(options.timestamp_ns) + ',' + options.target_frame + ',' +
+                    options.source_frame + ',' + toString(estimate.status);
   for (int k = 0; k < 6; ++k) {
     header += ',' + names[k] + (k < 3 ? "_m" : "_rad");
     row += ',' + textOf(estimate.mean[k]);
