@@ -1,12 +1,9 @@
 // The registration that is inside pcl::BayesianIterativeClosestPoint is that of
 // pcl::IterativeClosestPoint to the last bit, whichever tree has found the pairs.
-#include "support/registration_support.h"
+#include "class/scan_pair.h"
 
-#include <pcl/io/pcd_io.h>
 #include <pcl/registration/correspondence_rejection_median_distance.h>
 #include <pcl/registration/correspondence_rejection_one_to_one.h>
-
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
@@ -20,8 +17,6 @@ namespace pcl {
 namespace test {
 namespace {
 
-using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
-using Tree = search::KdTree<PointXYZ>;
 using OneToOne = registration::CorrespondenceRejectorOneToOne;
 using Median = registration::CorrespondenceRejectorMedianDistance;
 
@@ -81,44 +76,33 @@ expectSame(const Snapshot& actual, const Snapshot& expected)
   EXPECT_EQ(actual.num_iterations, expected.num_iterations);
   EXPECT_EQ(actual.fitness, expected.fitness);
   expectSamePairs(actual.correspondences, expected.correspondences);
-  ASSERT_EQ(actual.output.size(), expected.output.size());
-  for (std::size_t i = 0; i < actual.output.size(); ++i)
-    ASSERT_EQ(actual.output[i].getVector4fMap(), expected.output[i].getVector4fMap());
+  expectSamePoints(actual.output, expected.output);
 }
 
-/** What a user does, given a registration without clouds. */
 using Align = std::function<void(const Eigen::Matrix4d& guess)>;
-template <typename Scalar>
-using Scenario = std::function<void(
-    IterativeClosestPoint<PointXYZ, PointXYZ, Scalar>& icp, const Align& align)>;
 
-template <typename Registration, typename Scalar>
-std::vector<Snapshot>
-snapshotsOf(Recorder<Registration>& registration, const Scenario<Scalar>& scenario)
-{
-  scenario(registration, [&registration](const Eigen::Matrix4d& guess) {
-    registration.alignAndRecord(guess);
-  });
-  return (registration.snapshots);
-}
-
-/** Does the same with PCL's class and with ours. */
+/** Does the same with PCL's class and with ours.
+ * \param[in] work what a user does, given a registration without clouds and an Align */
 template <typename Scalar = float, typename Work>
 void
 expectTheRegistrationOfIcp(const Work& work)
 {
-  const Scenario<Scalar> scenario = work;
   using Reference = IterativeClosestPoint<PointXYZ, PointXYZ, Scalar>;
   using Bayesian = BayesianIterativeClosestPoint<PointXYZ, PointXYZ, Scalar>;
+  const auto snapshotsOf = [&work](auto& recorder) {
+    Reference& icp = recorder;
+    work(icp, [&recorder](const auto& guess) { recorder.alignAndRecord(guess); });
+    return (recorder.snapshots);
+  };
   const QuietConsole quiet;
-  Recorder<Reference> icp;
-  const auto expected = snapshotsOf<Reference, Scalar>(icp, scenario);
+  Recorder<Reference> reference;
+  const auto expected = snapshotsOf(reference);
   ASSERT_FALSE(expected.empty());
   for (const unsigned int num_threads : {1, 3}) {
     Recorder<Bayesian> bayesian;
     usePaper(bayesian);
     bayesian.setNumberOfThreads(num_threads);
-    const auto actual = snapshotsOf<Bayesian, Scalar>(bayesian, scenario);
+    const auto actual = snapshotsOf(bayesian);
     ASSERT_EQ(actual.size(), expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
       SCOPED_TRACE("align() number " + std::to_string(i));
@@ -127,16 +111,12 @@ expectTheRegistrationOfIcp(const Work& work)
   }
 }
 
-/** Every \p step-th point of a cloud of data/. */
+/** Every \p step-th point. */
 Cloud::Ptr
-readThinned(const std::string& file, std::size_t step)
+thinned(const Cloud& cloud, index_t step)
 {
-  Cloud all;
-  EXPECT_EQ(io::loadPCDFile(std::string(BAYESIAN_ICP_DATA_DIR) + "/" + file, all), 0);
-  Cloud::Ptr thinned(new Cloud);
-  for (std::size_t i = 0; i < all.size(); i += step)
-    thinned->push_back(all[i]);
-  return (thinned);
+  return (pcl::make_shared<Cloud>(
+      cloud, *everyNth(0, static_cast<index_t>(cloud.size()), step)));
 }
 
 /** On a lattice of 1/32 m: many points equally near, and repeated points. */
@@ -154,9 +134,9 @@ const Eigen::Matrix4d no_guess = Eigen::Matrix4d::Identity();
 
 class DropInOnScans : public ::testing::TestWithParam<const char*> {
 protected:
-  const std::string scene = GetParam();
-  const Cloud::Ptr source = readThinned(scene + "/source.pcd", 7);
-  const Cloud::Ptr target = readThinned(scene + "/target.pcd", 5);
+  const ScanPair scans{GetParam()};
+  const Cloud::Ptr source = thinned(*scans.source, 7);
+  const Cloud::Ptr target = thinned(*scans.target, 5);
 };
 
 TEST_P(DropInOnScans, IsTheRegistrationOfIcp)
@@ -260,11 +240,8 @@ TEST_P(DropInClouds, WithATreeOfTheUser)
 TEST_P(DropInClouds, WithAReadyTreeOfHalfOfTheTarget)
 {
   expectSameWith([this](Icp& icp) {
-    const auto half = pcl::make_shared<Indices>();
-    for (index_t i = 0; i < 900; i += 2)
-      half->push_back(i);
     const auto tree = pcl::make_shared<Tree>();
-    tree->setInputCloud(target, half);
+    tree->setInputCloud(target, everyNth(0, 900, 2));
     icp.setSearchMethodTarget(tree, true);
   });
 }
@@ -332,18 +309,6 @@ TEST_P(DropInClouds, WithTreesThatSearchByThemselves)
   });
 }
 
-/** Distances along z count ten times. */
-struct TenfoldHeights : PointRepresentation<PointXYZ> {
-  TenfoldHeights() { nr_dimensions_ = 3; }
-  void
-  copyToFloatArray(const PointXYZ& point, float* out) const override
-  {
-    out[0] = point.x;
-    out[1] = point.y;
-    out[2] = 10.0f * point.z;
-  }
-};
-
 TEST_P(DropInClouds, WithPointRepresentations)
 {
   expectSameWith(
@@ -357,14 +322,11 @@ TEST_P(DropInClouds, WithPointRepresentations)
 
 TEST_P(DropInClouds, WithTargetIndicesOfTheEstimation)
 {
-  const auto half = pcl::make_shared<Indices>();
-  for (index_t i = 0; i < 900; i += 2)
-    half->push_back(i);
   expectTheRegistrationOfIcp([&](Icp& icp, const Align& align) {
     icp.setInputSource(source);
     icp.setInputTarget(target);
     const auto estimation = pcl::make_shared<Estimation>();
-    estimation->setIndicesTarget(half);
+    estimation->setIndicesTarget(everyNth(0, 900, 2));
     icp.setCorrespondenceEstimation(estimation);
     align(no_guess);
     icp.setCorrespondenceEstimation(pcl::make_shared<Estimation>());

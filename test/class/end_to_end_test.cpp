@@ -1,14 +1,8 @@
 // The class on the committed scans, whose truth is known: forward, inverse, and from
 // perturbed guesses.
-#include "support/registration_support.h"
-
-#include <pcl/io/pcd_io.h>
-
-#include <gtest/gtest.h>
+#include "class/scan_pair.h"
 
 #include <Eigen/LU>
-
-#include <fstream>
 
 namespace pcl {
 namespace test {
@@ -19,39 +13,6 @@ using bayesian_icp::Vector6d;
 
 /** 99.9 % quantile of chi-squared with six degrees of freedom. */
 constexpr double chi_squared_999 = 22.46;
-
-struct Pair {
-  Cloud::Ptr source{new Cloud};
-  Cloud::Ptr target{new Cloud};
-  Eigen::Matrix4d T_target_source;
-};
-
-Pair
-load(const std::string& name)
-{
-  const std::string folder = std::string(BAYESIAN_ICP_DATA_DIR) + "/" + name + "/";
-  Pair pair;
-  EXPECT_EQ(io::loadPCDFile(folder + "source.pcd", *pair.source), 0);
-  EXPECT_EQ(io::loadPCDFile(folder + "target.pcd", *pair.target), 0);
-  std::ifstream file(folder + "T_target_source.txt");
-  for (int i = 0; i < 16; ++i)
-    file >> pair.T_target_source(i / 4, i % 4);
-  EXPECT_TRUE(file.good() || file.eof());
-  return (pair);
-}
-
-/** The step size at which algorithm 1 comes near its stated posterior. */
-void
-useSmallSteps(BayesianIcp& icp)
-{
-  bayesian_icp::Options options;
-  options.preset = bayesian_icp::Preset::Paper;
-  options.paper.sgld.step_size = 1e-5;
-  options.paper.num_burn_in = 500;
-  options.chains.num_draws = 4000;
-  icp.setOptions(options);
-  icp.setMaximumIterations(100);
-}
 
 /** Squared Mahalanobis distance of a pose from the posterior. */
 double
@@ -64,26 +25,39 @@ distance(const BayesianIcp& icp, const Vector6d& pose)
 
 class EndToEnd : public ::testing::TestWithParam<const char*> {
 protected:
-  /** The posterior of the pose that maps \p source to \p target. */
-  static void
-  sample(const Cloud::Ptr& source, const Cloud::Ptr& target, BayesianIcp& icp)
+  /** The step size at which algorithm 1 comes near its stated posterior. */
+  EndToEnd()
   {
-    useSmallSteps(icp);
+    bayesian_icp::Options options;
+    options.preset = bayesian_icp::Preset::Paper;
+    options.paper.sgld.step_size = 1e-5;
+    options.paper.num_burn_in = 500;
+    options.chains.num_draws = 4000;
+    icp.setOptions(options);
+    icp.setMaximumIterations(100);
+  }
+
+  /** The posterior of the pose that maps \p source to \p target. */
+  void
+  sample(const Cloud::Ptr& source,
+         const Cloud::Ptr& target,
+         const Eigen::Matrix4f& guess = Eigen::Matrix4f::Identity())
+  {
     icp.setInputSource(source);
     icp.setInputTarget(target);
     Cloud output;
-    icp.align(output);
+    icp.align(output, guess);
     ASSERT_EQ(icp.getSamples().rows(), 4000);
   }
 
-  QuietConsole quiet_;
+  const ScanPair pair{GetParam()};
+  BayesianIcp icp;
+  QuietConsole quiet;
 };
 
 TEST_P(EndToEnd, ThePosteriorHoldsTheTruthAndNotAPoseFarOff)
 {
-  const Pair pair = load(GetParam());
-  BayesianIcp icp;
-  sample(pair.source, pair.target, icp);
+  sample(pair.source, pair.target);
   const Vector6d truth = bayesian_icp::poseOf(pair.T_target_source);
   EXPECT_LT(distance(icp, truth), chi_squared_999);
   for (int k = 0; k < 3; ++k)
@@ -92,30 +66,21 @@ TEST_P(EndToEnd, ThePosteriorHoldsTheTruthAndNotAPoseFarOff)
 
 TEST_P(EndToEnd, TheInverseRegistrationHasTheInversePosterior)
 {
-  const Pair pair = load(GetParam());
-  BayesianIcp icp;
-  sample(pair.target, pair.source, icp);
+  sample(pair.target, pair.source);
   EXPECT_LT(distance(icp, bayesian_icp::poseOf(pair.T_target_source.inverse())),
             chi_squared_999);
 }
 
 TEST_P(EndToEnd, PerturbedGuessesLeadToAPosteriorThatHoldsTheTruth)
 {
-  const Pair pair = load(GetParam());
+  icp.setPrior(Vector6d::Zero(), Vector6d::Constant(0.125));
   bayesian_icp::Random random(1, 0);
   Vector6d spread;
   spread << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
   for (int i = 0; i < 2; ++i) {
     const Vector6d guess = bayesian_icp::poseOf(pair.T_target_source) +
                            spread.cwiseProduct(random.normal6());
-    BayesianIcp icp;
-    useSmallSteps(icp);
-    icp.setPrior(Vector6d::Zero(), Vector6d::Constant(0.125));
-    icp.setInputSource(pair.source);
-    icp.setInputTarget(pair.target);
-    Cloud output;
-    icp.align(output, bayesian_icp::matrixOf(guess).cast<float>());
-    ASSERT_EQ(icp.getSamples().rows(), 4000);
+    sample(pair.source, pair.target, bayesian_icp::matrixOf(guess).cast<float>());
     EXPECT_LT(distance(icp, bayesian_icp::poseOf(pair.T_target_source)),
               chi_squared_999);
   }

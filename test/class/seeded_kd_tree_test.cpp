@@ -4,8 +4,6 @@
 #include <pcl/registration/impl/seeded_kd_tree.hpp>
 #include <pcl/search/kdtree.h>
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -17,7 +15,6 @@ namespace pcl {
 namespace test {
 namespace {
 
-using Tree = search::KdTree<PointXYZ>;
 using Seeded = bayesian_icp_detail::SeededKdTree<PointXYZ>;
 
 struct Answer {
@@ -127,9 +124,7 @@ TEST_F(SeededKdTreeTest, LeavesOutPointsThatAreNotFinite)
 
 TEST_F(SeededKdTreeTest, TakesIndices)
 {
-  const auto half = pcl::make_shared<Indices>();
-  for (index_t i = 0; i < 900; i += 2)
-    half->push_back(i);
+  const IndicesPtr half = everyNth(0, 900, 2);
   expectPclsAnswersAfter([&](Tree& tree) { tree.setInputCloud(target, half); });
   expectPclsAnswersAfter([&](Tree& tree) {
     tree.setInputCloud(target);
@@ -141,21 +136,9 @@ TEST_F(SeededKdTreeTest, TakesIndices)
   });
 }
 
-/** Distances along z count ten times. */
-struct Stretched : PointRepresentation<PointXYZ> {
-  Stretched() { nr_dimensions_ = 3; }
-  void
-  copyToFloatArray(const PointXYZ& point, float* out) const override
-  {
-    out[0] = point.x;
-    out[1] = point.y;
-    out[2] = 10.0f * point.z;
-  }
-};
-
 TEST_F(SeededKdTreeTest, TakesPointRepresentationsBeforeAndAfterTheCloud)
 {
-  const auto stretched = pcl::make_shared<Stretched>();
+  const auto stretched = pcl::make_shared<TenfoldHeights>();
   expectPclsAnswersAfter([&](Tree& tree) {
     tree.setPointRepresentation(stretched);
     tree.setInputCloud(target);
@@ -246,9 +229,7 @@ TEST_F(SeededKdTreeTest, IsNotBuiltAgainForTheSamePoints)
 
 /** Query, match and squared distance of each pair. */
 std::vector<std::tuple<index_t, index_t, float>>
-pairsOf(registration::CorrespondenceEstimation<PointXYZ, PointXYZ>& estimation,
-        const Cloud::Ptr& source,
-        double max_distance)
+pairsOf(Estimation& estimation, const Cloud::Ptr& source, double max_distance)
 {
   estimation.setInputSource(source);
   Correspondences found;
@@ -261,7 +242,6 @@ pairsOf(registration::CorrespondenceEstimation<PointXYZ, PointXYZ>& estimation,
 
 TEST_F(SeededKdTreeTest, ItsEstimationFindsPclsPairs)
 {
-  using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
   // So many points that there is work for three threads; some are equally near.
   const Cloud::Ptr many(new Cloud);
   while (many->size() < 12288)
@@ -291,7 +271,6 @@ TEST_F(SeededKdTreeTest, ItsEstimationFindsPclsPairs)
 
 TEST_F(SeededKdTreeTest, ItsEstimationFindsPclsPairsInOtherTreesAndAmongIndices)
 {
-  using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
   constexpr double no_gate = std::numeric_limits<double>::max();
   const auto expectPairs = [&](const auto& prepare, bool has_pcls_tree) {
     Estimation pcls;
@@ -336,16 +315,13 @@ TEST_F(SeededKdTreeTest, AnswersSeveralThreadsAtOnce)
   }
 }
 
-TEST(RegistrationTree, IsOurs)
+using RegistrationTree = ScansTest;
+
+TEST_F(RegistrationTree, IsOurs)
 {
-  const Scans<PointXYZ> scans;
   BayesianIcp icp;
   usePaper(icp);
-  icp.setInputSource(scans.source);
-  icp.setInputTarget(scans.target);
-  Cloud output;
-  const QuietConsole quiet;
-  icp.align(output);
+  align(icp);
   const auto ours = dynamic_cast<const Seeded*>(icp.getSearchMethodTarget().get());
   ASSERT_NE(ours, nullptr);
   ASSERT_NE(ours->seeded->get(), nullptr);
@@ -354,27 +330,20 @@ TEST(RegistrationTree, IsOurs)
   EXPECT_EQ(withinRadius(*ours, output), withinRadius(pcls, output));
 }
 
-TEST(RegistrationTree, MayBeReadyForOtherRegistrations)
+TEST_F(RegistrationTree, MayBeReadyForOtherRegistrations)
 {
-  const Scans<PointXYZ> scans;
-  const QuietConsole quiet;
-  Cloud output;
-  Eigen::Matrix4f transformations[3];
   BayesianIcp owner;
-  for (int i = 0; i < 3; ++i) {
+  usePaper(owner);
+  align(owner);
+  for (const bool is_ready : {true, false}) {
     BayesianIcp other;
-    BayesianIcp& icp = i == 0 ? owner : other;
-    usePaper(icp);
-    icp.setInputSource(scans.source);
-    icp.setInputTarget(scans.target);
-    if (i > 0)
-      icp.setSearchMethodTarget(owner.getSearchMethodTarget(), i == 1);
-    icp.align(output);
-    EXPECT_EQ(icp.getSamples(), owner.getSamples());
-    transformations[i] = icp.getFinalTransformation();
+    usePaper(other);
+    other.setInputTarget(scans.target);
+    other.setSearchMethodTarget(owner.getSearchMethodTarget(), is_ready);
+    align(other);
+    EXPECT_EQ(other.getSamples(), owner.getSamples());
+    EXPECT_EQ(other.getFinalTransformation(), owner.getFinalTransformation());
   }
-  EXPECT_EQ(transformations[1], transformations[0]);
-  EXPECT_EQ(transformations[2], transformations[0]);
 }
 
 } // namespace

@@ -1,13 +1,8 @@
 // SGD-ICP on a committed pair of scans: its results scatter about what all points
 // together give.
-#include "support/registration_support.h"
+#include "class/scan_pair.h"
 
-#include <pcl/io/pcd_io.h>
 #include <pcl/registration/stochastic_gradient_icp.h>
-
-#include <gtest/gtest.h>
-
-#include <fstream>
 
 namespace pcl {
 namespace test {
@@ -20,16 +15,9 @@ class SgdScans : public ::testing::Test {
 protected:
   SgdScans()
   {
-    const std::string folder = std::string(BAYESIAN_ICP_DATA_DIR) + "/table/";
-    EXPECT_EQ(io::loadPCDFile(folder + "source.pcd", *source_), 0);
-    EXPECT_EQ(io::loadPCDFile(folder + "target.pcd", *target_), 0);
-    std::ifstream file(folder + "T_target_source.txt");
-    for (int i = 0; i < 16; ++i)
-      file >> truth_(i / 4, i % 4);
-    EXPECT_FALSE(file.fail());
     // An eighth of the source, to be quick.
     bayesian_icp::Random random(1, 0);
-    const auto size = static_cast<Eigen::Index>(source_->size());
+    const auto size = static_cast<Eigen::Index>(pair_.source->size());
     for (const auto index : bayesian_icp::randomChoice(size, size / 8, random))
       some_->push_back(static_cast<index_t>(index));
   }
@@ -47,20 +35,18 @@ protected:
     options.max_iterations = 300;
     options.translation_epsilon = 0.0; // never at rest
     icp.setOptions(options);
-    icp.setInputSource(source_);
-    icp.setInputTarget(target_);
+    icp.setInputSource(pair_.source);
+    icp.setInputTarget(pair_.target);
     icp.setIndices(some_);
     Cloud output;
     icp.align(output);
     return (bayesian_icp::poseError(icp.getResult().pose,
-                                    bayesian_icp::poseOf(truth_),
+                                    bayesian_icp::poseOf(pair_.T_target_source),
                                     bayesian_icp::CovarianceConvention::R3xSO3));
   }
 
-  Cloud::Ptr source_{new Cloud};
-  Cloud::Ptr target_{new Cloud};
+  const ScanPair pair_{"table"};
   IndicesPtr some_{new Indices};
-  Eigen::Matrix4d truth_;
   QuietConsole quiet_;
 };
 

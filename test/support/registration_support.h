@@ -9,7 +9,10 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <gtest/gtest.h>
+
 #include <cmath>
+#include <limits>
 
 namespace pcl {
 namespace test {
@@ -17,6 +20,10 @@ namespace test {
 using Cloud = PointCloud<PointXYZ>;
 using Icp = IterativeClosestPoint<PointXYZ, PointXYZ>;
 using BayesianIcp = BayesianIterativeClosestPoint<PointXYZ, PointXYZ>;
+using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
+using Tree = search::KdTree<PointXYZ>;
+
+constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
 /** Points of a smooth surface of 1 m with bumps, seen twice with noise of 1 mm. */
 template <typename PointT>
@@ -85,6 +92,52 @@ public:
   QuietConsole() { console::setVerbosityLevel(console::L_ALWAYS); }
   ~QuietConsole() { console::setVerbosityLevel(console::L_INFO); }
 };
+
+/** Two scans, and what becomes of the source. */
+class ScansTest : public ::testing::Test {
+protected:
+  void
+  align(Icp& icp, const Eigen::Matrix4f& guess = Eigen::Matrix4f::Identity())
+  {
+    icp.setInputSource(scans.source);
+    icp.setInputTarget(scans.target);
+    icp.align(output, guess);
+  }
+
+  Scans<PointXYZ> scans;
+  Cloud output;
+  QuietConsole quiet;
+};
+
+/** Distances along z count ten times. */
+struct TenfoldHeights : PointRepresentation<PointXYZ> {
+  TenfoldHeights() { nr_dimensions_ = 3; }
+  void
+  copyToFloatArray(const PointXYZ& point, float* out) const override
+  {
+    out[0] = point.x;
+    out[1] = point.y;
+    out[2] = 10.0f * point.z;
+  }
+};
+
+/** Every \p step-th point from \p first to the one before \p end. */
+inline IndicesPtr
+everyNth(index_t first, index_t end, index_t step = 1)
+{
+  const IndicesPtr indices(new Indices);
+  for (index_t i = first; i < end; i += step)
+    indices->push_back(i);
+  return (indices);
+}
+
+inline void
+expectSamePoints(const Cloud& actual, const Cloud& expected)
+{
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i)
+    ASSERT_EQ(actual[i].getVector4fMap(), expected[i].getVector4fMap());
+}
 
 } // namespace test
 } // namespace pcl

@@ -1,0 +1,269 @@
+// What the registration classes of this library have in common: they stand in for
+// pcl::IterativeClosestPoint, may be derived from, and deal with points, indices and
+// guesses that PCL's class would abort on.
+#include "support/registration_support.h"
+
+#include <pcl/registration/incremental_registration.h>
+#include <pcl/registration/stochastic_gradient_icp.h>
+
+#include <vector>
+
+namespace pcl {
+namespace test {
+namespace {
+
+struct CalibratedIcp : BayesianIcp {
+  CalibratedIcp() { useFewSamples(*this); }
+};
+struct PaperIcp : BayesianIcp {
+  PaperIcp() { usePaper(*this); }
+};
+using SgdIcp = StochasticGradientDescentIterativeClosestPoint<PointXYZ, PointXYZ>;
+
+void
+expectSameResult(BayesianIcp& actual, BayesianIcp& expected)
+{
+  EXPECT_EQ(actual.getFinalTransformation(), expected.getFinalTransformation());
+  EXPECT_EQ(actual.getSamples(), expected.getSamples());
+}
+
+void
+expectSameResult(SgdIcp& actual, SgdIcp& expected)
+{
+  EXPECT_EQ(actual.getFinalTransformation(), expected.getFinalTransformation());
+  EXPECT_EQ(actual.getResult().num_iterations, expected.getResult().num_iterations);
+}
+
+void
+expectResult(BayesianIcp& icp)
+{
+  EXPECT_TRUE(icp.hasConverged());
+  EXPECT_EQ(icp.getSamples().rows(), 40);
+}
+
+void
+expectResult(SgdIcp& icp)
+{
+  EXPECT_TRUE(icp.hasConverged());
+}
+
+void
+expectNoResult(BayesianIcp& icp)
+{
+  EXPECT_TRUE(icp.getSummary().status == bayesian_icp::Status::TooFewCorrespondences ||
+              icp.getSummary().status == bayesian_icp::Status::InvalidInput);
+  EXPECT_EQ(icp.getSamples().rows(), 0);
+  EXPECT_TRUE(icp.getCovariance().array().isNaN().all());
+}
+
+void
+expectNoResult(SgdIcp& icp)
+{
+  EXPECT_TRUE(icp.getResult().end == bayesian_icp::DescentEnd::TooFewCorrespondences ||
+              icp.getResult().end == bayesian_icp::DescentEnd::InvalidInput);
+}
+
+/** Counts the calls of every protected virtual function of PCL's ICP, and shows what
+ * subclasses of ICP read after align(). */
+template <typename Registration>
+class Derived : public Registration {
+public:
+  using Registration::correspondences_;
+  using typename Registration::Matrix4;
+  using typename Registration::PointCloudSource;
+
+  int num_runs = 0, num_moves = 0, num_blob_checks = 0;
+  /** Added to every guess. */
+  Eigen::Vector3f shift = Eigen::Vector3f::Zero();
+
+protected:
+  void
+  computeTransformation(PointCloudSource& output, const Matrix4& guess) override
+  {
+    ++num_runs;
+    Matrix4 shifted = guess;
+    shifted.template topRightCorner<3, 1>() += shift;
+    Registration::computeTransformation(output, shifted);
+  }
+
+  void
+  transformCloud(const PointCloudSource& input,
+                 PointCloudSource& output,
+                 const Matrix4& transformation) override
+  {
+    ++num_moves;
+    Registration::transformCloud(input, output, transformation);
+  }
+
+  void
+  determineRequiredBlobData() override
+  {
+    ++num_blob_checks;
+    Registration::determineRequiredBlobData();
+  }
+};
+
+template <typename Registration>
+class BothRegistrations : public ScansTest {
+protected:
+  /** Has to fail without harm, and be usable afterwards. */
+  void
+  expectFailure(const Cloud::Ptr& source,
+                const Cloud::Ptr& target,
+                const Eigen::Matrix4f& guess = Eigen::Matrix4f::Identity(),
+                double max_distance = 10.0)
+  {
+    Registration icp;
+    icp.setMaxCorrespondenceDistance(max_distance);
+    icp.setInputSource(source);
+    icp.setInputTarget(target);
+    icp.align(output, guess);
+    EXPECT_FALSE(icp.hasConverged());
+    EXPECT_EQ(icp.getConvergeCriteria()->getConvergenceState(),
+              registration::DefaultConvergenceCriteria<
+                  float>::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
+    expectNoResult(icp);
+    EXPECT_EQ(output.size(), source->size());
+    if (guess.allFinite()) {
+      EXPECT_EQ(icp.getFinalTransformation(), guess);
+    }
+    icp.setMaxCorrespondenceDistance(10.0);
+    align(icp);
+    expectResult(icp);
+  }
+};
+
+using Registrations = ::testing::Types<CalibratedIcp, PaperIcp, SgdIcp>;
+TYPED_TEST_SUITE(BothRegistrations, Registrations, );
+
+TYPED_TEST(BothRegistrations, AreHeldByThePointersOfTheirBases)
+{
+  const auto icp = pcl::make_shared<TypeParam>();
+  EXPECT_EQ(icp->convergence_criteria_, icp->getConvergeCriteria());
+  EXPECT_NE(icp->getClassName(), Icp().getClassName());
+  const typename TypeParam::Ptr as_itself = icp;
+  const Registration<PointXYZ, PointXYZ>::Ptr as_registration = as_itself;
+  EXPECT_FALSE(as_registration->hasConverged());
+  registration::IncrementalRegistration<PointXYZ> incremental;
+  incremental.setRegistration(as_registration);
+  EXPECT_TRUE(incremental.registerCloud(this->scans.target));
+  EXPECT_TRUE(incremental.registerCloud(this->scans.source));
+  EXPECT_EQ(incremental.getDeltaTransform(), icp->getFinalTransformation());
+  expectResult(*icp);
+}
+
+TYPED_TEST(BothRegistrations, OverridesAreCalled)
+{
+  Derived<TypeParam> derived;
+  this->align(derived); // as programs hold it that know PCL's class
+  EXPECT_EQ(derived.num_runs, 1);
+  EXPECT_GT(derived.num_moves, 0);
+  EXPECT_GT(derived.num_blob_checks, 0);
+  EXPECT_TRUE(derived.hasConverged());
+}
+
+TYPED_TEST(BothRegistrations, AnOverrideMayChangeWhatIsComputed)
+{
+  Derived<TypeParam> derived;
+  derived.shift << 0.02f, -0.01f, 0.03f;
+  TypeParam plain;
+  this->align(derived);
+  Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+  guess.topRightCorner<3, 1>() = derived.shift;
+  this->align(plain, guess);
+  expectSameResult(derived, plain);
+  this->align(plain);
+  EXPECT_NE(derived.getFinalTransformation(), plain.getFinalTransformation());
+}
+
+TYPED_TEST(BothRegistrations, AlignIntoTheSourceGivesTheSameResult)
+{
+  TypeParam apart, in_place;
+  this->align(apart);
+  in_place.setInputSource(this->scans.source);
+  in_place.setInputTarget(this->scans.target);
+  in_place.align(*this->scans.source);
+  expectSameResult(in_place, apart);
+  expectSamePoints(*this->scans.source, this->output);
+}
+
+TYPED_TEST(BothRegistrations, SourcePointsThatCannotBeSearchedForAreSkippedAndKept)
+{
+  TypeParam clean;
+  this->align(clean);
+  const Cloud expected = this->output;
+  // Not finite, or too far for distances of floats.
+  Cloud& source = *this->scans.source;
+  source.insert(source.begin(), PointXYZ(1e30f, 0.0f, 0.0f));
+  source.insert(source.begin() + 17, PointXYZ(1.0f, nan_value, 2.0f));
+  source.insert(source.begin() + 500, PointXYZ(0.0f, -3e38f, 3e38f));
+  Derived<TypeParam> holed;
+  this->align(holed);
+  expectSameResult(holed, clean);
+  EXPECT_EQ(holed.getFitnessScore(), clean.getFitnessScore());
+  ASSERT_EQ(this->output.size(), source.size());
+  EXPECT_TRUE(std::isnan(this->output[17].y));
+  EXPECT_EQ(this->output[1].getVector3fMap(), expected[0].getVector3fMap());
+  ASSERT_EQ(holed.correspondences_->size(), source.size() - 3);
+  EXPECT_EQ(holed.correspondences_->front().index_query, 1);
+}
+
+TYPED_TEST(BothRegistrations, IndicesSelectThePointsOfTheEstimate)
+{
+  const IndicesPtr indices = everyNth(100, 700, 2);
+  const Cloud::Ptr whole = this->scans.source;
+  this->scans.source = pcl::make_shared<Cloud>(*whole, *indices);
+  TypeParam of_subset;
+  this->align(of_subset);
+  const Cloud expected = this->output;
+
+  this->scans.source = whole;
+  Derived<TypeParam> icp;
+  icp.setIndices(indices);
+  this->align(icp);
+  expectSameResult(icp, of_subset);
+  ASSERT_EQ(this->output.size(), whole->size()); // the whole cloud, as in PCL
+  EXPECT_EQ(this->output[102].getVector3fMap(), expected[1].getVector3fMap());
+  ASSERT_EQ(icp.correspondences_->size(), indices->size());
+  for (std::size_t i = 0; i < indices->size(); ++i)
+    EXPECT_EQ((*icp.correspondences_)[i].index_query, (*indices)[i]);
+}
+
+TYPED_TEST(BothRegistrations, AnEmptyListOfIndicesMeansTheWholeCloud)
+{
+  TypeParam icp, plain;
+  icp.setIndices(IndicesPtr(new Indices));
+  this->align(icp);
+  this->align(plain);
+  expectSameResult(icp, plain);
+}
+
+TYPED_TEST(BothRegistrations, CloudsThatCannotBeRegisteredFail)
+{
+  const Cloud::Ptr none(new Cloud(10, 1, PointXYZ(nan_value, 0.0f, 0.0f)));
+  const Cloud::Ptr two_points(new Cloud(2, 1, PointXYZ(1.0f, 0.0f, 0.0f)));
+  this->expectFailure(none, this->scans.target);
+  this->expectFailure(this->scans.source, none);
+  this->expectFailure(two_points, this->scans.target);
+}
+
+TYPED_TEST(BothRegistrations, GuessesThatAreOfNoUseFail)
+{
+  const auto& [source, target] = this->scans;
+  Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+  guess(0, 3) = 100.0f; // no overlap
+  this->expectFailure(source, target, guess, 0.1);
+  guess(0, 3) = 0.0f;
+  guess(1, 1) = nan_value;
+  this->expectFailure(source, target, guess);
+  for (const float x : {1e30f, 3e38f}) { // too far for distances of floats
+    guess.setIdentity();
+    guess.topRightCorner<3, 1>().setConstant(x);
+    guess(0, 0) = x;
+    this->expectFailure(source, target, guess);
+  }
+}
+
+} // namespace
+} // namespace test
+} // namespace pcl
