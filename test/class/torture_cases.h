@@ -50,15 +50,15 @@ struct TortureCase {
   std::string id;
   /** For the table. */
   std::string description;
-  std::function<TorturePair()> make;
-  std::function<void(Options&)> change;
+  /** Makes the clouds, and may change the options. */
+  std::function<TorturePair(Options&)> make;
   /** Of presets calibrated, exact and paper. */
   std::array<Expectation, 3> expected;
   /** Of preset paper with small steps. */
   Expectation with_small_steps = {Verdict::NotTried, {}};
 };
 
-/** \brief Options before TortureCase::change: quick, and with a scale that fits the
+/** \brief Options before TortureCase::make: quick, and with a scale that fits the
  * clouds of most cases. Preset paper has the paper's scale and step size. */
 Options
 tortureOptions(Preset preset);
@@ -67,10 +67,6 @@ tortureOptions(Preset preset);
  * on usualPair(). */
 Options
 smallStepOptions();
-
-/** \brief The cases of odd clouds. */
-std::vector<TortureCase>
-tortureCasesOfClouds();
 
 /** \brief All cases, in the order of the table. */
 std::vector<TortureCase>

@@ -195,8 +195,7 @@ protected:
     if (expected.verdict == Verdict::NoSuchOption)
       return;
     const TortureCase& the_case = GetParam();
-    const TorturePair pair = the_case.make();
-    the_case.change(options);
+    const TorturePair pair = the_case.make(options);
     const PosteriorEstimate estimate = estimateOf<Scalar>(pair, options);
     SCOPED_TRACE(the_case.id + ", " + toString(options.preset) + ": " +
                  toString(estimate.summary.status) + ": " + estimate.summary.message);
@@ -266,8 +265,7 @@ TEST(TortureRight, ThePriorAloneIsNot)
         continue;
       Options options = tortureOptions(preset);
       const Vector6d sd = options.prior.variance.cwiseSqrt();
-      the_case.change(options);
-      const TorturePair pair = the_case.make();
+      const TorturePair pair = the_case.make(options);
       Random random(1, 0);
       PosteriorEstimate prior;
       prior.samples.resize(1000, 6);
