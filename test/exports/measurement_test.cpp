@@ -1,5 +1,6 @@
 // Posteriors without their prior: against draws of a known likelihood, and what becomes
 // of a filter that counts its odometry once or twice.
+#include "exports/some_estimate.h"
 #include "geometry/twist.h"
 
 #include <bayesian_icp/measurement.h>
@@ -24,18 +25,6 @@ Matrix6d
 informationAt(const PoseEstimate& estimate, CovarianceConvention convention)
 {
   return estimate.covariance(convention).inverse();
-}
-
-PoseEstimate
-estimateOf(const PoseMatrix& draws)
-{
-  PoseEstimate estimate;
-  estimate.status = Status::Ok;
-  estimate.mean = meanPose(draws);
-  for (int k = 0; k < 4; ++k)
-    estimate.covariances[static_cast<std::size_t>(k)] =
-        covarianceAbout(estimate.mean, draws, static_cast<CovarianceConvention>(k));
-  return estimate;
 }
 
 /** \p num_draws of the draws, each as often as its weight says. */
@@ -78,7 +67,9 @@ TEST(WithoutPrior, GivesTheLikelihoodBack)
   // Resampling doubles the variance of what is computed at most.
   const double ess = std::pow(weights.sum(), 2) / weights.squaredNorm() / 2.0;
   ASSERT_GT(ess, 1000.0);
-  const PoseEstimate posterior = estimateOf(resampled(draws, weights, random));
+  const PoseMatrix resampled_draws = resampled(draws, weights, random);
+  const PoseEstimate posterior =
+      test::estimateOf(resampled_draws, meanPose(resampled_draws));
   const PoseMeasurement measurement = withoutPrior(posterior, prior);
   EXPECT_EQ(measurement.num_unmeasured, 0);
 
@@ -110,7 +101,8 @@ TEST(WithoutPrior, SaysWhereTheCloudsSayNothing)
     PoseMatrix draws(static_cast<Eigen::Index>(min_ess), 6);
     for (Eigen::Index i = 0; i < draws.rows(); ++i)
       draws.row(i) = some_pose + deviation.cwiseProduct(random.normal6());
-    EXPECT_EQ(withoutPrior(estimateOf(draws), prior).num_unmeasured, 6) << seed;
+    const PoseEstimate posterior = test::estimateOf(draws, meanPose(draws));
+    EXPECT_EQ(withoutPrior(posterior, prior).num_unmeasured, 6) << seed;
   }
 }
 

@@ -56,11 +56,11 @@ drawsAboutMean(double deviation)
 
 /** What a run with these draws would hand to the exports. */
 inline PoseEstimate
-estimateOf(const PoseMatrix& draws)
+estimateOf(const PoseMatrix& draws, const Vector6d& mean = meanPoseOfTests())
 {
   PoseEstimate estimate;
   estimate.status = Status::Ok;
-  estimate.mean = meanPoseOfTests();
+  estimate.mean = mean;
   for (std::size_t i = 0; i < 4; ++i)
     estimate.covariances[i] =
         covarianceAbout(estimate.mean, draws, static_cast<CovarianceConvention>(i));
@@ -77,9 +77,13 @@ relativeDifference(const Matrix6d& found, const Matrix6d& expected)
       .maxCoeff();
 }
 
+/** The numbers among the words of a text, and in its lists. */
 inline std::vector<double>
-numbersOf(const std::string& text)
+numbersOf(std::string text)
 {
+  for (char& character : text)
+    if (character == '[' || character == ']' || character == ',')
+      character = ' ';
   std::istringstream stream(text);
   std::vector<double> numbers;
   for (std::string word; stream >> word;) {

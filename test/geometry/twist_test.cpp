@@ -7,24 +7,7 @@ namespace bayesian_icp {
 namespace {
 
 using Eigen::Isometry3d;
-using Eigen::Matrix4d;
 using Eigen::Vector3d;
-
-/** exp of a twist's matrix by its power series. */
-Matrix4d
-exponentialSeries(const Vector6d& xi)
-{
-  Matrix4d generator = Matrix4d::Zero();
-  generator.topLeftCorner<3, 3>() << 0.0, -xi[5], xi[4], xi[5], 0.0, -xi[3], -xi[4],
-      xi[3], 0.0;
-  generator.topRightCorner<3, 1>() = xi.head<3>();
-  Matrix4d term = Matrix4d::Identity(), sum = term;
-  for (int k = 1; k < 40; ++k) {
-    term = (term * generator / k).eval();
-    sum += term;
-  }
-  return sum;
-}
 
 /** Translations of about 1 m, rotations of up to 3 rad. */
 Vector6d
@@ -65,8 +48,7 @@ TEST(Twist, MovesPointsAsTheExponentialAboutItsCentreDoes)
     const Vector6d xi = randomTwist(random);
     const Vector3d centre = randomCentre(random), point = randomCentre(random);
     const Vector3d arm = pose * point - centre;
-    const Vector3d expected =
-        centre + (exponentialSeries(xi) * arm.homogeneous()).head<3>();
+    const Vector3d expected = centre + (expSE3(xi) * arm.homogeneous()).head<3>();
     EXPECT_LT((movedBy(xi, centre, pose) * point - expected).norm(), 1e-12);
   }
 }

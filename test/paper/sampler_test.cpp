@@ -62,6 +62,16 @@ chainOptions(int num_chains, int num_draws)
   return options;
 }
 
+/** Chains that start at zero. */
+ChainSet
+run(const SampledDensity& density,
+    const PaperOptions& options,
+    const ChainOptions& chains,
+    const ProgressCallback& progress = ProgressCallback())
+{
+  return runChains(Vector6d::Zero(), density, options, chains, progress);
+}
+
 TEST(Preconditioner, FollowsEquations10And11)
 {
   SgldOptions options;
@@ -127,10 +137,8 @@ TEST(Chains, SampleAGaussianWithTheBiasOfTheStepSize)
   const double alpha = 0.02;
   auto options = withSteps(alpha);
   options.num_burn_in = 500;
-  const ChainSet set = runChains(Vector6d::Zero(),
-                                 gaussianDensity(precision, Vector6d::Ones()),
-                                 options,
-                                 chainOptions(4, 80000));
+  const ChainSet set = run(
+      gaussianDensity(precision, Vector6d::Ones()), options, chainOptions(4, 80000));
   for (int k = 0; k < 6; ++k) {
     Eigen::MatrixXd draws(20000, 4), squares(20000, 4);
     for (int c = 0; c < 4; ++c)
@@ -147,9 +155,7 @@ TEST(Chains, DependOnSeedAndChainOnly)
   auto options = chainOptions(2, 20);
   const auto draws = [&](std::uint64_t seed, std::size_t chain) {
     options.seed = seed;
-    return runChains(Vector6d::Zero(), unitGaussian(), withSteps(0.1), options)
-        .chains[chain]
-        .draws;
+    return run(unitGaussian(), withSteps(0.1), options).chains[chain].draws;
   };
   EXPECT_EQ(draws(1, 0), draws(1, 0));
   EXPECT_NE(draws(1, 0), draws(1, 1));
@@ -158,8 +164,7 @@ TEST(Chains, DependOnSeedAndChainOnly)
 
 TEST(Chains, EarlierChainsTakeTheRemainder)
 {
-  const ChainSet set =
-      runChains(Vector6d::Zero(), unitGaussian(), withSteps(0.1), chainOptions(4, 10));
+  const ChainSet set = run(unitGaussian(), withSteps(0.1), chainOptions(4, 10));
   const Eigen::Index expected[] = {3, 3, 2, 2};
   for (std::size_t c = 0; c < 4; ++c)
     EXPECT_EQ(set.chains[c].draws.rows(), expected[c]);
@@ -171,10 +176,7 @@ TEST(Chains, BurnInAndThinningSelectFromTheSameChain)
     auto options = withSteps(0.1);
     options.num_burn_in = num_burn_in;
     options.thinning = thinning;
-    return runChains(
-               Vector6d::Zero(), unitGaussian(), options, chainOptions(1, num_draws))
-        .chains[0]
-        .draws;
+    return run(unitGaussian(), options, chainOptions(1, num_draws)).chains[0].draws;
   };
   const PoseMatrix all = draws(100, 0, 1);
   EXPECT_EQ(draws(90, 10, 1), all.bottomRows(90));
@@ -248,8 +250,7 @@ TEST(Chains, ThatAreWhiteNoiseOnTheCircleAreMarked)
   // R-hat and effective sample size of such draws are perfect.
   auto density = gaussianDensity(Vector6d::Zero(), Vector6d::Zero());
   density.has_diverged = [](const Vector6d&) { return false; };
-  const ChainSet set =
-      runChains(Vector6d::Zero(), density, withSteps(1e-4), chainOptions(2, 200));
+  const ChainSet set = run(density, withSteps(1e-4), chainOptions(2, 200));
   EXPECT_TRUE(set.chains[0].diverged);
   EXPECT_TRUE(set.chains[1].diverged);
 }
@@ -264,13 +265,12 @@ TEST(Chains, ThatBecomeNonFiniteAreStoppedAndMarked)
           Vector6d::Ones()};
     };
   };
-  const ChainSet set =
-      runChains(Vector6d::Zero(), density, withSteps(0.1), chainOptions(1, 10));
+  const ChainSet set = run(density, withSteps(0.1), chainOptions(1, 10));
   EXPECT_TRUE(set.chains[0].diverged);
   EXPECT_EQ(set.chains[0].draws.rows(), 0);
 }
 
-TEST(Progress, IsToldOfEveryStepOfEveryChain)
+TEST(Progress, IsToldOfEveryStepOfEveryChainAndThePoseThatIsKept)
 {
   auto options = withSteps(0.1);
   options.num_burn_in = 5;
@@ -278,36 +278,22 @@ TEST(Progress, IsToldOfEveryStepOfEveryChain)
   auto chains = chainOptions(3, 30);
   chains.num_threads = 2;
   long calls = 0, last_total = 0;
-  runChains(
-      Vector6d::Zero(), unitGaussian(), options, chains, [&](const Progress& progress) {
-        EXPECT_EQ(progress.steps, ++calls);
-        last_total = progress.total_steps;
-        return true;
-      });
+  std::vector<std::vector<Vector6d>> kept(3);
+  const auto set = run(unitGaussian(), options, chains, [&](const Progress& progress) {
+    EXPECT_EQ(progress.steps, ++calls);
+    last_total = progress.total_steps;
+    const long sampled = progress.chain_steps - 5;
+    if (sampled > 0 && sampled % 2 == 0)
+      kept[static_cast<std::size_t>(progress.chain)].push_back(progress.pose);
+    return true;
+  });
   EXPECT_EQ(calls, 3 * (5 + 2 * 10));
   EXPECT_EQ(last_total, calls);
-}
-
-TEST(Progress, TellsThePoseThatIsKept)
-{
-  auto options = withSteps(0.1);
-  options.num_burn_in = 5;
-  options.thinning = 2;
-  std::vector<std::vector<Vector6d>> kept(2);
-  const ChainSet set = runChains(Vector6d::Zero(),
-                                 unitGaussian(),
-                                 options,
-                                 chainOptions(2, 20),
-                                 [&](const Progress& progress) {
-                                   const long sampled = progress.chain_steps - 5;
-                                   if (sampled > 0 && sampled % 2 == 0)
-                                     kept[progress.chain].push_back(progress.pose);
-                                   return true;
-                                 });
-  for (std::size_t chain = 0; chain < 2; ++chain) {
+  for (std::size_t chain = 0; chain < 3; ++chain) {
     ASSERT_EQ(kept[chain].size(), 10U);
-    for (Eigen::Index i = 0; i < 10; ++i)
-      EXPECT_EQ(kept[chain][i], set.chains[chain].draws.row(i).transpose());
+    for (std::size_t i = 0; i < 10; ++i)
+      EXPECT_EQ(kept[chain][i],
+                set.chains[chain].draws.row(static_cast<Eigen::Index>(i)).transpose());
   }
 }
 
@@ -316,11 +302,8 @@ TEST(Progress, CanCancelAndWhatWasDrawnStays)
   for (const int num_threads : {1, 2}) {
     auto options = chainOptions(2, 2000);
     options.num_threads = num_threads;
-    const ChainSet set = runChains(Vector6d::Zero(),
-                                   unitGaussian(),
-                                   withSteps(0.1),
-                                   options,
-                                   [](const Progress& p) { return p.steps < 100; });
+    const auto stop = [](const Progress& p) { return p.steps < 100; };
+    const ChainSet set = run(unitGaussian(), withSteps(0.1), options, stop);
     EXPECT_TRUE(set.cancelled);
     const auto num_draws = set.chains[0].draws.rows() + set.chains[1].draws.rows();
     EXPECT_GE(num_draws, 100);
@@ -333,15 +316,12 @@ TEST(Progress, AnExceptionReachesTheCaller)
   for (const int num_threads : {1, 2}) {
     auto options = chainOptions(4, 4000);
     options.num_threads = num_threads;
-    EXPECT_THROW(runChains(Vector6d::Zero(),
-                           unitGaussian(),
-                           withSteps(0.1),
-                           options,
-                           [](const Progress& p) -> bool {
-                             if (p.steps == 50)
-                               throw std::runtime_error("enough");
-                             return true;
-                           }),
+    const auto fail = [](const Progress& p) -> bool {
+      if (p.steps == 50)
+        throw std::runtime_error("enough");
+      return true;
+    };
+    EXPECT_THROW(run(unitGaussian(), withSteps(0.1), options, fail),
                  std::runtime_error);
   }
 }
@@ -356,8 +336,7 @@ TEST(Threads, AThrowingGradientReachesTheCaller)
   };
   auto options = chainOptions(4, 40);
   options.num_threads = 2;
-  EXPECT_THROW(runChains(Vector6d::Zero(), density, withSteps(0.1), options),
-               std::runtime_error);
+  EXPECT_THROW(run(density, withSteps(0.1), options), std::runtime_error);
 }
 
 /** Most gradients that were being evaluated at one time. Each waits for another one,
@@ -385,7 +364,7 @@ largestConcurrency(bool is_thread_safe,
   };
   auto options = chainOptions(4, 4000);
   options.num_threads = num_threads;
-  runChains(Vector6d::Zero(), density, withSteps(0.1), options);
+  run(density, withSteps(0.1), options);
   return largest;
 }
 
