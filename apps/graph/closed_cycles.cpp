@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 
 namespace bayesian_icp::app {
@@ -161,17 +162,14 @@ closedCycles(const std::vector<GraphEdge>& edges, std::size_t max_length)
 std::vector<CycleStatistics>
 statisticsOf(const std::vector<ClosedCycle>& cycles)
 {
+  constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
   std::map<std::size_t, std::vector<const ClosedCycle*>> of_length;
-  std::vector<const ClosedCycle*> all;
-  for (const ClosedCycle& closed : cycles) {
-    of_length[closed.length()].push_back(&closed);
-    all.push_back(&closed);
-  }
+  for (const ClosedCycle& closed : cycles)
+    for (const std::size_t length : {closed.length(), all})
+      of_length[length].push_back(&closed);
   std::vector<CycleStatistics> lines;
   for (const auto& [length, members] : of_length)
-    lines.push_back(statisticsOf(io::textOf(length), members));
-  if (!all.empty())
-    lines.push_back(statisticsOf("all", all));
+    lines.push_back(statisticsOf(length == all ? "all" : io::textOf(length), members));
   return lines;
 }
 

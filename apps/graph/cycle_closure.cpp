@@ -44,13 +44,13 @@ shortestPath(const std::vector<GraphEdge>& edges,
              std::size_t direct,
              std::size_t max_edges)
 {
-  /** The last edge of the way to a vertex, and the number of its edges. */
-  struct Way {
+  /** Of the shortest way to a vertex: its last edge, and the number of its edges. */
+  struct Arrival {
     std::size_t last = 0;
     std::size_t length = 0;
   };
   const int begin = edges[direct].target, end = edges[direct].source;
-  std::map<int, Way> ways{{begin, {}}};
+  std::map<int, Arrival> ways{{begin, {}}};
   std::deque<int> next{begin};
   while (!next.empty() && ways.count(end) == 0) {
     const int vertex = next.front();
@@ -60,7 +60,7 @@ shortestPath(const std::vector<GraphEdge>& edges,
       continue;
     for (const std::size_t k : at.at(vertex)) {
       const int other = otherEnd(edges[k], vertex);
-      if (k != direct && ways.emplace(other, Way{k, length + 1}).second)
+      if (k != direct && ways.emplace(other, Arrival{k, length + 1}).second)
         next.push_back(other);
     }
   }
@@ -136,41 +136,34 @@ cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length)
   return {cycles.rbegin(), cycles.rend()};
 }
 
-Way::Way(int begin) : edge_{begin, begin, Eigen::Matrix4d::Identity(), Matrix6d::Zero()}
-{}
-
 void
 Way::append(const GraphEdge& edge)
 {
-  const Step step = stepFrom(edge_.source, edge);
+  const Step step = stepFrom(end, edge);
   const Matrix6d carry = adjointOf(step.T.inverse());
-  const Matrix6d covariance = step.carry * edge.covariance * step.carry.transpose();
+  const Matrix6d of_step = step.carry * edge.covariance * step.carry.transpose();
   const Matrix6d root = step.carry * squareRootOf(edge.covariance);
-  common_ = (carry * common_ + std::sqrt(edge.shared.common) * root).eval();
-  edge_.covariance = (carry * edge_.covariance * carry.transpose() +
-                      (1.0 - edge.shared.common) * covariance)
-                         .eval();
-  edge_.T_target_source = (edge_.T_target_source * step.T).eval();
-  edge_.source = step.end;
+  common = (carry * common + std::sqrt(edge.shared.common) * root).eval();
+  own = (carry * own * carry.transpose() + (1.0 - edge.shared.common) * of_step).eval();
+  T_begin_end = T_begin_end * step.T;
+  end = step.end;
 }
 
-GraphEdge
-Way::edge() const
+Matrix6d
+Way::covariance() const
 {
-  GraphEdge whole = edge_;
-  whole.covariance += common_ * common_.transpose();
-  return whole;
+  return own + common * common.transpose();
 }
 
-GraphEdge
+Way
 wayAlong(const std::vector<GraphEdge>& edges,
          int begin,
          const std::vector<std::size_t>& path)
 {
-  Way way(begin);
+  Way way{begin};
   for (const std::size_t k : path)
     way.append(edges[k]);
-  return way.edge();
+  return way;
 }
 
 ErrorTerms

@@ -27,30 +27,29 @@ std::vector<Cycle>
 cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length);
 
 /** \brief A way along edges, to first order. */
-class Way {
-public:
-  explicit Way(int begin);
+struct Way {
+  /** The vertex at its end. */
+  int end = 0;
+  /** The end in the frame of the begin. */
+  Eigen::Matrix4d T_begin_end = Eigen::Matrix4d::Identity();
+  /** CovarianceConvention::RightSE3 of what is not common to all edges [m, rad]. */
+  Matrix6d own = Matrix6d::Zero();
+  /** Factor of the noise that is. */
+  Matrix6d common = Matrix6d::Zero();
 
-  /** \brief Go on along an edge from the end of the way; it may be taken backwards. Its
-   * error is independent of those before but for what all edges have in common. */
+  /** \brief Go on along an edge from the end; it may be taken backwards. Its error is
+   * independent of those before but for what all edges have in common. */
   void
   append(const GraphEdge& edge);
 
-  /** \brief From the begin to the end. */
-  GraphEdge
-  edge() const;
-
-private:
-  /** With the covariance of what is not common to all edges. */
-  GraphEdge edge_;
-  /** Factor of the noise that is. */
-  Matrix6d common_ = Matrix6d::Zero();
+  /** \brief Of T_begin_end, CovarianceConvention::RightSE3 [m, rad]. */
+  Matrix6d
+  covariance() const;
 };
 
-/** \brief One edge in place of several, to first order.
- * \param[in] path positions in \p edges, from vertex \p begin on; an edge may be taken
- *            backwards */
-GraphEdge
+/** \brief The way from vertex \p begin on.
+ * \param[in] path positions in \p edges, each of which may be taken backwards */
+Way
 wayAlong(const std::vector<GraphEdge>& edges,
          int begin,
          const std::vector<std::size_t>& path);

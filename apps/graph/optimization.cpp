@@ -38,10 +38,7 @@ constexpr double tolerance = 1e-12;
 constexpr double considered_deviation = 1e-4;
 
 /** Position [m] and quaternion x y z w: how Ceres sees a pose. */
-using Parameters = std::array<double, 7>;
-
-/** Six independent numbers. */
-using NoiseNumbers = std::array<double, 6>;
+using Parameters = Eigen::Matrix<double, 7, 1>;
 
 template <typename T>
 struct PoseView {
@@ -139,10 +136,8 @@ parametersOf(const Eigen::Matrix4d& pose)
 {
   const Eigen::Isometry3d isometry(pose);
   const Eigen::Quaterniond rotation(isometry.linear());
-  Parameters parameters;
-  Eigen::Map<Eigen::Vector3d>(parameters.data()) = isometry.translation();
-  Eigen::Map<Eigen::Quaterniond>(parameters.data() + 3) = rotation.normalized();
-  return parameters;
+  return (Parameters() << isometry.translation(), rotation.normalized().coeffs())
+      .finished();
 }
 
 Eigen::Matrix4d
@@ -257,8 +252,8 @@ private:
   /** Of one scan: its pose, and its noise as a source in units of the deviations of its
    * edges. */
   struct Unknowns {
-    Parameters pose{};
-    NoiseNumbers noise{};
+    Parameters pose = Parameters::Zero();
+    Vector6d noise = Vector6d::Zero();
   };
 
   std::size_t
@@ -268,7 +263,7 @@ private:
   }
 
   /** Of all edges, held at 0. */
-  NoiseNumbers&
+  Vector6d&
   commonNoise()
   {
     return unknowns_.back().noise;
@@ -276,7 +271,7 @@ private:
 
   /** Of numbers that are 0 to a deviation. */
   void
-  addNoise(double deviation, NoiseNumbers& noise)
+  addNoise(double deviation, Vector6d& noise)
   {
     problem_.AddResidualBlock(
         new ceres::NormalPrior(ceres::Matrix::Identity(6, 6) / deviation,
@@ -306,7 +301,7 @@ private:
   static double
   squaredErrorOf(const PlacedEdge& edge)
   {
-    const NoiseNumbers no_noise{};
+    const Vector6d no_noise = Vector6d::Zero();
     Vector6d residual;
     edge.error(
         edge.target, edge.source, no_noise.data(), no_noise.data(), residual.data());

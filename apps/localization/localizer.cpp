@@ -53,7 +53,7 @@ pointsOf(const pcl::PCLPointCloud2& message, const std::string& what)
     throw Refusal(the_cloud + "has " + std::to_string(message.data.size()) +
                   " bytes of data, but width, height and point_step make " +
                   std::to_string(num_points * message.point_step));
-  const io::FieldTriple xyz = io::findFields(message, {"x", "y", "z"});
+  const io::FieldTriple xyz(message, {"x", "y", "z"});
   if (!xyz.isComplete())
     throw Refusal(the_cloud + "has no floating-point fields x, y and z");
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();

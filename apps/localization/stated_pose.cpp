@@ -41,15 +41,6 @@ meanOf(const StatedPose& pose)
   return mean;
 }
 
-void
-raiseTo(const PriorFloor& floor, Matrix6d& covariance)
-{
-  for (Eigen::Index k = 0; k < 6; ++k) {
-    const double least = k < 3 ? floor.translation : floor.rotation;
-    covariance(k, k) = std::max(covariance(k, k), least * least);
-  }
-}
-
 /** Divided by the standard deviations of its rows and columns. */
 Matrix6d
 correlationsOf(const Matrix6d& covariance)
@@ -71,7 +62,10 @@ checkedCovariance(const Matrix6d& stated, const PriorFloor& floor)
     if (covariance(k, k) < 0.0)
       throw Refusal("the prior's variance of " + std::string(axes[k]) + " is " +
                     io::textOf(covariance(k, k)) + ", but must be positive");
-  raiseTo(floor, covariance);
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const double least = k < 3 ? floor.translation : floor.rotation;
+    covariance(k, k) = std::max(covariance(k, k), least * least);
+  }
   for (Eigen::Index k = 0; k < 6; ++k)
     if (!(covariance(k, k) > 0.0))
       throw Refusal("the prior's variance of " + std::string(axes[k]) +

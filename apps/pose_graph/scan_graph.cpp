@@ -98,12 +98,12 @@ private:
     pair.source_file = request_.scans.at(static_cast<std::size_t>(scans.source));
     pair.settings = request_.settings;
     if (edge.kind != EdgeKind::Chain) {
-      const GraphEdge way =
+      const Way way =
           wayAlong(steps_, scans.target, pathBetween(scans.target, scans.source));
       const Matrix6d wide = PriorOptions().variance.asDiagonal();
-      pair.settings.guess = way.T_target_source;
+      pair.settings.guess = way.T_begin_end;
       pair.settings.options.prior =
-          priorFrom(statedPoseOf(poseOf(way.T_target_source), way.covariance + wide))
+          priorFrom(statedPoseOf(poseOf(way.T_begin_end), way.covariance() + wide))
               .options;
     }
     return pair;
@@ -219,7 +219,7 @@ private:
         prior.mean.allFinite() ? prior.mean : poseOf(request_.settings.guess);
     const Prior assumed(expected,
                         prior.variance.allFinite() ? prior.variance : usual.variance);
-    Way way(0);
+    Way way;
     graph_.chain.assign(1, GaussianPose());
     for (const ScanEdge& edge : graph_.registrations) {
       steps_.push_back(edge.edge);
@@ -230,8 +230,7 @@ private:
         steps_.back().covariance = estimate.covariance(CovarianceConvention::RightSE3);
       }
       way.append(steps_.back());
-      const GraphEdge whole = way.edge();
-      graph_.chain.push_back({poseOf(whole.T_target_source), whole.covariance});
+      graph_.chain.push_back({poseOf(way.T_begin_end), way.covariance()});
     }
   }
 

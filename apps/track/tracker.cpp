@@ -3,7 +3,6 @@
 #include "io/cloud_file.h"
 #include "io/errors.h"
 #include "localization/stated_pose.h"
-#include "track/registration.h"
 
 #include <boost/functional/hash.hpp>
 
@@ -56,10 +55,10 @@ Tracker::Tracker(const TrackRequest& request, const Track& track)
 PreparedTarget
 Tracker::preparedScan(int scan)
 {
-  const auto found = prepared_.find(scan);
-  if (found != prepared_.end())
-    return found->second;
-  return prepared_.emplace(scan, PreparedTarget(pointsOf(scan))).first->second;
+  auto found = prepared_.find(scan);
+  if (found == prepared_.end())
+    found = prepared_.emplace(scan, PreparedTarget(pointsOf(scan))).first;
+  return found->second;
 }
 
 PreparedTarget
@@ -88,13 +87,13 @@ Tracker::prepareTarget()
                   prepared_.lower_bound(track_.size() - request_.span));
 }
 
-std::optional<TrackStep>
+Registration
 Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
                           const ProgressCallback& progress,
-                          bool& is_of_use) const
+                          bool& is_velocity_doubted) const
 {
-  const auto attempt = [&](bool is_velocity_doubted) {
-    GaussianPose prediction = track_.prediction(is_velocity_doubted);
+  const auto attempt = [&](bool is_doubted) {
+    GaussianPose prediction = track_.prediction(is_doubted);
     prediction.covariance += track_.targetCovariance(matrixOf(prediction.mean));
     Options options = request_.settings.options;
     options.prior =
@@ -104,25 +103,14 @@ Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
         track_.targetCovariance(matrixOf(result.edge.pose.mean));
     return result;
   };
-  TrackStep step;
-  Registration result = attempt(false);
-  if (result.quality != Quality::Cancelled && result.quality != Quality::Good) {
-    const Registration open = attempt(true);
-    // Of two that are as good, the one that trusts the motion before less.
-    step.is_velocity_doubted =
-        open.quality != Quality::Useless && open.quality >= result.quality;
-    if (step.is_velocity_doubted || open.quality == Quality::Cancelled)
-      result = open;
-  }
-  if (result.quality == Quality::Cancelled)
-    return std::nullopt;
-  is_of_use = result.quality != Quality::Useless;
-  step.kind =
-      result.quality == Quality::Good ? StepKind::Registered : StepKind::Widened;
-  step.status = result.status;
-  step.message = result.message;
-  step.edge = result.edge;
-  return step;
+  const Registration first = attempt(false);
+  if (first.quality == Quality::Cancelled || first.quality == Quality::Good)
+    return first;
+  const Registration open = attempt(true);
+  // Of two that are as good, the one that trusts the motion before less.
+  is_velocity_doubted =
+      open.quality != Quality::Useless && open.quality >= first.quality;
+  return is_velocity_doubted || open.quality == Quality::Cancelled ? open : first;
 }
 
 bool
@@ -160,37 +148,44 @@ Tracker::registerNext(const ProgressCallback& progress)
 {
   const auto start = std::chrono::steady_clock::now();
   prepareTarget();
-  const int scan = track_.size();
-  std::optional<TrackStep> step = TrackStep();
-  step->status = "error";
-  bool is_of_use = false;
+  TrackStep step;
+  step.scan = track_.size();
+  Registration result;
+  result.status = "error";
   try {
-    step = registerToTarget(pointsOf(scan), progress, is_of_use);
+    result = registerToTarget(pointsOf(step.scan), progress, step.is_velocity_doubted);
   }
   catch (const io::FileError& error) {
-    step->message = error.what();
+    result.message = error.what();
   }
   catch (const Refusal& refusal) {
-    step->message = refusal.what();
+    result.message = refusal.what();
   }
-  if (!step || (is_of_use && !registerToMore(pointsOf(scan), progress, *step)))
+  if (result.quality == Quality::Cancelled)
     return std::nullopt;
-  step->scan = scan;
-  if (!is_of_use) {
+  step.status = result.status;
+  step.message = result.message;
+  step.edge = result.edge;
+  if (result.quality == Quality::Useless) {
     const bool is_last = track_.numFailures() + 1 >= max_failures;
-    step->kind =
-        is_last && points_.count(scan) > 0 ? StepKind::Split : StepKind::Predicted;
-    step->is_velocity_doubted = false;
-    step->edge.pose = track_.prediction(false);
-    step->edge.num_unmeasured = 6;
+    step.kind =
+        is_last && points_.count(step.scan) > 0 ? StepKind::Split : StepKind::Predicted;
+    step.is_velocity_doubted = false;
+    step.edge = {track_.target(), track_.prediction(false)};
   }
-  step->edge.target = track_.target();
-  if (step->kind == StepKind::Predicted)
-    points_.erase(scan);
+  else {
+    step.kind =
+        result.quality == Quality::Good ? StepKind::Registered : StepKind::Widened;
+    step.edge.target = track_.target();
+    if (!registerToMore(pointsOf(step.scan), progress, step))
+      return std::nullopt;
+  }
+  if (step.kind == StepKind::Predicted)
+    points_.erase(step.scan);
   else if (request_.voxel_size > 0.0) // as the map will have it
-    points_[scan] = thinned(pointsOf(scan), request_.voxel_size);
+    points_[step.scan] = thinned(pointsOf(step.scan), request_.voxel_size);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  step->seconds = time.count();
+  step.seconds = time.count();
   return step;
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "register/settings.h"
-#include "track/track.h"
+#include "track/registration.h"
 
 #include <bayesian_icp/draws.h>
 #include <bayesian_icp/prepared_target.h>
@@ -72,11 +72,12 @@ private:
   prepareTarget();
 
   /** The prior is the prediction; if that is not good, it is tried again as if the
-   * velocity were unknown. */
-  std::optional<TrackStep>
+   * velocity were unknown.
+   * \param[out] is_velocity_doubted whether the second try is the result */
+  Registration
   registerToTarget(const Eigen::Matrix3Xd& points,
                    const ProgressCallback& progress,
-                   bool& is_of_use) const;
+                   bool& is_velocity_doubted) const;
 
   /** To scans before the target, from where \p step puts the scan. Those that cannot be
    * registered are left out. \return false if it was cancelled */

@@ -28,15 +28,22 @@ chained(const std::vector<GraphEdge>& edges, std::size_t count)
   return poses;
 }
 
-/** Edges k to k + 1, and back to 0. */
+/** Edges k to k + 1. */
+std::vector<GraphEdge>
+drawnChain(const Poses& poses, Random& random)
+{
+  std::vector<GraphEdge> edges;
+  for (int k = 0; k + 1 < static_cast<int>(poses.size()); ++k)
+    edges.push_back(drawnEdge(poses, k, k + 1, random));
+  return edges;
+}
+
+/** The same, and back to 0. */
 std::vector<GraphEdge>
 drawnLoop(const Poses& poses, Random& random)
 {
-  std::vector<GraphEdge> edges;
-  const int last = static_cast<int>(poses.size()) - 1;
-  for (int k = 0; k < last; ++k)
-    edges.push_back(drawnEdge(poses, k, k + 1, random));
-  edges.push_back(drawnEdge(poses, last, 0, random));
+  std::vector<GraphEdge> edges = drawnChain(poses, random);
+  edges.push_back(drawnEdge(poses, static_cast<int>(poses.size()) - 1, 0, random));
   return edges;
 }
 
@@ -59,8 +66,7 @@ TEST(OptimizedPosesOf, AChainAreTheChainAndCovariancesAddUpAlongIt)
 {
   Random random(1, 0);
   const Poses truth = somePoses(5, random);
-  std::vector<GraphEdge> edges = drawnLoop(truth, random);
-  edges.pop_back();
+  std::vector<GraphEdge> edges = drawnChain(truth, random);
   const Poses chain = chained(edges, 5);
   const OptimizedPoses found = optimizedPoses(chain, edges, RobustLoss::None);
   EXPECT_EQ(found.complaint, "");
@@ -260,8 +266,7 @@ TEST(OptimizedPosesOf, GraphsThatAreNoneAreRefused)
 {
   Random random(5, 0);
   const Poses truth = somePoses(4, random);
-  std::vector<GraphEdge> edges = drawnLoop(truth, random);
-  edges.pop_back();
+  std::vector<GraphEdge> edges = drawnChain(truth, random);
   const auto messageOf = [&] {
     try {
       optimizedPoses(truth, edges, RobustLoss::None);
@@ -294,20 +299,17 @@ TEST(Way, AlongAChainHasTheCovarianceThatTheOptimisationFinds)
 {
   Random random(6, 0);
   const Poses truth = somePoses(4, random);
-  std::vector<GraphEdge> edges = drawnLoop(truth, random);
-  edges.pop_back();
+  std::vector<GraphEdge> edges = drawnChain(truth, random);
   const OptimizedPoses found =
       optimizedPoses(chained(edges, 4), edges, RobustLoss::None);
-  const GraphEdge way = app::wayAlong(edges, 0, {0, 1, 2});
-  EXPECT_EQ(way.target, 0);
-  EXPECT_EQ(way.source, 3);
-  EXPECT_LT(errorOf(found.poses[3], way.T_target_source).norm(), 1e-9);
-  EXPECT_LT(relativeDifference(found.poses[3].covariance, way.covariance), 1e-6);
+  const app::Way way = app::wayAlong(edges, 0, {0, 1, 2});
+  EXPECT_EQ(way.end, 3);
+  EXPECT_LT(errorOf(found.poses[3], way.T_begin_end).norm(), 1e-9);
+  EXPECT_LT(relativeDifference(found.poses[3].covariance, way.covariance()), 1e-6);
   // And back to where it began.
-  const GraphEdge there_and_back = app::wayAlong(edges, 0, {0, 1, 1, 0});
-  EXPECT_EQ(there_and_back.source, 0);
-  EXPECT_LT((there_and_back.T_target_source - Eigen::Matrix4d::Identity()).norm(),
-            1e-12);
+  const app::Way there_and_back = app::wayAlong(edges, 0, {0, 1, 1, 0});
+  EXPECT_EQ(there_and_back.end, 0);
+  EXPECT_TRUE(there_and_back.T_begin_end.isIdentity(1e-12));
 }
 
 namespace {
