@@ -152,7 +152,7 @@ scenes(int argc, char** argv)
       scenes.push_back(makeScene(pointsOf(*cloud)));
     return scenes;
   }
-  for (const int width : {86, 276, 599, 1366})
+  for (const int width : {144, 460, 1000, 2280})
     scenes.push_back(makeScene(scanOfTable(width)));
   return scenes;
 }
