@@ -7,8 +7,7 @@ import shutil
 import unittest
 
 import cloud_files
-from cli_tool import DATA, ToolTest
-from faults import call
+from cli_tool import DATA, ToolTest, call
 from robot_formats import quaternion_of, turned
 from trajectories import (
     CHI2_HIGH,

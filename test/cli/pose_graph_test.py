@@ -4,8 +4,8 @@ import math
 import unittest
 
 import cloud_files
-from cli_tool import DATA
-from faults import POSE_GRAPH, call
+from cli_tool import DATA, call
+from faults import POSE_GRAPH
 from robot_formats import read_g2o_edge
 from trajectories import (
     CHI2_HIGH,

@@ -4,8 +4,8 @@ import random
 import unittest
 
 import cloud_files
-from cli_tool import strict_json
-from faults import EVALUATE, TRACK, TRACKED, call
+from cli_tool import call, strict_json
+from faults import EVALUATE, TRACK, TRACKED
 from trajectories import (
     CHI2_HIGH,
     TrajectoryTest,

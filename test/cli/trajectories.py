@@ -3,8 +3,8 @@
 import json
 import math
 
-from cli_tool import ToolTest
-from faults import SIMULATE, call
+from cli_tool import ToolTest, call
+from faults import SIMULATE
 from robot_formats import conjugate, multiplied, read_g2o_edge, turned
 
 # Where the camera of a short trajectory stands, world frame [m].
