@@ -1,8 +1,11 @@
 /** \file
- * \brief The sub-commands of pcl_bayesian_icp_evaluate, but those of the paper's
- * evaluation.
+ * \brief The sub-commands of pcl_bayesian_icp_evaluate.
  */
 #pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
 
 namespace bayesian_icp::evaluate {
 
@@ -32,5 +35,18 @@ runSbcCommand(int argc, const char* const* argv);
  * accuracy true? */
 int
 runTrajectoriesCommand(int argc, const char* const* argv);
+
+/** \brief A sub-command and what its line of the tool's help says. */
+struct SubCommand {
+  std::string name;
+  std::string summary;
+  /** One of the functions above, or as them. */
+  std::function<int(int argc, const char* const* argv)> run;
+};
+
+/** \brief `paper`, all experiments of the paper into one folder, and each of them by
+ * itself. They return 3 if a pair had to be skipped or there is no report. */
+std::vector<SubCommand>
+paperCommands();
 
 } // namespace bayesian_icp::evaluate

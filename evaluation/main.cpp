@@ -4,33 +4,26 @@
  */
 #include "commands.h"
 #include "io/program.h"
-#include "paper/paper_command.h"
 #include "study/report_program.h"
 
-#include <functional>
 #include <iomanip>
 #include <iostream>
 #include <string>
 #include <vector>
 
+namespace evaluate = bayesian_icp::evaluate;
 namespace io = bayesian_icp::io;
+
+using evaluate::SubCommand;
 
 namespace {
 
 /** Failures have those of io::explainFailure(). */
 enum ExitCode { Good = 0, BadUsage = 2 };
 
-struct SubCommand {
-  std::string name;
-  std::string summary;
-  /** \return 0, or 1 if a result is not to be relied on */
-  std::function<int(int argc, const char* const* argv)> run;
-};
-
 std::vector<SubCommand>
 subCommands()
 {
-  namespace evaluate = bayesian_icp::evaluate;
   std::vector<SubCommand> commands = {
       {"samplers",
        "distance of every sampler's draws to a gold standard, and their rate",
@@ -47,16 +40,9 @@ subCommands()
       {"trajectories",
        "trajectories made of registrations, with the covariances of several methods",
        evaluate::runTrajectoriesCommand},
-      {"paper",
-       "the paper's whole evaluation: all experiments below, and a report",
-       evaluate::runPaperCommand},
   };
-  for (const evaluate::NamedExperiment& experiment : evaluate::paperExperiments())
-    commands.push_back({experiment.name,
-                        experiment.summary,
-                        [&experiment](int argc, const char* const* argv) {
-                          return evaluate::runExperimentCommand(experiment, argc, argv);
-                        }});
+  for (const SubCommand& command : evaluate::paperCommands())
+    commands.push_back(command);
   commands.push_back({"report",
                       "report.md, report.html and figures of the CSV files in a folder",
                       evaluate::runReportCommand});

@@ -1,7 +1,5 @@
 #include "baselines/iterative_closest_point.h"
 
-#include "baselines/icp_runner.h"
-
 #include <Eigen/LU>
 #include <Eigen/SVD>
 

@@ -1,6 +1,5 @@
 #include "baselines/monte_carlo_icp.h"
 
-#include "baselines/icp_runner.h"
 #include "geometry/twist.h"
 #include "sampler/run_state.h"
 

@@ -1,7 +1,6 @@
 #include "calibrated/surface/surface_model.h"
 #include "coverage/coverage_methods.h"
 #include "methods/baseline_problem.h"
-#include "methods/point_to_point_sandwich.h"
 #include "methods/published_covariances.h"
 
 namespace bayesian_icp::evaluate {

@@ -4,7 +4,7 @@
 #include "coverage/coverage_real.h"
 #include "coverage/coverage_sequences.h"
 #include "coverage/coverage_study.h"
-#include "coverage/coverage_table.h"
+#include "coverage/coverage_summary.h"
 #include "io/cloud_file.h"
 #include "io/command_line.h"
 #include "io/errors.h"

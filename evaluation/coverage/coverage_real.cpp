@@ -1,7 +1,6 @@
 #include "coverage/coverage_real.h"
 
 #include "geometry/twist.h"
-#include "io/cloud_file.h"
 #include "io/errors.h"
 #include "io/text_hash.h"
 #include "methods/baseline_problem.h"
@@ -11,12 +10,12 @@
 namespace bayesian_icp::evaluate {
 
 RealPairs::RealPairs(const std::string& folder)
-: folder_(folder + "/")
+: folder_(folder)
 , entries_(readManifest(folder))
 {
   for (const ManifestEntry& entry : entries_)
     if (!entry.prior_sd)
-      throw io::FileError(folder_ + manifest_name,
+      throw io::FileError(folder_ + "/" + manifest_name,
                           "has no suggested_prior_sigma of " +
                               io::inQuotes(entry.name));
 }
@@ -39,42 +38,34 @@ RealPairs::entryOf(const std::string& name) const
   throw io::FileError(folder_, "has no pair " + io::inQuotes(name));
 }
 
-std::shared_ptr<const RealPairs::Clouds>
-RealPairs::cloudsOf(const ManifestEntry& entry) const
+std::shared_ptr<const ScanPair>
+RealPairs::pairOf(const ManifestEntry& entry) const
 {
   const std::lock_guard<std::mutex> lock(mutex_);
-  auto& clouds = clouds_[entry.name];
-  if (!clouds) {
-    Clouds read;
-    const Eigen::Isometry3d T_target_source =
-        readTransform(folder_ + entry.ground_truth);
-    read.source_in_target =
-        T_target_source * io::readFinitePoints(folder_ + entry.source).cast<double>();
-    read.target = io::readFinitePoints(folder_ + entry.target).cast<double>();
-    clouds = std::make_shared<const Clouds>(std::move(read));
-  }
-  return clouds;
+  auto& pair = pairs_[entry.name];
+  if (!pair)
+    pair = std::make_shared<const ScanPair>(readScanPair(folder_, entry));
+  return pair;
 }
 
 CoverageCase
 RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
 {
   const ManifestEntry& entry = entryOf(name);
-  const auto clouds = cloudsOf(entry);
+  const auto pair = pairOf(entry);
   // Cases of one seed share no random numbers.
   Random random(seed, io::hashOf(name));
   CoverageCase made;
   made.scene = name;
   made.condition = "real";
   made.seed = seed;
-  made.target = clouds->target;
+  made.target = pair->target;
   made.prior_sd << Eigen::Vector3d::Constant(entry.prior_sd->translation),
       Eigen::Vector3d::Constant(entry.prior_sd->rotation);
   made.truth_sd_translation = entry.truth_sd.translation;
   made.truth_sd_rotation = entry.truth_sd.rotation;
-  const Eigen::Matrix3Xd& all = clouds->source_in_target;
-  const auto part = randomChoice(all.cols(), max_source_points, random);
-  made.source = all(Eigen::all, part);
+  const auto part = randomChoice(pair->source.cols(), max_source_points, random);
+  made.source = pair->truth * pair->source(Eigen::all, part);
   // The prior is about no motion: the truth turns the source about its centroid, and
   // shifts the centroid by the first three numbers.
   const Vector6d deviation = made.prior_sd.cwiseProduct(random.normal6());

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "study/coverage_case.h"
-#include "study/scan_manifest.h"
+#include "study/scan_pairs.h"
 
 #include <map>
 #include <memory>
@@ -32,21 +32,16 @@ public:
   makeCase(const std::string& name, std::uint64_t seed) const;
 
 private:
-  /** 3 x n, finite, the source where the ground truth puts it, target frame [m]. */
-  struct Clouds {
-    Eigen::Matrix3Xd source_in_target, target;
-  };
-
   const ManifestEntry&
   entryOf(const std::string& name) const;
 
-  std::shared_ptr<const Clouds>
-  cloudsOf(const ManifestEntry& entry) const;
+  std::shared_ptr<const ScanPair>
+  pairOf(const ManifestEntry& entry) const;
 
   std::string folder_;
   std::vector<ManifestEntry> entries_;
   mutable std::mutex mutex_;
-  mutable std::map<std::string, std::shared_ptr<const Clouds>> clouds_;
+  mutable std::map<std::string, std::shared_ptr<const ScanPair>> pairs_;
 };
 
 } // namespace bayesian_icp::evaluate

@@ -80,6 +80,12 @@ struct CoverageScore {
   }
 };
 
+/** \brief Probability of a smaller squared Mahalanobis distance than \p nees: that of
+ * the smallest ellipsoid about the mean with the shape of the covariance that has the
+ * truth. Uniform if the posterior is right. NaN of NaN. */
+double
+regionOf(double nees, const RegionShape& shape = RegionShape());
+
 /** \brief Least log score of a recording's pair [nats]: one lost pair is not to decide
  * a mean. */
 constexpr double min_log_score = -50.0;

@@ -6,6 +6,7 @@
 #include "coverage/coverage_file.h"
 
 #include <array>
+#include <iosfwd>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -64,5 +65,11 @@ struct CoverageSummary {
 
 CoverageSummary
 summaryOf(const std::vector<CoverageRun>& runs);
+
+/** \brief A block of one line a method for each scene and condition, for each scene and
+ * each condition that has several, and for all; in the order in which \p runs name them
+ * first. Runs of recordings have columns of their own. */
+void
+printCoverageTable(const std::vector<CoverageRun>& runs, std::ostream& stream);
 
 } // namespace bayesian_icp::evaluate

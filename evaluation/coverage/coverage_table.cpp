@@ -1,10 +1,10 @@
-#include "coverage/coverage_table.h"
-
 #include "coverage/coverage_summary.h"
 #include "study/formatted_text.h"
+#include "study/text_table.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <ostream>
 
 namespace bayesian_icp::evaluate {
@@ -22,76 +22,95 @@ std::string
 shareText(const Share& share)
 {
   return std::isnan(share.value)
-             ? format("%16s", "-")
+             ? "-"
              : format("%4.2f [%.2f,%.2f]", share.value, share.low, share.high);
-}
-
-std::string
-percentText(const Share& share)
-{
-  return std::isnan(share.value) ? format("%6s", "-")
-                                 : format("%6.0f", 100.0 * share.value);
-}
-
-/** Large numbers without digits nobody reads. */
-std::string
-numberText(double value, int width, int num_decimals)
-{
-  if (std::isnan(value))
-    return format("%*s", width, "-");
-  return std::abs(value) < (num_decimals > 0 ? 1e4 : 1e7)
-             ? format("%*.*f", width, num_decimals, value)
-             : format("%*.1e", width, value);
 }
 
 /** "2/31" */
 std::string
-countText(std::size_t count, std::size_t of, int width)
+countText(std::size_t count, std::size_t of)
 {
-  return format(
-      "%*s", width, (std::to_string(count) + '/' + std::to_string(of)).c_str());
+  return std::to_string(count) + '/' + std::to_string(of);
 }
 
-/** A line of recordings. */
-void
-printSequenceLine(const std::string& method,
-                  const CoverageSummary& summary,
-                  std::ostream& stream)
+/** What is told of the runs of a method. */
+struct Column {
+  std::string title;
+  std::function<std::string(const CoverageSummary&)> cell;
+};
+
+using Columns = std::vector<Column>;
+using Summary = CoverageSummary;
+
+Column
+numberColumn(const std::string& title,
+             double Summary::*number,
+             int num_decimals,
+             double factor = 1.0)
 {
-  stream << format(
-                "  %-23s %5zu %5zu", method.c_str(), summary.num_runs, summary.num_lost)
-         << numberText(summary.anees, 9, 2) << "  "
-         << shareText(summary.coverage.front()) << "  "
-         << shareText(summary.coverage.back())
-         << numberText(summary.mean_log_score, 8, 2)
-         << numberText(mm * summary.translation_error, 10, 2)
-         << numberText(mrad * summary.rotation_error, 9, 3)
-         << countText(summary.num_alarms, summary.num_good, 10)
-         << countText(summary.num_misses, summary.num_bad, 9)
-         << numberText(summary.median_seconds, 9, 3) << '\n';
+  return {title, [=](const Summary& s) {
+            return numberText(factor * s.*number, num_decimals);
+          }};
 }
 
-void
-printLine(const std::string& method,
-          const CoverageSummary& summary,
-          std::ostream& stream)
+Column
+percentColumn(const std::string& title, Share Summary::*share)
 {
-  stream << format("  %-23s %5zu/%-5zu",
-                   method.c_str(),
-                   summary.num_valid,
-                   summary.num_runs)
-         << numberText(summary.anees, 9, 2);
-  for (const Share& share : summary.coverage)
-    stream << "  " << shareText(share);
-  const double queries =
-      summary.median_queries >= 0.0 ? summary.median_queries : std::nan("");
-  stream << numberText(summary.mean_log_score, 9, 2)
-         << numberText(summary.mean_energy_score, 8, 4)
-         << numberText(mm * summary.translation_error, 9, 2)
-         << numberText(degree * summary.rotation_error, 8, 2)
-         << percentText(summary.flagged) << percentText(summary.flagged_outside)
-         << numberText(summary.median_seconds, 9, 3) << numberText(queries, 9, 0)
-         << '\n';
+  return {title,
+          [=](const Summary& s) { return numberText(100.0 * (s.*share).value, 0); }};
+}
+
+Column
+shareColumn(std::size_t level)
+{
+  return {"truths within\n" + format("%.0f %%", 100.0 * coverage_levels[level]),
+          [=](const Summary& s) { return shareText(s.coverage[level]); }};
+}
+
+const Columns&
+simulatedColumns()
+{
+  static const Columns columns = {
+      {"valid\n/runs",
+       [](const Summary& s) { return countText(s.num_valid, s.num_runs); }},
+      numberColumn("mean\nNEES/6", &Summary::anees, 2),
+      shareColumn(0),
+      shareColumn(1),
+      shareColumn(2),
+      shareColumn(3),
+      numberColumn("mean\nlog p", &Summary::mean_log_score, 2),
+      numberColumn("mean\nenergy", &Summary::mean_energy_score, 4),
+      numberColumn("median\nmm", &Summary::translation_error, 2, mm),
+      numberColumn("median\ndeg", &Summary::rotation_error, 2, degree),
+      percentColumn("flagged\nall %", &Summary::flagged),
+      percentColumn("flagged\nout95 %", &Summary::flagged_outside),
+      numberColumn("median\ns", &Summary::median_seconds, 3),
+      {"median\nqueries", [](const Summary& s) {
+         return numberText(s.median_queries >= 0.0 ? s.median_queries : std::nan(""),
+                           0);
+       }}};
+  return columns;
+}
+
+/** Of recordings, whose poses can be lost. */
+const Columns&
+sequenceColumns()
+{
+  static const Columns columns = {
+      {"\npairs", [](const Summary& s) { return std::to_string(s.num_runs); }},
+      {"\nlost", [](const Summary& s) { return std::to_string(s.num_lost); }},
+      numberColumn("mean\nNEES/6", &Summary::anees, 2),
+      shareColumn(0),
+      shareColumn(coverage_levels.size() - 1),
+      numberColumn("mean\nlog p", &Summary::mean_log_score, 2),
+      numberColumn("median\nmm", &Summary::translation_error, 2, mm),
+      numberColumn("median\nmrad", &Summary::rotation_error, 3, mrad),
+      {"alarms\n/good",
+       [](const Summary& s) { return countText(s.num_alarms, s.num_good); }},
+      {"misses\n/bad",
+       [](const Summary& s) { return countText(s.num_misses, s.num_bad); }},
+      numberColumn("median\ns", &Summary::median_seconds, 3)};
+  return columns;
 }
 
 std::vector<std::string>
@@ -102,32 +121,6 @@ namesOf(const Runs& runs, std::string CoverageRunName::*member)
     if (std::find(names.begin(), names.end(), run.name.*member) == names.end())
       names.push_back(run.name.*member);
   return names;
-}
-
-/** The runs of each method, in order of appearance. */
-std::vector<std::pair<std::string, Runs>>
-runsByMethod(const Runs& runs)
-{
-  std::vector<std::pair<std::string, Runs>> methods;
-  for (const std::string& method : namesOf(runs, &CoverageRunName::method)) {
-    methods.emplace_back(method, Runs());
-    for (const CoverageRun& run : runs)
-      if (run.name.method == method)
-        methods.back().second.push_back(run);
-  }
-  return methods;
-}
-
-void
-printBlock(const std::string& title, const Runs& runs, std::ostream& stream)
-{
-  if (runs.empty())
-    return;
-  stream << title << '\n';
-  for (const auto& [method, of_method] : runsByMethod(runs)) {
-    const CoverageSummary summary = summaryOf(of_method);
-    (summary.has_limit ? printSequenceLine : printLine)(method, summary, stream);
-  }
 }
 
 Runs
@@ -141,30 +134,27 @@ select(const Runs& runs, const std::string& scene, const std::string& condition)
   return selected;
 }
 
+/** A row of each method, in order of appearance. */
 void
-printSequenceHeader(std::ostream& stream)
+addBlock(const std::string& title,
+         const Runs& runs,
+         const Columns& columns,
+         TextTable& table)
 {
-  stream
-      << "                                            mean  share of truths within the "
-         "region of ...      mean   median   median    alarms   misses   median\n"
-         "  method                  pairs  lost   NEES/6              50 %        "
-         "      95 %   log p       mm     mrad     /good     /bad        s\n";
-}
-
-void
-printHeader(std::ostream& stream)
-{
-  stream
-      << "                               valid     mean  share of truths within the "
-         "region of "
-         "probability ..., and its 95 % interval      mean    mean   median  median  "
-         "flagged %   median   median\n"
-         "  method                       /runs   NEES/6              50 %              "
-         "68 %   "
-         "  "
-         "         90 %              95 %    log p  energy       mm     deg   all "
-         "out95  "
-         "      s  queries\n";
+  if (runs.empty())
+    return;
+  table.addTitle(title);
+  for (const std::string& method : namesOf(runs, &CoverageRunName::method)) {
+    Runs of_method;
+    for (const CoverageRun& run : runs)
+      if (run.name.method == method)
+        of_method.push_back(run);
+    const CoverageSummary summary = summaryOf(of_method);
+    std::vector<std::string> cells = {method};
+    for (const Column& column : columns)
+      cells.push_back(column.cell(summary));
+    table.add(cells);
+  }
 }
 
 } // namespace
@@ -175,22 +165,31 @@ printCoverageTable(const Runs& runs, std::ostream& stream)
   const auto scenes = namesOf(runs, &CoverageRunName::scene);
   const auto conditions = namesOf(runs, &CoverageRunName::condition);
   const bool has_limit = !runs.empty() && runs.front().score.hasLimit();
-  (has_limit ? printSequenceHeader : printHeader)(stream);
+  const Columns& columns = has_limit ? sequenceColumns() : simulatedColumns();
+  std::vector<std::string> header = {"\nmethod"};
+  for (const Column& column : columns)
+    header.push_back(column.title);
+  TextTable table(header);
+  const auto add = [&](const std::string& title, const Runs& block) {
+    addBlock(title, block, columns, table);
+  };
   for (const std::string& scene : scenes)
     for (const std::string& condition : conditions)
-      printBlock(std::string(scene).append(", ").append(condition),
-                 select(runs, scene, condition),
-                 stream);
+      add(std::string(scene).append(", ").append(condition),
+          select(runs, scene, condition));
   for (const std::string& scene : scenes)
     if (const Runs pool = select(runs, scene, "");
         namesOf(pool, &CoverageRunName::condition).size() > 1)
-      printBlock(scene + ", all conditions", pool, stream);
+      add(scene + ", all conditions", pool);
   for (const std::string& condition : conditions)
     if (const Runs pool = select(runs, "", condition);
         conditions.size() > 1 && namesOf(pool, &CoverageRunName::scene).size() > 1)
-      printBlock("all scenes, " + condition, pool, stream);
+      add("all scenes, " + condition, pool);
   if (scenes.size() * conditions.size() > 1)
-    printBlock("all", runs, stream);
+    add("all", runs);
+  stream << "Share of truths within the regions of some probabilities, with its 95 % "
+            "interval:\n";
+  table.print(stream);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -1,9 +1,8 @@
-#include "methods/point_to_point_sandwich.h"
-
 #include "algebra/decompositions.h"
 #include "calibrated/curvature/curvature.h"
 #include "calibrated/score/score_clusters.h"
 #include "geometry/twist.h"
+#include "methods/published_covariances.h"
 
 #include <algorithm>
 

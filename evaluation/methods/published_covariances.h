@@ -1,6 +1,6 @@
 /** \file
  * \brief Covariances of a registration as they are published, without a prior's
- * information.
+ * information; and what preset `calibrated` would be without its surface.
  */
 #pragma once
 
@@ -43,5 +43,13 @@ pointHessian(const CoverageCase& coverage_case);
 TwistGaussian
 gicpHessian(const CoverageCase& coverage_case,
             Eigen::Index max_points = max_source_points);
+
+/** \brief Information H J^-1 H of the pose in twists about the moved centroid, J the
+ * covariance of the score with clusters in space, H its curvature with correspondences
+ * made anew, less its noise.
+ * \param[in] fit point-to-point, at its minimum
+ * \param[in] noise of the target across its surface [m]: the shortest step */
+GaussianInformation
+pointToPointSandwich(const BaselineProblem& problem, const IcpFit& fit, double noise);
 
 } // namespace bayesian_icp::evaluate

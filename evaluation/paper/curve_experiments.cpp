@@ -1,4 +1,4 @@
-#include "paper/draw_curves.h"
+#include "paper/baseline_distance.h"
 #include "paper/median_table.h"
 #include "paper/study_record.h"
 

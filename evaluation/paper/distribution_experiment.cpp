@@ -1,4 +1,4 @@
-#include "paper/distribution_score.h"
+#include "paper/baseline_distance.h"
 #include "paper/median_table.h"
 #include "paper/picture_data.h"
 #include "paper/study_record.h"
@@ -32,14 +32,15 @@ studyMethod(const PaperStudy& study,
   int num_made = 0;
   for (const std::uint64_t seed : study.options.seeds()) {
     const PaperRunName name{compared.key, problem.pair.name, method.name, seed};
-    addTo(table, file.findOrMake(name, [&] {
+    const DistributionRun& run = file.findOrMake(name, [&] {
       ++num_made;
       DrawPlan plan;
       plan.seed = seed;
       plan.num_threads = study.options.num_threads;
       return distributionRunOf(
           name, problem.pair, method.run(problem, plan), compared.baseline);
-    }));
+    });
+    addTo(table, run);
   }
   if (num_made > 0)
     study.report(problem.pair.name + ": " + method.name + ", " +
@@ -55,6 +56,7 @@ distributionExperiment(const PaperStudy& study)
   MedianTable table("KL(baseline || method) [nats], and NEES / 6 of the truth",
                     {"x", "y", "z", "roll", "pitch", "yaw", "6-D", "NEES/6"});
   std::vector<ComparedPair> pairs;
+  pairs.reserve(study.pairs.size());
   std::vector<PairKey> keys;
   for (const ScanPair& pair : study.pairs) {
     const ComparedPair& compared = pairs.emplace_back(study, pair);

@@ -2,7 +2,7 @@
 
 #include "io/numbers.h"
 #include "study/draw_statistics.h"
-#include "study/formatted_text.h"
+#include "study/text_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,16 +40,17 @@ MedianTable::add(const std::string& group, const std::vector<double>& numbers)
 void
 MedianTable::print(std::ostream& stream) const
 {
-  stream << title_ << '\n' << format("  %-40s %5s", "medians of the runs of", "runs");
-  for (const std::string& column : columns_)
-    stream << format(" %10s", column.c_str());
-  stream << '\n';
+  std::vector<std::string> header = {"medians of the runs of", "runs"};
+  header.insert(header.end(), columns_.begin(), columns_.end());
+  TextTable table(header);
   for (const Group& group : groups_) {
-    stream << format("  %-40s %5zu", group.name.c_str(), group.num_runs);
+    std::vector<std::string> cells = {group.name, std::to_string(group.num_runs)};
     for (const std::vector<double>& numbers : group.numbers)
-      stream << format(" %10s", medianText(numbers).c_str());
-    stream << '\n';
+      cells.push_back(medianText(numbers));
+    table.add(cells);
   }
+  stream << title_ << '\n';
+  table.print(stream);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -25,11 +25,7 @@ using Report = std::function<void(const std::string&)>;
 IcpStop
 stopOf(std::string_view name)
 {
-  for (const IcpStop stop : {IcpStop::TooFewPairs,
-                             IcpStop::MaxIterations,
-                             IcpStop::Transformation,
-                             IcpStop::AbsoluteFitness,
-                             IcpStop::RelativeFitness})
+  for (const IcpStop stop : icp_stops)
     if (name == toString(stop))
       return stop;
   throw std::runtime_error("not an end of ICP");

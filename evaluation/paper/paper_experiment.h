@@ -77,10 +77,8 @@ struct PaperStudy {
   }
 };
 
-/** \brief Runs what is not yet in the experiment's files in the output folder, and
- * prints medians of all of it.
- * \throws io::FileError */
-using Experiment = std::function<void(const PaperStudy&)>;
+/** All that follow run what is not yet in the experiment's files in the output folder,
+ * and print medians of all of it; they throw io::FileError. */
 
 /** \brief Table I with everything around it. */
 void

@@ -2,6 +2,7 @@
 
 #include "study/draw_statistics.h"
 #include "study/formatted_text.h"
+#include "study/text_table.h"
 
 #include <algorithm>
 #include <map>
@@ -59,28 +60,8 @@ shareOfGoodMarginals(const Scores& scores)
   return num_good / (6.0 * static_cast<double>(scores.size()));
 }
 
-void
-printHeader(std::ostream& stream)
-{
-  stream
-      << "                                             6-D KL          1-D KL  W1     "
-         "KS<.06  R-hat  bulk ESS  tail ESS     ESS/s  CPU [s] mixed\n"
-         "scene      sigma  N     sampler        runs  median   worst  median  median "
-         "     %  worst  smallest  smallest    median   median  runs\n";
-}
-
-/** At most \p precision digits after the point, right-justified. */
-std::string
-column(double value, int width, int precision)
-{
-  return format(" %*.*f", width - 1, precision, value);
-}
-
-void
-printLine(const CellName& cell,
-          const std::string& sampler,
-          const Scores& scores,
-          std::ostream& stream)
+std::vector<std::string>
+cellsOf(const std::string& sampler, const Scores& scores)
 {
   const auto kl = collect(scores, [](const Score& s) { return s.kl; });
   const auto seconds = collect(scores, [](const Score& s) { return s.seconds; });
@@ -92,19 +73,19 @@ printLine(const CellName& cell,
       collect(scores, [](const Score& s) { return s.wasserstein.maxCoeff(); });
   const auto num_mixed = std::count_if(
       scores.begin(), scores.end(), [](const Score& s) { return s.status == "ok"; });
-  stream << format("%-10s %-6g %-5g %-16s %2zu",
-                   std::get<0>(cell).c_str(),
-                   std::get<1>(cell),
-                   std::get<2>(cell),
-                   sampler.c_str(),
-                   scores.size())
-         << column(median(kl), 8, 4) << column(largest(kl), 8, 4)
-         << column(medianCoordinateKl(scores), 8, 4) << column(median(w1), 8, 3)
-         << column(100.0 * shareOfGoodMarginals(scores), 7, 0)
-         << column(largest(rhat), 7, 3) << column(smallest(bulk), 10, 0)
-         << column(smallest(tail), 10, 0) << column(median(rate), 10, 1)
-         << column(median(seconds), 9, 3)
-         << column(static_cast<double>(num_mixed), 6, 0) << '\n';
+  return {sampler,
+          std::to_string(scores.size()),
+          numberText(median(kl), 4),
+          numberText(largest(kl), 4),
+          numberText(medianCoordinateKl(scores), 4),
+          numberText(median(w1), 3),
+          numberText(100.0 * shareOfGoodMarginals(scores), 0),
+          numberText(largest(rhat), 3),
+          numberText(smallest(bulk), 0),
+          numberText(smallest(tail), 0),
+          numberText(median(rate), 1),
+          numberText(median(seconds), 3),
+          std::to_string(num_mixed)};
 }
 
 /** "paper" of "paper 1e-05". */
@@ -114,11 +95,14 @@ familyOf(const std::string& sampler)
   return sampler.substr(0, sampler.find(' '));
 }
 
+/** Step sizes that were tried less often than others of the family are left out. */
 void
-printCell(const CellName& cell,
-          const std::map<std::string, Scores>& samplers,
-          std::ostream& stream)
+addCell(const CellName& cell,
+        const std::map<std::string, Scores>& samplers,
+        TextTable& table)
 {
+  const auto& [scene, sigma, effective_points] = cell;
+  table.addTitle(scene + format(", sigma %g m, N %g", sigma, effective_points));
   std::map<std::string, std::size_t> most_runs;
   for (const auto& [sampler, scores] : samplers) {
     std::size_t& most = most_runs[familyOf(sampler)];
@@ -126,7 +110,7 @@ printCell(const CellName& cell,
   }
   for (const auto& [sampler, scores] : samplers)
     if (scores.size() == most_runs[familyOf(sampler)])
-      printLine(cell, sampler, scores, stream);
+      table.add(cellsOf(sampler, scores));
 }
 
 } // namespace
@@ -138,9 +122,22 @@ printTable(const std::vector<ScoredRun>& runs, std::ostream& stream)
   for (const ScoredRun& run : runs)
     cells[{run.name.scene, run.name.sigma, run.name.effective_points}][run.name.sampler]
         .push_back(run.score);
-  printHeader(stream);
+  TextTable table({"\nsampler",
+                   "\nruns",
+                   "6-D KL\nmedian",
+                   "6-D KL\nworst",
+                   "1-D KL\nmedian",
+                   "W1\nmedian",
+                   "KS<.06\n%",
+                   "R-hat\nworst",
+                   "bulk ESS\nsmallest",
+                   "tail ESS\nsmallest",
+                   "ESS/s\nmedian",
+                   "CPU [s]\nmedian",
+                   "mixed\nruns"});
   for (const auto& [cell, samplers] : cells)
-    printCell(cell, samplers, stream);
+    addCell(cell, samplers, table);
+  table.print(stream);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -81,18 +81,15 @@ ProblemStudy::runOnce(const std::string& name,
               name,
               seed,
               io::textOfHash(goldKey(problem, options.gold))};
-  return results
-      .findOrMake(run.name,
-                  [&] {
-                    const SamplerRun made = sampler(seed);
-                    run.score = scoreOf(made, gold_draws);
-                    report(
-                        name + ", seed " + std::to_string(seed) +
-                        format(": KL %.3g, %.3g s, ", run.score.kl, run.score.seconds) +
-                        run.score.status + ' ' + made.message);
-                    return run;
-                  })
-      .score;
+  const ScoredRun& kept = results.findOrMake(run.name, [&] {
+    const SamplerRun made = sampler(seed);
+    run.score = scoreOf(made, gold_draws);
+    report(name + ", seed " + std::to_string(seed) +
+           format(": KL %.3g, %.3g s, ", run.score.kl, run.score.seconds) +
+           run.score.status + ' ' + made.message);
+    return run;
+  });
+  return kept.score;
 }
 
 void

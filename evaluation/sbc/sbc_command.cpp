@@ -2,9 +2,9 @@
 #include "io/coordinates.h"
 #include "sbc/rank_file.h"
 #include "sbc/rank_samplers.h"
-#include "study/formatted_text.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
+#include "study/text_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -140,26 +140,31 @@ verdictOf(const RankSampler& sampler, bool is_uniform)
 bool
 printRankTable(const SbcOptions& options, const RankFile& results, std::ostream& stream)
 {
-  stream << "                        valid  chi-square of 10 bins, uniform if below "
-         << max_rank_chi_square << " (0.1 %)\n  sampler               /runs";
-  for (const char* name : app::coordinate_names)
-    stream << format("%8s", name);
-  stream << '\n';
+  std::vector<std::string> header = {"sampler", "valid/runs"};
+  header.insert(
+      header.end(), app::coordinate_names.begin(), app::coordinate_names.end());
+  header.push_back("verdict");
+  TextTable table(header);
   bool are_all_uniform = true;
   for (const RankSampler& sampler : options.samplers) {
     const std::vector<Ranks> runs = ranksOf(sampler, options, results);
-    stream << format(
-        "  %-17s %5zu/%-5d", sampler.name.c_str(), runs.size(), options.num_runs);
+    std::vector<std::string> cells = {sampler.name,
+                                      std::to_string(runs.size()) + '/' +
+                                          std::to_string(options.num_runs)};
     bool is_uniform = runs.size() == static_cast<std::size_t>(options.num_runs);
     for (int k = 0; k < 6; ++k) {
       const double statistic =
           runs.empty() ? std::nan("") : chiSquareOf(rankHistogram(runs, k));
       is_uniform = is_uniform && statistic < max_rank_chi_square;
-      stream << format("%8.1f", statistic);
+      cells.push_back(numberText(statistic, 1));
     }
-    stream << "  " << verdictOf(sampler, is_uniform) << '\n';
+    cells.push_back(verdictOf(sampler, is_uniform));
+    table.add(cells);
     are_all_uniform = are_all_uniform && (is_uniform || !sampler.is_well_specified);
   }
+  stream << "Chi-square of 10 bins, uniform if below " << max_rank_chi_square
+         << " (0.1 %):\n";
+  table.print(stream);
   return are_all_uniform;
 }
 

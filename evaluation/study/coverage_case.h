@@ -4,8 +4,6 @@
  */
 #pragma once
 
-#include "study/coverage_region.h"
-
 #include <bayesian_icp/pose.h>
 
 #include <Eigen/Geometry>
@@ -38,6 +36,16 @@ struct CoverageCase {
   /** Of recordings: mean displacement of the source's points beyond which a pose is
    * lost [m]. NaN: no pose is. */
   double lost_displacement = std::numeric_limits<double>::quiet_NaN();
+};
+
+/** \brief How a posterior's Mahalanobis distances are distributed. */
+struct RegionShape {
+  /** nu of Student's t distribution, scaled to its covariance, at least 3; 0 is a
+   * Gaussian. */
+  int degrees_of_freedom = 0;
+  /** How many of the six directions have it; the others, which the prior holds, are
+   * Gaussian. */
+  int num_held = 6;
 };
 
 /** \brief What a method makes of a case. */

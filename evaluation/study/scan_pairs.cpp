@@ -30,18 +30,6 @@ centre(ScanPair& pair, const Isometry3d& guess)
       Translation3d(-origin) * pair.truth * guess.inverse() * Translation3d(origin);
 }
 
-ScanPair
-readFiles(const std::string& folder, const ManifestEntry& entry)
-{
-  ScanPair pair;
-  pair.name = entry.name;
-  pair.source = io::readFinitePoints(folder + "/" + entry.source).cast<double>();
-  pair.target = io::readFinitePoints(folder + "/" + entry.target).cast<double>();
-  pair.truth = readTransform(folder + "/" + entry.ground_truth);
-  pair.truth_sd = entry.truth_sd;
-  return pair;
-}
-
 } // namespace
 
 std::uint64_t
@@ -74,6 +62,18 @@ pairNames(const std::string& folder)
 }
 
 ScanPair
+readScanPair(const std::string& folder, const ManifestEntry& entry)
+{
+  ScanPair pair;
+  pair.name = entry.name;
+  pair.source = io::readFinitePoints(folder + "/" + entry.source).cast<double>();
+  pair.target = io::readFinitePoints(folder + "/" + entry.target).cast<double>();
+  pair.truth = readTransform(folder + "/" + entry.ground_truth);
+  pair.truth_sd = entry.truth_sd;
+  return pair;
+}
+
+ScanPair
 readScanPair(const std::string& folder, const std::string& name)
 {
   if (!hasManifest(folder)) {
@@ -82,11 +82,11 @@ readScanPair(const std::string& folder, const std::string& name)
     entry.source = name + "/source.pcd";
     entry.target = name + "/target.pcd";
     entry.ground_truth = name + "/T_target_source.txt";
-    return readFiles(folder, entry);
+    return readScanPair(folder, entry);
   }
   for (const ManifestEntry& entry : readManifest(folder))
     if (entry.name == name) {
-      ScanPair pair = readFiles(folder, entry);
+      ScanPair pair = readScanPair(folder, entry);
       centre(pair,
              entry.initial_guess.empty()
                  ? Isometry3d::Identity()

@@ -50,6 +50,11 @@ pairNames(const std::string& folder);
 ScanPair
 readScanPair(const std::string& folder, const std::string& name);
 
+/** \brief Read a pair of a manifest; the frames are those of the files.
+ * \throws io::FileError if a file is missing or broken */
+ScanPair
+readScanPair(const std::string& folder, const ManifestEntry& entry);
+
 /** \brief \p num_points columns of the source chosen at random, always the same ones;
  * all of it if it has no more, or for 0. */
 void

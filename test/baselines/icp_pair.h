@@ -95,11 +95,7 @@ struct IcpPair {
     result.T_target_source = Eigen::Isometry3d(icp.getFinalTransformation());
     result.num_iterations = icp.numIterations();
     result.has_converged = icp.hasConverged();
-    for (const IcpStop stop : {IcpStop::TooFewPairs,
-                               IcpStop::MaxIterations,
-                               IcpStop::Transformation,
-                               IcpStop::AbsoluteFitness,
-                               IcpStop::RelativeFitness})
+    for (const IcpStop stop : icp_stops)
       if (pclStateOf(stop) == icp.getConvergeCriteria()->getConvergenceState())
         result.stop = stop;
     return result;

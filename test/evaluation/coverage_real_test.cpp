@@ -1,6 +1,7 @@
 // Real pairs as cases of the coverage study.
 #include "coverage/coverage_methods.h"
 #include "coverage/coverage_real.h"
+#include "evaluation/paper_pairs.h"
 #include "io/errors.h"
 #include "support/command_helpers.h"
 
@@ -25,16 +26,12 @@ void
 writePair(const fs::path& folder)
 {
   fs::create_directories(folder / "pair");
-  std::string points;
   Random random(1, 0);
-  for (int i = 0; i < 40; ++i)
-    points += std::to_string(3.0 + random.normal()) + ' ' +
-              std::to_string(random.normal()) + " 0.5\n";
-  const std::string header =
-      "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 40\n"
-      "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 40\nDATA ascii\n";
-  writeFile((folder / "pair/source.pcd").string(), header + points);
-  writeFile((folder / "pair/target.pcd").string(), header + points);
+  Eigen::Matrix3Xd points(3, 40);
+  for (auto point : points.colwise())
+    point << 3.0 + random.normal(), random.normal(), 0.5;
+  writeCloud(folder / "pair/source.pcd", points);
+  writeCloud(folder / "pair/target.pcd", points);
   writeFile((folder / "pair/truth.txt").string(),
             "-1 0 0 0.5\n0 -1 0 0\n0 0 1 0\n0 0 0 1\n");
   writeFile((folder / "manifest.json").string(),

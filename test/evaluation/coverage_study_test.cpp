@@ -1,6 +1,6 @@
 // The coverage study: rows that come back, runs that are not made again.
 #include "coverage/coverage_study.h"
-#include "coverage/coverage_table.h"
+#include "coverage/coverage_summary.h"
 #include "evaluation/coverage_test_support.h"
 #include "io/errors.h"
 #include "support/command_helpers.h"

@@ -4,8 +4,7 @@
 #include "geometry/twist.h"
 #include "io/errors.h"
 #include "paper/accuracy_methods.h"
-#include "paper/distribution_score.h"
-#include "paper/draw_curves.h"
+#include "paper/baseline_distance.h"
 #include "paper/median_table.h"
 #include "support/command_helpers.h"
 
@@ -308,9 +307,9 @@ TEST(MedianTable, LeavesOutWhatIsUnknownAndKeepsTheOrder)
   table.print(text);
   EXPECT_EQ(text.str(),
             "errors\n"
-            "  medians of the runs of                    runs       [mm]     [mrad]\n"
-            "  b                                            3          3          4\n"
-            "  a                                            1       0.25          -\n");
+            "  medians of the runs of  runs  [mm]  [mrad]\n"
+            "  b                          3     3       4\n"
+            "  a                          1  0.25       -\n");
 }
 
 TEST(AccuracyMethods, FindThePoseFromNearby)

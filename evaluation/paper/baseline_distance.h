@@ -1,6 +1,5 @@
 /** \file
- * \brief KL to the baseline as a function of which draws of a run are taken: the
- * paper's curves over the number of draws and over the length of burn-in.
+ * \brief How far the draws of a method are from the baseline and from the truth.
  */
 #pragma once
 
@@ -8,6 +7,14 @@
 #include "paper/paper_runs.h"
 
 namespace bayesian_icp::evaluate {
+
+/** \brief Distance of a run's draws to the baseline and to the truth.
+ * \param[in] name goes into the result */
+DistributionRun
+distributionRunOf(const PaperRunName& name,
+                  const ScanPair& pair,
+                  const SamplerRun& run,
+                  const PaperBaseline& baseline);
 
 /** \brief Draws of every chain: from row \p first on, \p count of them, both as totals
  * over all chains. */

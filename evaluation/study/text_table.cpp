@@ -1,0 +1,55 @@
+#include "study/text_table.h"
+
+#include "study/formatted_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+namespace bayesian_icp::evaluate {
+
+TextTable::TextTable(const std::vector<std::string>& header)
+{
+  std::vector<std::string> first, second;
+  for (const std::string& cell : header) {
+    const std::size_t end = std::min(cell.find('\n'), cell.size());
+    first.push_back(cell.substr(0, end));
+    second.push_back(cell.substr(std::min(end + 1, cell.size())));
+  }
+  const std::vector<std::string> nothing(second.size());
+  rows_.push_back(first);
+  if (second != nothing)
+    rows_.push_back(second);
+}
+
+void
+TextTable::print(std::ostream& stream) const
+{
+  std::vector<std::size_t> widths(rows_[0].size(), 0);
+  for (const auto& row : rows_)
+    for (std::size_t k = 0; k < row.size() && row.size() > 1; ++k)
+      widths[k] = std::max(widths[k], row[k].size());
+  for (const auto& row : rows_) {
+    if (row.size() == 1) {
+      stream << row[0] << '\n';
+      continue;
+    }
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string space(widths[k] - row[k].size(), ' ');
+      stream << "  " << (k == 0 ? row[k] + space : space + row[k]);
+    }
+    stream << '\n';
+  }
+}
+
+std::string
+numberText(double value, int num_decimals)
+{
+  if (std::isnan(value))
+    return "-";
+  return std::abs(value) < (num_decimals > 0 ? 1e4 : 1e7)
+             ? format("%.*f", num_decimals, value)
+             : format("%.1e", value);
+}
+
+} // namespace bayesian_icp::evaluate
