@@ -63,14 +63,11 @@ addCloud(const Cloud::Ptr& cloud,
 /** Draws the layers of one panel. */
 class PanelDrawing {
 public:
-  /** \p uncertainty may be null if no layer is drawn that needs draws. */
   PanelDrawing(const Scene& scene,
-               const Uncertainty* uncertainty,
                const ViewOptions& options,
                int viewport,
                Window& window)
   : scene_(scene)
-  , uncertainty_(uncertainty)
   , options_(options)
   , viewport_(viewport)
   , window_(window)
@@ -96,11 +93,10 @@ public:
     case Layer::Deviation:
       return addDeviations(id);
     case Layer::Draws:
-      return add(pointsAtDraws(scene_, *uncertainty_, max_points_of_draws),
+      return add(pointsAtDraws(scene_, max_points_of_draws),
                  {colorOf(layer, options_), 2, 0.35});
     case Layer::Position:
-      return addMesh(
-          positionEllipsoid(*uncertainty_), colorOf(layer, options_), 0.7, id);
+      return addMesh(positionEllipsoid(scene_), colorOf(layer, options_), 0.7, id);
     case Layer::Rotation:
       return addCones(id);
     }
@@ -110,14 +106,15 @@ private:
   void
   addDeviations(const std::string& id)
   {
-    const double maximum = niceMaximum(uncertainty_->largest_point_deviation);
+    const Uncertainty& uncertainty = *scene_.uncertainty;
+    const double maximum = niceMaximum(uncertainty.largest_point_deviation);
     std::vector<Color> colors;
-    for (const double deviation : uncertainty_->point_deviations)
+    for (const double deviation : uncertainty.point_deviations)
       if (std::isfinite(deviation))
         colors.push_back(mapColor(deviation / maximum));
     const PointStyle style = styleOf(Layer::Aligned, options_);
     addCloud(
-        cloudOf(movedPoints(uncertainty_->spread.meanMatrix(), scene_.source), colors),
+        cloudOf(movedPoints(uncertainty.spread.meanMatrix(), scene_.source), colors),
         style.size + 1,
         style.opacity,
         id,
@@ -129,7 +126,7 @@ private:
   void
   addCones(const std::string& id)
   {
-    const std::array<Mesh, 3> cones = rotationCones(scene_, *uncertainty_);
+    const std::array<Mesh, 3> cones = rotationCones(scene_);
     for (std::size_t k = 0; k < 3; ++k) {
       Color color = {0.15, 0.15, 0.15};
       color[k] = 0.9;
@@ -152,7 +149,6 @@ private:
   }
 
   const Scene& scene_;
-  const Uncertainty* uncertainty_;
   const ViewOptions& options_;
   int viewport_;
   Window& window_;
@@ -206,22 +202,18 @@ addPoints(const Eigen::Matrix3Xd& points,
 }
 
 void
-drawScene(const Scene& scene,
-          const Uncertainty* uncertainty,
-          const ViewOptions& options,
-          Window& window)
+drawScene(const Scene& scene, const ViewOptions& options, Window& window)
 {
-  const std::vector<Panel> panels = options.panels(uncertainty != nullptr);
+  const std::vector<Panel> panels = options.panels(scene.uncertainty.has_value());
   const std::vector<int> viewports = window.makePanels(panels.size());
   Layers shown;
   std::size_t num_lines = 0;
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    PanelDrawing drawing(scene, uncertainty, options, viewports[i], window);
+    PanelDrawing drawing(scene, options, viewports[i], window);
     for (const Layer layer : panels[i].layers)
       drawing.draw(layer);
     shown.insert(panels[i].layers.begin(), panels[i].layers.end());
-    const auto lines =
-        legendOf(panels[i], scene, uncertainty, options, !options.isOffScreen());
+    const auto lines = legendOf(panels[i], scene, options, !options.isOffScreen());
     num_lines = std::max(num_lines, lines.size());
     addLegend(lines, viewports[i], window);
   }
@@ -233,7 +225,7 @@ drawScene(const Scene& scene,
       window);
   const Eigen::Matrix3Xd target =
       movedPoints(Eigen::Matrix4d::Identity(), scene.target);
-  window.lookAt(shownPoints(scene, uncertainty, shown),
+  window.lookAt(shownPoints(scene, shown),
                 defaultView(target, scene.sensor_origin),
                 areaBeside(num_lines, shown.count(Layer::Deviation) > 0, window));
 }

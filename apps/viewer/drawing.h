@@ -32,12 +32,8 @@ addPoints(const Eigen::Matrix3Xd& points,
           Window& window);
 
 /** \brief Draw all panels of the options; layers that need draws are left out if there
- * are none. Names of what belongs to a layer begin with the layer's.
- * \param[in] uncertainty null if there are no draws */
+ * are none. Names of what belongs to a layer begin with the layer's. */
 void
-drawScene(const Scene& scene,
-          const Uncertainty* uncertainty,
-          const ViewOptions& options,
-          Window& window);
+drawScene(const Scene& scene, const ViewOptions& options, Window& window);
 
 } // namespace bayesian_icp::viewer

@@ -1,6 +1,6 @@
 #include "viewer/keys.h"
 
-#include "viewer/layers.h"
+#include "viewer/view_options.h"
 #include "viewer/window.h"
 
 #include <pcl/console/print.h>

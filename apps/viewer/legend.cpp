@@ -24,8 +24,9 @@ pointsText(const Eigen::Matrix3Xf& points)
 }
 
 std::string
-textOf(Layer layer, const Scene& scene, const Uncertainty* uncertainty)
+textOf(Layer layer, const Scene& scene)
 {
+  const std::optional<Uncertainty>& uncertainty = scene.uncertainty;
   switch (layer) {
   case Layer::Source:
     return "source, at the guess" + pointsText(scene.source);
@@ -37,7 +38,7 @@ textOf(Layer layer, const Scene& scene, const Uncertainty* uncertainty)
     return "source at the posterior mean: standard deviation of each point";
   case Layer::Draws:
     return "source at " + std::to_string(uncertainty->shown_draws.size()) + " of " +
-           std::to_string(uncertainty->num_draws) + " draws";
+           std::to_string(scene.draws.rows()) + " draws";
   default:
     break;
   }
@@ -52,9 +53,9 @@ textOf(Layer layer, const Scene& scene, const Uncertainty* uncertainty)
 }
 
 bool
-isMagnified(const Panel& panel, const Uncertainty* uncertainty)
+isMagnified(const Panel& panel, const std::optional<Uncertainty>& uncertainty)
 {
-  return uncertainty != nullptr && uncertainty->magnification != 1.0 &&
+  return uncertainty && uncertainty->magnification != 1.0 &&
          panel.layers.lower_bound(Layer::Draws) != panel.layers.end();
 }
 
@@ -79,7 +80,6 @@ textColorOn(const Color& background)
 std::vector<LegendLine>
 legendOf(const Panel& panel,
          const Scene& scene,
-         const Uncertainty* uncertainty,
          const ViewOptions& options,
          bool shows_keys)
 {
@@ -91,12 +91,13 @@ legendOf(const Panel& panel,
     const bool has_own_color = layer != Layer::Deviation && layer != Layer::Rotation;
     const std::string key =
         shows_keys ? std::string("[") + nameOf(layer).key + "] " : "";
-    lines.push_back({key + textOf(layer, scene, uncertainty),
-                     has_own_color ? colorOf(layer, options) : plain});
+    lines.push_back(
+        {key + textOf(layer, scene), has_own_color ? colorOf(layer, options) : plain});
   }
-  if (isMagnified(panel, uncertainty))
+  if (isMagnified(panel, scene.uncertainty))
     lines.push_back({"deviations from the mean are drawn " +
-                         io::textOf(uncertainty->magnification, 4) + " times as large",
+                         io::textOf(scene.uncertainty->magnification, 4) +
+                         " times as large",
                      plain});
   return lines;
 }

@@ -25,12 +25,11 @@ struct LegendLine {
 
 /** \brief One line a layer of \p panel, the title before and the magnification after
  * it.
- * \param[in] uncertainty null if there are no draws; then no layer may need them
+ * \param[in] panel without layers that need draws if there are none
  * \param[in] shows_keys whether to name the key that switches the layer */
 std::vector<LegendLine>
 legendOf(const Panel& panel,
          const Scene& scene,
-         const Uncertainty* uncertainty,
          const ViewOptions& options,
          bool shows_keys);
 

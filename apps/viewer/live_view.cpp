@@ -60,7 +60,7 @@ public:
               "icp",
               0,
               window);
-    window.lookAt(shownPoints(scene, nullptr, {Layer::Source, Layer::Target}),
+    window.lookAt(shownPoints(scene, {Layer::Source, Layer::Target}),
                   defaultView(target, scene.sensor_origin),
                   areaBeside(3, false, window));
   }

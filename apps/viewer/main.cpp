@@ -102,15 +102,15 @@ show(const Request& request)
     folder.emplace(io::folderOf(request.view.screenshot_file));
   io::catchInterrupt();
   std::optional<Window> window;
-  const Scene scene = prepareScene(request, window);
+  Scene scene = prepareScene(request, window);
   if (io::wasInterrupted() || (window && window->isClosed()))
     return exitCodeFor(scene);
   if (!window)
     openWindow(request, {scene.source_file, scene.target_file}, window);
   // A live screenshot is of the chains, which are in the window already.
   if (!(folder && request.view.is_live)) {
-    const auto uncertainty = uncertaintyOf(scene, request.view);
-    drawScene(scene, uncertainty ? &*uncertainty : nullptr, request.view, *window);
+    scene.uncertainty = uncertaintyOf(scene, request.view);
+    drawScene(scene, request.view, *window);
   }
   if (folder)
     window->save(std::filesystem::path(request.view.screenshot_file).filename(),

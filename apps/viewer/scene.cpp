@@ -39,7 +39,6 @@ uncertaintyOf(const Scene& scene, const ViewOptions& options)
           : niceMagnification(std::max(result.largest_point_deviation,
                                        result.spread.positionDeviations()[0]),
                               sizeOf(scene.source));
-  result.num_draws = scene.draws.rows();
   for (const Eigen::Index draw : evenlySpaced(scene.draws.rows(), options.num_draws))
     result.shown_draws.push_back(magnified(
         scene.draws.row(draw).transpose(), result.spread, result.magnification));
@@ -60,25 +59,25 @@ movedPoints(const Eigen::Matrix4d& T_target_source, const Eigen::Matrix3Xf& poin
 }
 
 Eigen::Matrix3Xd
-shownPoints(const Scene& scene, const Uncertainty* uncertainty, const Layers& layers)
+shownPoints(const Scene& scene, const Layers& layers)
 {
   Eigen::Matrix3Xd points = movedPoints(scene.final_matrix, scene.source);
   if (layers.count(Layer::Target) > 0)
     append(movedPoints(Eigen::Matrix4d::Identity(), scene.target), points);
   if (layers.count(Layer::Source) > 0)
     append(movedPoints(scene.guess, scene.source), points);
-  if (uncertainty != nullptr && layers.count(Layer::Position) > 0)
-    append(positionEllipsoid(*uncertainty).vertices, points);
-  if (uncertainty != nullptr && layers.count(Layer::Rotation) > 0)
-    for (const Mesh& cone : rotationCones(scene, *uncertainty))
+  if (scene.uncertainty && layers.count(Layer::Position) > 0)
+    append(positionEllipsoid(scene).vertices, points);
+  if (scene.uncertainty && layers.count(Layer::Rotation) > 0)
+    for (const Mesh& cone : rotationCones(scene))
       append(cone.vertices, points);
   return points;
 }
 
 std::array<Mesh, 3>
-rotationCones(const Scene& scene, const Uncertainty& uncertainty)
+rotationCones(const Scene& scene)
 {
-  const PoseSpread& spread = uncertainty.spread;
+  const PoseSpread& spread = scene.uncertainty->spread;
   const Eigen::Matrix3d R = rotationOf(spread.mean);
   const Eigen::Matrix3d covariance = spread.covariance.bottomRightCorner<3, 3>();
   const double length = 0.5 * sizeOf(scene.source);
@@ -88,7 +87,7 @@ rotationCones(const Scene& scene, const Uncertainty& uncertainty)
     cones[k] =
         coneMesh(spread.position(),
                  direction,
-                 uncertainty.magnification *
+                 scene.uncertainty->magnification *
                      tipAxes(covariance, direction, chi_squared_95_percent_3_dof),
                  length);
   }
@@ -96,25 +95,24 @@ rotationCones(const Scene& scene, const Uncertainty& uncertainty)
 }
 
 Mesh
-positionEllipsoid(const Uncertainty& uncertainty)
+positionEllipsoid(const Scene& scene)
 {
-  const PoseSpread& spread = uncertainty.spread;
+  const PoseSpread& spread = scene.uncertainty->spread;
   return ellipsoidMesh(spread.position(),
-                       uncertainty.magnification *
+                       scene.uncertainty->magnification *
                            regionAxes(spread.covariance.topLeftCorner<3, 3>(),
                                       chi_squared_95_percent_3_dof));
 }
 
 Eigen::Matrix3Xd
-pointsAtDraws(const Scene& scene,
-              const Uncertainty& uncertainty,
-              Eigen::Index max_points)
+pointsAtDraws(const Scene& scene, Eigen::Index max_points)
 {
-  const auto num_draws = static_cast<Eigen::Index>(uncertainty.shown_draws.size());
-  const Eigen::Index wanted = std::max<Eigen::Index>(1, max_points / num_draws);
+  const std::vector<Eigen::Matrix4d>& draws = scene.uncertainty->shown_draws;
+  const Eigen::Index wanted =
+      std::max<Eigen::Index>(1, max_points / static_cast<Eigen::Index>(draws.size()));
   Random random(1, 0);
   Eigen::Matrix3Xd all(3, 0);
-  for (const Eigen::Matrix4d& draw : uncertainty.shown_draws) {
+  for (const Eigen::Matrix4d& draw : draws) {
     const Eigen::Matrix3Xf chosen =
         scene.source(Eigen::all, randomChoice(scene.source.cols(), wanted, random));
     append(movedPoints(draw, chosen), all);

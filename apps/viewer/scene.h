@@ -14,6 +14,18 @@
 
 namespace bayesian_icp::viewer {
 
+/** \brief What the draws of a scene say, ready to be drawn. */
+struct Uncertainty {
+  PoseSpread spread;
+  /** Of each source point [m]; NaN where the point is. */
+  Eigen::VectorXd point_deviations;
+  double largest_point_deviation = 0.0;
+  /** Factor by which deviations from the mean are magnified. */
+  double magnification = 1.0;
+  /** T_target_source of the chosen draws, magnified. */
+  std::vector<Eigen::Matrix4d> shown_draws;
+};
+
 /** \brief A registration and its posterior. Matrices are T_target_source. */
 struct Scene {
   /** x, y, z [m], each column is one point, points that are not finite included. */
@@ -25,25 +37,14 @@ struct Scene {
   Eigen::Matrix4d final_matrix = Eigen::Matrix4d::Identity();
   /** Of the chains that have not diverged, one pose a row [m, rad]. */
   PoseMatrix draws;
+  /** What uncertaintyOf() says of the draws. */
+  std::optional<Uncertainty> uncertainty;
   /** The names by which the user knows the clouds. */
   std::string source_file;
   std::string target_file;
   /** Short name of the Status, and the status in words. */
   std::string status;
   std::string status_message;
-};
-
-/** \brief What the draws of a scene say, ready to be drawn. */
-struct Uncertainty {
-  PoseSpread spread;
-  /** Of each source point [m]; NaN where the point is. */
-  Eigen::VectorXd point_deviations;
-  double largest_point_deviation = 0.0;
-  /** Factor by which deviations from the mean are magnified. */
-  double magnification = 1.0;
-  /** T_target_source of the chosen draws, magnified. */
-  std::vector<Eigen::Matrix4d> shown_draws;
-  long num_draws = 0;
 };
 
 /** \brief Empty if there are fewer than two draws. */
@@ -54,26 +55,23 @@ uncertaintyOf(const Scene& scene, const ViewOptions& options);
 Eigen::Matrix3Xd
 movedPoints(const Eigen::Matrix4d& T_target_source, const Eigen::Matrix3Xf& points);
 
-/** \brief The whole of what the layers show, as points that the picture has to hold.
- * \param[in] uncertainty null if there are no draws */
+/** \brief The whole of what the layers show, as points that the picture has to hold. */
 Eigen::Matrix3Xd
-shownPoints(const Scene& scene, const Uncertainty* uncertainty, const Layers& layers);
+shownPoints(const Scene& scene, const Layers& layers);
 
 /** \brief What the source's axes sweep within 95 % (3 degrees of freedom), magnified;
  * three cones, as long as half the source. */
 std::array<Mesh, 3>
-rotationCones(const Scene& scene, const Uncertainty& uncertainty);
+rotationCones(const Scene& scene);
 
 /** \brief The ellipsoid of 95 % (3 degrees of freedom) of the position, magnified. */
 Mesh
-positionEllipsoid(const Uncertainty& uncertainty);
+positionEllipsoid(const Scene& scene);
 
 /** \brief Points of the source at all shown draws, a random choice of at most
  * \p max_points in all [m]. */
 Eigen::Matrix3Xd
-pointsAtDraws(const Scene& scene,
-              const Uncertainty& uncertainty,
-              Eigen::Index max_points);
+pointsAtDraws(const Scene& scene, Eigen::Index max_points);
 
 /** \brief Length of the box of the finite \p points from corner to corner [m]. */
 double

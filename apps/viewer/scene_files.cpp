@@ -19,15 +19,21 @@ takeClouds(const io::CloudFile& source, const io::CloudFile& target, Scene& scen
   scene.target_file = target.file;
 }
 
-/** The cloud that a posterior names may have moved, or the user. */
+/** \p given, or else the cloud that a posterior names, which may have moved, or the
+ * user.
+ */
 io::CloudFile
-readNamedCloud(const std::string& name, const std::string& posterior_file)
+readCloudOf(const std::string& posterior_file,
+            const std::string& named,
+            const std::string& given)
 {
-  if (!std::filesystem::exists(name))
-    throw io::FileError(name,
+  if (!given.empty())
+    return io::readCloud(given);
+  if (!std::filesystem::exists(named))
+    throw io::FileError(named,
                         "no such file, though " + posterior_file +
                             " names it; say on the command line where both clouds are");
-  return io::readCloud(name);
+  return io::readCloud(named);
 }
 
 } // namespace
@@ -54,13 +60,10 @@ readScene(const std::string& posterior_file,
   const std::filesystem::path folder =
       std::filesystem::path(posterior_file).parent_path();
   Scene scene;
-  const bool is_named = source_file.empty();
   const io::CloudFile source =
-      is_named ? readNamedCloud(posterior.source_file, posterior_file)
-               : io::readCloud(source_file);
+      readCloudOf(posterior_file, posterior.source_file, source_file);
   const io::CloudFile target =
-      is_named ? readNamedCloud(posterior.target_file, posterior_file)
-               : io::readCloud(target_file);
+      readCloudOf(posterior_file, posterior.target_file, target_file);
   takeClouds(source, target, scene);
   scene.guess = posterior.guess;
   scene.final_matrix = posterior.final_matrix;

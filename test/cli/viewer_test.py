@@ -13,9 +13,9 @@ import unittest
 
 import x_server
 from cli_tool import DATA, ToolTest, run
+from faults import VIEWER, call
 from png_file import read_png
 
-VIEWER = os.environ["PCL_BAYESIAN_ICP_VIEWER"]
 CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
 WIDTH, HEIGHT = 480, 360
 
@@ -32,15 +32,7 @@ def environment(display):
 
 
 def view(*arguments, display=None):
-    return subprocess.run(
-        [VIEWER, *map(str, arguments)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        timeout=120,
-        check=False,
-        env=environment(display),
-    )
+    return call(VIEWER, *arguments, env=environment(display))
 
 
 def hue_of(pixel):

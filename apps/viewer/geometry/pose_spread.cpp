@@ -35,6 +35,25 @@ matrixFrom(const Vector6d& pose_at_reference, const Eigen::Vector3d& reference)
   return matrix;
 }
 
+/** The pose, its position being that of \p reference (source frame) in the target
+ * frame.
+ */
+Vector6d
+poseAt(const Eigen::Vector3d& reference, Vector6d pose)
+{
+  pose.head<3>() += rotationOf(pose) * reference;
+  return pose;
+}
+
+PoseMatrix
+posesAt(const Eigen::Vector3d& reference, const PoseMatrix& draws)
+{
+  PoseMatrix poses(draws.rows(), 6);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    poses.row(i) = poseAt(reference, draws.row(i).transpose()).transpose();
+  return poses;
+}
+
 } // namespace
 
 Eigen::Vector3d
@@ -48,15 +67,6 @@ centroidOf(const Eigen::Matrix3Xf& points)
       ++num_finite;
     }
   return num_finite > 0 ? Eigen::Vector3d(sum / static_cast<double>(num_finite)) : sum;
-}
-
-PoseMatrix
-posesAt(const Eigen::Vector3d& reference, const PoseMatrix& draws)
-{
-  PoseMatrix poses = draws;
-  for (Eigen::Index i = 0; i < draws.rows(); ++i)
-    poses.row(i).head<3>() += rotationOf(draws.row(i).transpose()) * reference;
-  return poses;
 }
 
 Eigen::Vector3d
@@ -92,10 +102,8 @@ Eigen::Matrix4d
 magnified(const Vector6d& draw, const PoseSpread& spread, double factor)
 {
   constexpr CovarianceConvention convention = CovarianceConvention::R3xSO3;
-  PoseMatrix row(1, 6);
-  row.row(0) = draw.transpose();
-  const Vector6d pose = posesAt(spread.reference, row).row(0).transpose();
-  const Vector6d error = poseError(pose, spread.mean, convention);
+  const Vector6d error =
+      poseError(poseAt(spread.reference, draw), spread.mean, convention);
   return matrixFrom(poseFromError(factor * error, spread.mean, convention),
                     spread.reference);
 }

@@ -20,11 +20,6 @@ constexpr double chi_squared_95_percent_3_dof = 7.814727903251179;
 Eigen::Vector3d
 centroidOf(const Eigen::Matrix3Xf& points);
 
-/** \brief Draws whose position is that of \p reference (source frame) in the target
- * frame [m, rad], one in each row. */
-PoseMatrix
-posesAt(const Eigen::Vector3d& reference, const PoseMatrix& draws);
-
 /** \brief Mean and covariance of draws at a reference point. */
 struct PoseSpread {
   /** Source frame [m]. */
