@@ -9,8 +9,6 @@
 #include <pcl/io/ply_io.h>
 #include <pcl/PCLPointCloud2.h>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
@@ -30,11 +28,11 @@ readBlob(const std::string& name, CloudFormat format, Blob& blob, CloudFile& clo
 {
   int result = -1;
   int version = 0;
-  Eigen::Quaternionf orientation = Eigen::Quaternionf::Identity();
   errno = 0;
   try {
     const auto read = [&](auto reader) {
-      return reader.read(name, blob, cloud.sensor_origin, orientation, version);
+      return reader.read(
+          name, blob, cloud.sensor_origin, cloud.sensor_orientation, version);
     };
     result =
         format == CloudFormat::Pcd ? read(pcl::PCDReader()) : read(pcl::PLYReader());
@@ -49,8 +47,6 @@ readBlob(const std::string& name, CloudFormat format, Blob& blob, CloudFile& clo
     throw std::bad_alloc();
   if (result < 0)
     throw FileError(name, "PCL cannot read it");
-  cloud.sensor_orientation = {
-      orientation.w(), orientation.x(), orientation.y(), orientation.z()};
 }
 
 void
@@ -67,13 +63,6 @@ copyPoints(const Blob& blob, const FieldTriple& xyz, CloudFile& cloud)
     cloud.largest_coordinate =
         std::max(cloud.largest_coordinate, double(point.cwiseAbs().maxCoeff()));
   }
-}
-
-Eigen::Quaternionf
-orientationOf(const CloudFile& cloud)
-{
-  const Eigen::Vector4f& q = cloud.sensor_orientation;
-  return {q[0], q[1], q[2], q[3]};
 }
 
 /** Whether all coordinates are the same; one that is not a number is another one. */
@@ -117,7 +106,7 @@ requireComplete(const CloudFile& cloud, CloudFormat format, const std::string& p
     CloudFile written;
     Blob blob;
     readBlob(path, format, blob, written);
-    const FieldTriple xyz = findFields(blob, {"x", "y", "z"});
+    const FieldTriple xyz(blob, {"x", "y", "z"});
     if (blob.data.size() == std::size_t(blob.width) * blob.height * blob.point_step &&
         xyz.isComplete())
       copyPoints(blob, xyz, written);
@@ -137,10 +126,8 @@ moveViewpoint(const Eigen::Affine3d& move, CloudFile& cloud)
   const Eigen::Vector3d origin = cloud.sensor_origin.head<3>().cast<double>();
   cloud.sensor_origin.head<3>() = (move * origin).cast<float>();
   const Eigen::Quaterniond turned =
-      (Eigen::Quaterniond(move.linear()) * orientationOf(cloud).cast<double>())
-          .normalized();
-  cloud.sensor_orientation =
-      Eigen::Vector4d(turned.w(), turned.x(), turned.y(), turned.z()).cast<float>();
+      Eigen::Quaterniond(move.linear()) * cloud.sensor_orientation.cast<double>();
+  cloud.sensor_orientation = turned.normalized().cast<float>();
 }
 
 } // namespace
@@ -179,7 +166,7 @@ readCloud(const std::string& name)
   if (std::uint64_t(blob->width) * blob->height != num_points ||
       blob->data.size() != num_points * blob->point_step)
     throw FileError(name, "PCL found another number of points than its header has");
-  const FieldTriple xyz = findFields(*blob, {"x", "y", "z"});
+  const FieldTriple xyz(*blob, {"x", "y", "z"});
   if (!xyz.isComplete())
     throw FileError(name, "has no floating-point fields x, y and z");
   copyPoints(*blob, xyz, cloud);
@@ -216,8 +203,8 @@ movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion)
   const Eigen::Affine3d move(motion);
   CloudFile result = cloud;
   const auto blob = std::make_shared<Blob>(*cloud.blob);
-  const FieldTriple xyz = findFields(*blob, {"x", "y", "z"});
-  const FieldTriple normal = findFields(*blob, {"normal_x", "normal_y", "normal_z"});
+  const FieldTriple xyz(*blob, {"x", "y", "z"});
+  const FieldTriple normal(*blob, {"normal_x", "normal_y", "normal_z"});
   const std::size_t num_points = std::size_t(blob->width) * blob->height;
   for (std::size_t i = 0; i < num_points; ++i) {
     const Eigen::Vector3d point = xyz.get(*blob, i);
@@ -246,20 +233,20 @@ writeAligned(const CloudFile& source,
   const CloudFile aligned = movedCloud(source, T_target_source);
   requireWritten([&] {
     return pcl::PCDWriter().writeBinaryCompressed(
-        stream, *aligned.blob, target.sensor_origin, orientationOf(target));
+        stream, *aligned.blob, target.sensor_origin, target.sensor_orientation);
   });
 }
 
 void
 writeCloud(const CloudFile& cloud, CloudFormat format, const std::string& path)
 {
-  const Eigen::Quaternionf orientation = orientationOf(cloud);
+  const Eigen::Vector4f& origin = cloud.sensor_origin;
+  const Eigen::Quaternionf& orientation = cloud.sensor_orientation;
   requireWritten([&] {
     return format == CloudFormat::Pcd
                ? pcl::PCDWriter().writeBinaryCompressed(
-                     path, *cloud.blob, cloud.sensor_origin, orientation)
-               : pcl::PLYWriter().writeBinary(
-                     path, *cloud.blob, cloud.sensor_origin, orientation);
+                     path, *cloud.blob, origin, orientation)
+               : pcl::PLYWriter().writeBinary(path, *cloud.blob, origin, orientation);
   });
   requireComplete(cloud, format, path);
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <iosfwd>
 #include <memory>
@@ -25,9 +26,9 @@ struct CloudFile {
   std::string file;
   /** All fields of all points. */
   std::shared_ptr<const pcl::PCLPointCloud2> blob;
-  /** Where the sensor stood [m] and how it was turned (w, x, y, z): PCD's VIEWPOINT. */
+  /** Where the sensor stood [m] and how it was turned: PCD's VIEWPOINT. */
   Eigen::Vector4f sensor_origin = Eigen::Vector4f::Zero();
-  Eigen::Vector4f sensor_orientation = Eigen::Vector4f::UnitX();
+  Eigen::Quaternionf sensor_orientation = Eigen::Quaternionf::Identity();
   /** x, y, z [m], one point per column, including those that are not finite. */
   Eigen::Matrix3Xf points;
   std::size_t num_finite = 0;

@@ -9,17 +9,34 @@
 
 #include <array>
 #include <cstring>
+#include <vector>
 
 namespace bayesian_icp::io {
 
 /** \brief Where x, y, z (or the like) are within a point of a cloud. */
 class FieldTriple {
 public:
+  /** \brief Look for fields by name; each is taken where it comes first. */
+  FieldTriple(const pcl::PCLPointCloud2& cloud, const std::array<const char*, 3>& names)
+  {
+    for (const char* name : names)
+      for (const pcl::PCLPointField& field : cloud.fields) {
+        const bool is_float = field.datatype == pcl::PCLPointField::FLOAT32;
+        const std::size_t end =
+            field.offset + (is_float ? sizeof(float) : sizeof(double));
+        if (field.name != name || field.count != 1 || !(is_float || isDouble(field)) ||
+            end > cloud.point_step)
+          continue;
+        fields_.push_back(field);
+        break;
+      }
+  }
+
   /** \brief Whether all three fields are there, as single floating-point numbers. */
   bool
   isComplete() const
   {
-    return num_found_ == fields_.size();
+    return fields_.size() == 3;
   }
 
   /** \brief The vector of point \p index. */
@@ -27,10 +44,16 @@ public:
   get(const pcl::PCLPointCloud2& cloud, std::size_t index) const
   {
     Eigen::Vector3d vector;
-    for (std::size_t k = 0; k < fields_.size(); ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       const auto* place = &cloud.data[index * cloud.point_step + fields_[k].offset];
+      double number = 0.0;
+      float short_number = 0.0F;
+      if (isDouble(fields_[k]))
+        std::memcpy(&number, place, sizeof(double));
+      else
+        std::memcpy(&short_number, place, sizeof(float));
       vector[static_cast<Eigen::Index>(k)] =
-          fields_[k].is_double ? read<double>(place) : read<float>(place);
+          isDouble(fields_[k]) ? number : double(short_number);
     }
     return vector;
   }
@@ -41,62 +64,25 @@ public:
       std::size_t index,
       const Eigen::Vector3d& vector) const
   {
-    for (std::size_t k = 0; k < fields_.size(); ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       auto* place = &cloud.data[index * cloud.point_step + fields_[k].offset];
-      const double value = vector[static_cast<Eigen::Index>(k)];
-      if (fields_[k].is_double)
-        std::memcpy(place, &value, sizeof(double));
+      const double number = vector[static_cast<Eigen::Index>(k)];
+      const auto short_number = static_cast<float>(number);
+      if (isDouble(fields_[k]))
+        std::memcpy(place, &number, sizeof(double));
       else
-        write(place, static_cast<float>(value));
+        std::memcpy(place, &short_number, sizeof(float));
     }
   }
 
 private:
-  friend FieldTriple
-  findFields(const pcl::PCLPointCloud2& cloud, const std::array<const char*, 3>& names);
-
-  struct Field {
-    std::size_t offset;
-    bool is_double;
-  };
-
-  template <typename Number>
-  static double
-  read(const void* place)
+  static bool
+  isDouble(const pcl::PCLPointField& field)
   {
-    Number value;
-    std::memcpy(&value, place, sizeof(Number));
-    return static_cast<double>(value);
+    return field.datatype == pcl::PCLPointField::FLOAT64;
   }
 
-  static void
-  write(void* place, float value)
-  {
-    std::memcpy(place, &value, sizeof(float));
-  }
-
-  std::array<Field, 3> fields_{};
-  std::size_t num_found_ = 0;
+  std::vector<pcl::PCLPointField> fields_;
 };
-
-/** \brief Look for three fields by name; each is taken where it comes first. */
-inline FieldTriple
-findFields(const pcl::PCLPointCloud2& cloud, const std::array<const char*, 3>& names)
-{
-  FieldTriple triple;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    for (const auto& field : cloud.fields) {
-      const bool is_double = field.datatype == pcl::PCLPointField::FLOAT64;
-      const bool is_float = is_double || field.datatype == pcl::PCLPointField::FLOAT32;
-      const std::size_t size = is_double ? sizeof(double) : sizeof(float);
-      if (field.name != names[k] || !is_float || field.count != 1 ||
-          field.offset + size > cloud.point_step)
-        continue;
-      triple.fields_[k] = {field.offset, is_double};
-      ++triple.num_found_;
-      break;
-    }
-  return triple;
-}
 
 } // namespace bayesian_icp::io

@@ -125,12 +125,15 @@ TEST_F(PosteriorFiles, UndefinedNumbersAreNan)
     EXPECT_TRUE(covariance.array().isNaN().all());
 }
 
-TEST_F(PosteriorFiles, SamplesReadBackWithoutLoss)
+TEST_F(PosteriorFiles, SamplesReadBackWithoutLossAndWithoutDivergedChains)
 {
   const PoseMatrix draws = someDraws(50);
   std::ostringstream text;
-  app::writeSamples({{draws.topRows(20), false}, {draws.bottomRows(30), false}}, text);
+  app::writeSamples(
+      {{draws.topRows(20), false}, {draws, true}, {draws.bottomRows(30), false}}, text);
   EXPECT_EQ(io::readSamples(file("s.csv", text.str())), draws);
+  EXPECT_NE(text.str().find("\n2,0,"), std::string::npos)
+      << "chains keep their numbers";
 }
 
 TEST_F(PosteriorFiles, FilesOfOtherKindsAreRefused)

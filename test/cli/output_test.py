@@ -110,34 +110,6 @@ class Files(ToolTest):
         result = subprocess.run(command, stdout=subprocess.PIPE, check=False)
         self.assertEqual(strict_json(result.stdout.decode())["source"]["points"], 300)
 
-    def run_with_some_diverged_chains(self, output):
-        """The tighter the prior, the more chains its gradient throws out: look for a run
-        that has chains of both kinds."""
-        pair = self.small_pair()
-        for variance in ("1e-3", "5e-4", "2e-4", "1e-4", "5e-5"):
-            for seed in range(6):
-                shutil.rmtree(output, ignore_errors=True)
-                options = ["--preset=paper", "--step-size=1e-5", "--samples=400", f"--seed={seed}"]
-                options += [f"--prior-variance={variance}", "--json", "-o", output]
-                result = run(*pair, *options)
-                document = strict_json(result.stdout)
-                chains = document["posterior"]["chains"]
-                good = [chain["chain"] for chain in chains if not chain["has_diverged"]]
-                if 0 < len(good) < len(chains):
-                    return result, document, good
-        return self.fail("no run has chains of both kinds")
-
-    def test_diverged_chains_are_left_out(self):
-        output = self.folder / "output"
-        result, document, good = self.run_with_some_diverged_chains(output)
-        self.assertEqual(result.returncode, 1)
-        self.assertEqual(document["status"]["name"], "diverged")
-        diverged = f"{4 - len(good)} of 4 chains diverged"
-        self.assertIn(f"Do not trust this posterior: {diverged}", (output / "report.html").read_text())
-        self.assertEqual(document["posterior"]["draws"], 100 * len(good))
-        written = columns((output / "samples.csv").read_text())["chain"]
-        self.assertEqual(written, [chain for chain in good for _ in range(100)])
-
     def test_no_draws_no_files(self):
         output = self.folder / "output"
         options = ["--preset=paper", "--step-size=10", "--samples=400", "-o", output]
@@ -165,11 +137,6 @@ class AlignedCloud(ToolTest):
             expected = document["icp"] if key == "icp" else document["posterior"]["mean"]
             final = document["final_transformation"]["T_target_source"]
             self.assertEqual(final, expected["T_target_source"])
-            _, rows = cloud_files.read_pcd(self.folder / "output" / "aligned.pcd")
-            _, originals = cloud_files.read_pcd(pair[0])
-            for row, original in zip(rows, originals):
-                before, after = (cloud_files.numbers(r, *"xyz") for r in (original, row))
-                self.assertLess(math.dist(after, cloud_files.moved(final, before)), 1e-6)
 
 
 class Printed(ToolTest):

@@ -3,7 +3,6 @@
 No test waits for a time: a signal is sent when the program has taken charge of it, and has
 used the processor for long enough to have draws."""
 
-import json
 import os
 import shutil
 import signal
