@@ -220,20 +220,6 @@ TEST(Pipeline, AllPointsLeavingTheGateIsReportedAsDivergence)
   EXPECT_EQ(estimate.samples.rows(), estimate.summary.num_draws);
 }
 
-TEST(Pipeline, SamplesAreTheChainsPutTogether)
-{
-  const Problem problem = someProblem();
-  const auto estimate = estimatePosterior(problem.source,
-                                          test::BruteForceSearch(problem.target),
-                                          Vector6d::Zero(),
-                                          quickOptions());
-  ASSERT_EQ(estimate.chains.size(), 4u);
-  ASSERT_EQ(estimate.samples.rows(), 200);
-  for (std::size_t c = 0; c < 4; ++c)
-    EXPECT_EQ(estimate.samples.middleRows(50 * static_cast<Eigen::Index>(c), 50),
-              estimate.chains[c].draws);
-}
-
 TEST(Pipeline, PriorMeanIsTheGuessUnlessSet)
 {
   // Without data (weight ~ 0) the draws are about the prior mean.

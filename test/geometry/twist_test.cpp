@@ -68,13 +68,6 @@ TEST(Twist, BetweenPosesIsTheInverseOfMoving)
   }
 }
 
-TEST(Twist, OfNothingIsZero)
-{
-  Random random(53, 0);
-  const Isometry3d pose = isometryOf(test::randomPose(random));
-  EXPECT_LT(twistBetween(pose, pose, randomCentre(random)).norm(), 1e-14);
-}
-
 TEST(TwistPrior, GradientIsThatOfThePriorsEnergy)
 {
   Random random(54, 0);

@@ -68,13 +68,6 @@ TEST(Likelihood, PointsWithoutCorrespondenceCountAsZeroInTheMean)
   EXPECT_LT((among_forty - among_ten / 4.0).norm(), 1e-13 * among_ten.norm());
 }
 
-TEST(Likelihood, WithoutCorrespondencesTheGradientIsZero)
-{
-  Random random(13, 0);
-  EXPECT_EQ(gradientOf(test::randomPose(random), test::randomPoints(random, 5), {}),
-            Vector6d(Vector6d::Zero()));
-}
-
 TEST(Likelihood, WeightIsEffectivePointsOverSquaredSigma)
 {
   LikelihoodScale options;

@@ -162,14 +162,6 @@ TEST(Chains, DependOnSeedAndChainOnly)
   EXPECT_NE(draws(1, 0), draws(2, 0));
 }
 
-TEST(Chains, EarlierChainsTakeTheRemainder)
-{
-  const ChainSet set = run(unitGaussian(), withSteps(0.1), chainOptions(4, 10));
-  const Eigen::Index expected[] = {3, 3, 2, 2};
-  for (std::size_t c = 0; c < 4; ++c)
-    EXPECT_EQ(set.chains[c].draws.rows(), expected[c]);
-}
-
 TEST(Chains, BurnInAndThinningSelectFromTheSameChain)
 {
   const auto draws = [](int num_draws, int num_burn_in, int thinning) {

@@ -144,24 +144,6 @@ TEST(DescentOptimizer, AdaptiveOptimisersFollowTheirPublishedRules)
   }
 }
 
-TEST(DescentOptimizer, ConstantGradientsGiveTheKnownSteps)
-{
-  Vector6d g;
-  g << 2.0, -0.3, 1e-3, -5.0, 0.0, 1e-6;
-  const auto adam = makeDescentOptimizer(SgdOptimizer::Adam, 0.25);
-  const auto rms_prop = makeDescentOptimizer(SgdOptimizer::RmsProp, 0.25);
-  for (int t = 1; t <= 30; ++t) {
-    const Vector6d adam_step = adam->step(g);
-    const Vector6d rms_step = rms_prop->step(g);
-    for (int k = 0; k < 6; ++k) {
-      // The corrections for the start at zero are exact: Adam's step is constant.
-      EXPECT_NEAR(adam_step[k], -0.25 * g[k] / (std::abs(g[k]) + 1e-8), 1e-12);
-      const double mean_square = g[k] * g[k] * (1.0 - std::pow(0.9, t));
-      EXPECT_NEAR(rms_step[k], -0.25 * g[k] / std::sqrt(mean_square + 1e-3), 1e-14);
-    }
-  }
-}
-
 TEST(DescentOptimizer, HasTheStepSizesOfTheAuthors)
 {
   EXPECT_EQ(defaultStepSize(SgdOptimizer::FixedStep), 1.0);

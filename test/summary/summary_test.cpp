@@ -94,14 +94,6 @@ TEST(Mean, OfAnglesIsTakenOnTheCircle)
   EXPECT_NEAR(coordinateMeans(draws)[5], -pi + 0.1, 1e-12);
 }
 
-TEST(Mean, OfTranslationsIsTheAverage)
-{
-  PoseMatrix draws = PoseMatrix::Zero(2, 6);
-  draws(0, 0) = 1.0;
-  draws(1, 0) = 4.0;
-  EXPECT_DOUBLE_EQ(meanPose(draws)[0], 2.5);
-}
-
 TEST(Mean, OfTurnsAboutAnAxisIsTheirAverageTurn)
 {
   const Eigen::Vector3d centre(3.0, -2.0, 1.0);
@@ -276,15 +268,6 @@ TEST(Covariance, IsUndefinedForFewerThanTwoDraws)
                     .all());
 }
 
-TEST(Summary, BeforeARunSaysSoAndIsNaN)
-{
-  const Summary summary;
-  EXPECT_EQ(summary.status, Status::NotRun);
-  EXPECT_TRUE(summary.mean.array().isNaN().all());
-  for (const auto convention : covariance_conventions)
-    EXPECT_TRUE(summary.covariance(convention).array().isNaN().all());
-}
-
 TEST(Summary, OfMixedChainsIsOkAndConsistent)
 {
   Random random(33, 0);
@@ -385,14 +368,6 @@ TEST(Summary, ChainsOfUnequalLengthAreAllUsedForTheMoments)
   const Summary summary = summarize(chains);
   EXPECT_EQ(summary.num_draws, 1999);
   EXPECT_EQ(summary.status, Status::Ok);
-}
-
-TEST(Summary, CancelledRunsSaySo)
-{
-  Random random(40, 0);
-  ChainSet chains = mixedChains(random);
-  chains.cancelled = true;
-  EXPECT_EQ(summarize(chains).status, Status::Cancelled);
 }
 
 } // namespace
