@@ -8,8 +8,7 @@
 
 #include <vector>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 struct CalibratedIcp : BayesianIcp {
@@ -265,5 +264,4 @@ TYPED_TEST(BothRegistrations, GuessesThatAreOfNoUseFail)
 }
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 using OneToOne = registration::CorrespondenceRejectorOneToOne;
@@ -588,5 +587,4 @@ TEST(DropInTies, OccurOnTheLattice)
 }
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

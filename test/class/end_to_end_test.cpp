@@ -4,8 +4,7 @@
 
 #include <Eigen/LU>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 using bayesian_icp::CovarianceConvention;
@@ -89,5 +88,4 @@ TEST_P(EndToEnd, PerturbedGuessesLeadToAPosteriorThatHoldsTheTruth)
 INSTANTIATE_TEST_SUITE_P(OnData, EndToEnd, ::testing::Values("mug", "table"));
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

@@ -7,8 +7,7 @@
 
 #include <functional>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 /** Dense enough for a surface. */
@@ -183,5 +182,4 @@ TEST_F(CalibratedTest, AnObjectThatKeepsItsTargetGivesWhatANewOneGives)
 }
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

@@ -10,8 +10,7 @@
 
 #include <stdexcept>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 /** Two registrations of preset paper, of which one is to get plug-ins. */
@@ -327,11 +326,11 @@ TEST_F(PluginTest, PointRepresentationOfTheTreeIsHonoured)
   };
   icp.setMaximumIterations(1);
   align(icp);
-  const auto plain = icp.getSamples();
+  const auto by_all_coordinates = icp.getSamples();
   icp.setPointRepresentation(pcl::shared_ptr<const HeightOnly>(new HeightOnly));
   align(icp);
   ASSERT_EQ(icp.getSamples().rows(), 40);
-  EXPECT_GT((icp.getSamples() - plain).norm(), 1e-3);
+  EXPECT_GT((icp.getSamples() - by_all_coordinates).norm(), 1e-3);
 }
 
 TEST_F(PluginTest, VisualizationCallbackIsCalledOnceAnIcpIteration)
@@ -417,5 +416,4 @@ TEST_P(SearchComparison, FastSearchFindsWhatPclsEstimationFinds)
 INSTANTIATE_TEST_SUITE_P(PlainAndReciprocal, SearchComparison, ::testing::Bool());
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

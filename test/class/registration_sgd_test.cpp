@@ -5,8 +5,7 @@
 #include <pcl/registration/stochastic_gradient_icp.h>
 #include <pcl/registration/transformation_estimation_2D.h>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 using bayesian_icp::DescentEnd;
@@ -92,18 +91,9 @@ TEST_F(SgdRegistration, TheFinalTransformationIncludesTheGuess)
   far[0] += 0.02;
   const Eigen::Matrix4f guess = bayesian_icp::matrixOf(far).cast<float>();
   SgdIcp icp;
-  icp.setMaxCorrespondenceDistance(1e-9); // no step is made
-  align(icp, guess);
-  EXPECT_EQ(icp.getFinalTransformation(), guess);
-  EXPECT_FALSE(icp.hasConverged());
-  EXPECT_EQ(icp.getResult().end, DescentEnd::TooFewCorrespondences);
-  EXPECT_EQ(icp.getConvergeCriteria()->getConvergenceState(),
-            Criteria::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
-  // The object can be used again.
-  icp.setMaxCorrespondenceDistance(1.0);
   useGentleSteps(icp);
   icp.setMaximumIterations(1);
-  icp.align(output, guess);
+  align(icp, guess);
   EXPECT_TRUE(icp.hasConverged());
   const Eigen::Matrix4f step = icp.getLastIncrementalTransformation();
   EXPECT_LT((step * guess - icp.getFinalTransformation()).norm(), 1e-6f);
@@ -304,21 +294,20 @@ TEST_F(SgdRegistration, VisualizationCallbackIsCalledOnceAStep)
 
 TEST_F(SgdRegistration, DoubleKeepsTheRotationOrthonormalAndNormalsAreTurned)
 {
-  Scans<PointNormal> scans;
-  for (auto& point : *scans.source)
+  Scans<PointNormal> with_normals;
+  for (auto& point : *with_normals.source)
     point.getNormalVector3fMap() = Eigen::Vector3f::UnitZ();
   StochasticGradientDescentIterativeClosestPoint<PointNormal, PointNormal, double> icp;
-  icp.setInputSource(scans.source);
-  icp.setInputTarget(scans.target);
-  PointCloud<PointNormal> output;
-  icp.align(output);
+  icp.setInputSource(with_normals.source);
+  icp.setInputTarget(with_normals.target);
+  PointCloud<PointNormal> moved;
+  icp.align(moved);
   const Eigen::Matrix3d R = icp.getFinalTransformation().topLeftCorner<3, 3>();
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-  const Eigen::Vector3f normal = output[3].getNormalVector3fMap();
+  const Eigen::Vector3f normal = moved[3].getNormalVector3fMap();
   EXPECT_LT((normal - R.col(2).cast<float>()).norm(), 1e-6f);
   EXPECT_NE(normal, Eigen::Vector3f::UnitZ());
 }
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

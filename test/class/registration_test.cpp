@@ -1,8 +1,7 @@
 // pcl::BayesianIterativeClosestPoint: the posterior on top of PCL's registration.
 #include "support/registration_support.h"
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 class Posterior : public ScansTest {
@@ -239,5 +238,4 @@ TEST_F(Posterior, IsEmptyForAGuessBeyondTheRangeOfFloat)
 }
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

@@ -10,8 +10,7 @@
 #include <fstream>
 #include <string>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 
 /** A pair of scans of data/, and the pose between them. */
 struct ScanPair {
@@ -31,5 +30,4 @@ struct ScanPair {
   Eigen::Matrix4d T_target_source;
 };
 
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

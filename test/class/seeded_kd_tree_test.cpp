@@ -11,8 +11,7 @@
 #include <tuple>
 #include <vector>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 using Seeded = bayesian_icp_detail::SeededKdTree<PointXYZ>;
@@ -347,5 +346,4 @@ TEST_F(RegistrationTree, MayBeReadyForOtherRegistrations)
 }
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

@@ -4,8 +4,7 @@
 
 #include <pcl/registration/stochastic_gradient_icp.h>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 namespace {
 
 using bayesian_icp::Vector6d;
@@ -72,5 +71,4 @@ TEST_F(SgdScans, MiniBatchesComeAsNearToTheTruthAsAllPointsUpToTheirNoise)
 }
 
 } // namespace
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 namespace {
 
@@ -452,5 +451,4 @@ tortureCases()
   return all;
 }
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

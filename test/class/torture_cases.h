@@ -14,8 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 /** What a registration has to end in. */
 enum class Verdict {
@@ -72,5 +71,4 @@ smallStepOptions();
 std::vector<TortureCase>
 tortureCases();
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

@@ -7,8 +7,7 @@
 
 #include <cmath>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 using Eigen::Matrix3Xd;
 
@@ -122,5 +121,4 @@ flattenedPair(int num_dimensions, double noise)
   return pair;
 }
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

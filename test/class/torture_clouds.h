@@ -8,8 +8,7 @@
 
 #include <cstdint>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 /** Standard deviation of the points' height [m]. */
 constexpr double usual_noise = 0.003;
@@ -75,5 +74,4 @@ turnedPair(const Vector6d& truth, const Vector6d& guess);
 TorturePair
 flattenedPair(int num_dimensions, double noise);
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

@@ -19,8 +19,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 void
 PrintTo(const TortureCase& the_case, std::ostream* stream)
@@ -350,5 +349,4 @@ TEST(TortureTable, IsTheOneOfTheDocumentation)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 pcl::PointCloud<pcl::PointXYZ>::Ptr
@@ -51,5 +50,4 @@ TEST(DeterminismLarge, NumberOfThreadsChangesNoBit)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

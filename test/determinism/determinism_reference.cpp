@@ -11,8 +11,7 @@
 #include <iostream>
 #include <limits>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -136,8 +135,7 @@ run(const std::string& action, const std::string& folder)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test
 
 int
 main(int argc, char** argv)

@@ -12,8 +12,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 /** Two scans of a wavy surface of 1 x 0.6 m, each with its own noise. */
@@ -319,5 +318,4 @@ makeRun(const std::string& name, const RunSettings& settings)
   throw std::invalid_argument("no run is called " + name);
 }
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 /** Points of a wavy surface of 1 x 0.6 m with noise of 3 mm. Sums and products only,
  * which every machine rounds alike; sin() it may not. */
@@ -70,5 +69,4 @@ makeRun(const std::string& name, const RunSettings& settings = RunSettings());
  * algorithm far more. */
 constexpr double rounding_tolerance = 1e-6;
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

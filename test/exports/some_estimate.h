@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 constexpr int num_draws = 20000;
 
@@ -99,5 +98,4 @@ numbersOf(std::string text)
   return numbers;
 }
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

@@ -14,8 +14,7 @@
 #include <cmath>
 #include <limits>
 
-namespace pcl {
-namespace test {
+namespace pcl::test {
 
 using Cloud = PointCloud<PointXYZ>;
 using Icp = IterativeClosestPoint<PointXYZ, PointXYZ>;
@@ -139,5 +138,4 @@ expectSamePoints(const Cloud& actual, const Cloud& expected)
     ASSERT_EQ(actual[i].getVector4fMap(), expected[i].getVector4fMap());
 }
 
-} // namespace test
-} // namespace pcl
+} // namespace pcl::test

@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 /** A density given by its likelihood's energy and gradient, a Gaussian prior about 0,
  * and artificial noise of the gradient. */
@@ -199,5 +198,4 @@ chainOptions(int num_draws)
   return options;
 }
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

@@ -10,8 +10,7 @@
 #include <functional>
 #include <limits>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 /** Uniform position within +-2 m, angles within the given share of their full range. */
 inline Vector6d
@@ -98,5 +97,4 @@ private:
   bool is_thread_safe_;
 };
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test
