@@ -2,17 +2,11 @@
 
 #include "html/escape.h"
 
+#include <boost/algorithm/string/replace.hpp>
+
 namespace bayesian_icp::html {
 
 namespace {
-
-void
-replaceAll(std::string& text, const std::string& old, const std::string& by)
-{
-  for (auto at = text.find(old); at != std::string::npos;
-       at = text.find(old, at + by.size()))
-    text.replace(at, old.size(), by);
-}
 
 /** Takes out everything from each \p begin to the next \p end, both included. */
 void
@@ -36,10 +30,9 @@ removeAll(std::string& text, const std::string& begin, const std::string& end)
 std::string
 contentOf(const std::string& document)
 {
-  const auto tag = document.find("<svg");
-  const auto begin = document.find('>', tag);
+  const auto begin = document.find('>', document.find("<svg"));
   const auto end = document.rfind("</svg>");
-  if (tag == std::string::npos || begin > end || end == std::string::npos)
+  if (begin > end || end == std::string::npos)
     return "";
   return document.substr(begin + 1, end - begin - 1);
 }
@@ -77,11 +70,12 @@ inlineSvg(const std::string& document,
   const std::string own = id + '-';
   for (const std::string name : {"gpDot", "gpPt", "textbox", "greybox"})
     for (const std::string before : {"id='", "'#", "url(#"})
-      replaceAll(content, before + name, std::string(before).append(own).append(name));
-  replaceAll(content, " color=\"black\"", "");
-  replaceAll(content, "\"black\"", "\"currentColor\"");
-  replaceAll(content, "'black'", "'currentColor'");
-  replaceAll(content, "\n\n", "\n");
+      boost::replace_all(
+          content, before + name, std::string(before).append(own).append(name));
+  boost::replace_all(content, " color=\"black\"", "");
+  boost::replace_all(content, "\"black\"", "\"currentColor\"");
+  boost::replace_all(content, "'black'", "'currentColor'");
+  boost::replace_all(content, "\n\n", "\n");
   return "<svg id=\"" + id + "\" viewBox=\"" + viewBoxOf(document) +
          "\" role=\"img\" aria-labelledby=\"" + id + "-title " + id +
          "-description\"><title id=\"" + id + "-title\">" + escaped(title) +

@@ -52,16 +52,10 @@ documentsOf(const std::string& text)
 
 } // namespace
 
-bool
-hasGnuplot()
-{
-  return runChildProgram({"gnuplot", "--version"}, "").is_good;
-}
-
 void
 requireGnuplot(const std::string& option)
 {
-  if (!hasGnuplot())
+  if (!runChildProgram({"gnuplot", "--version"}, "").is_good)
     throw GnuplotError("is not there, but " + option +
                        " needs it (package gnuplot-nox)");
 }

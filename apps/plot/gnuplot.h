@@ -15,10 +15,6 @@ struct GnuplotError : io::FileError {
   explicit GnuplotError(const std::string& reason) : io::FileError("gnuplot", reason) {}
 };
 
-/** \brief Whether the program gnuplot is there. */
-bool
-hasGnuplot();
-
 /** \brief For options that cannot do without it.
  * \param[in] option its name, with dashes
  * \throws GnuplotError if there is no gnuplot */

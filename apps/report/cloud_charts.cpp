@@ -3,6 +3,8 @@
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/random.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 
 namespace bayesian_icp::app {
@@ -17,25 +19,10 @@ constexpr const char* axis_names[] = {"x", "y", "z"};
 Eigen::Matrix3Xd
 chosenPoints(const io::CloudFile& cloud)
 {
-  std::vector<Eigen::Index> finite;
-  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
-    if (cloud.points.col(i).allFinite())
-      finite.push_back(i);
+  const Eigen::Matrix3Xf points = io::finitePoints(cloud);
   Random random(1, 0);
-  const auto chosen =
-      randomChoice(static_cast<Eigen::Index>(finite.size()), max_points, random);
-  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(chosen.size()));
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) =
-        cloud.points.col(finite[static_cast<std::size_t>(chosen[i])]).cast<double>();
-  return points;
-}
-
-Eigen::Matrix3Xd
-moved(const Eigen::Matrix4d& T_target_source, const Eigen::Matrix3Xd& points)
-{
-  return (T_target_source.topLeftCorner<3, 3>() * points).colwise() +
-         Eigen::Vector3d(T_target_source.topRightCorner<3, 1>());
+  const auto chosen = randomChoice(points.cols(), max_points, random);
+  return points(Eigen::all, chosen).cast<double>();
 }
 
 /** Both clouds in the target frame. */
@@ -150,9 +137,9 @@ cloudCharts(const Run& run)
   const Eigen::Matrix3Xd target = chosenPoints(run.target);
   const Eigen::Matrix3Xd source = chosenPoints(run.source);
   std::vector<Chart> charts =
-      viewsOf({target, moved(run.settings.guess, source)}, "before");
+      viewsOf({target, Eigen::Affine3d(run.settings.guess) * source}, "before");
   for (Chart& chart :
-       viewsOf({target, moved(run.result.final_matrix, source)}, "after"))
+       viewsOf({target, Eigen::Affine3d(run.result.final_matrix) * source}, "after"))
     charts.push_back(std::move(chart));
   return charts;
 }

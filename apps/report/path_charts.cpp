@@ -46,11 +46,7 @@ struct Ellipse {
 Ellipse
 ellipseOf(const GaussianPose& pose, const Axes& axes)
 {
-  const Eigen::Matrix3d covariance = positionCovariance(pose);
-  Eigen::Matrix2d part;
-  for (int i = 0; i < 2; ++i)
-    for (int j = 0; j < 2; ++j)
-      part(i, j) = covariance(axes[std::size_t(i)], axes[std::size_t(j)]);
+  const Eigen::Matrix2d part = positionCovariance(pose)(axes, axes);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(part);
   const Eigen::Vector2d lengths =
       2.0 * deviations_of_95_percent * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();

@@ -122,14 +122,17 @@ correlationPanel(const Matrix6d& covariance, int row, int column)
                    std::abs(correlation) >= 0.5 ? 20 : 13);
 }
 
-/** Ticks at the mean and on both sides of it. */
+/** Range, label, and ticks at the mean and on both sides of it.
+ * \param[in] which axis of gnuplot: x or y */
 std::string
-ticksOf(const char* which, double reach, bool has_labels)
+axisScript(const std::string& which, const Axis& axis, double reach, bool has_labels)
 {
   constexpr double share = 0.27;
-  return std::string("set ") + which + "range " + plotRange(-reach, reach) + "\nset " +
-         which + "tics " + plotNumber(roundStep(2.0 * reach, share)) +
-         (has_labels ? " format '%g' font ',10'\n" : " format ''\n");
+  return "set " + which + "range " + plotRange(-reach, reach) + "\nset " + which +
+         "tics " + plotNumber(roundStep(2.0 * reach, share)) +
+         (has_labels ? " format '%g' font ',10'\nset " + which + "label '" + axis.name +
+                           " [" + axis.unit + "]'\n"
+                     : " format ''\nunset " + which + "label\n");
 }
 
 std::string
@@ -137,13 +140,9 @@ scatterPanel(const DrawSet& draws, const Vector6d& reaches, int row, int column)
 {
   const Axis& x = draws.axes[static_cast<std::size_t>(column)];
   const Axis& y = draws.axes[static_cast<std::size_t>(row)];
-  std::string script = "set border 15 linewidth 0.5\n" +
-                       ticksOf("x", reaches[column], row == 5) +
-                       ticksOf("y", reaches[row], column == 0);
-  script +=
-      row == 5 ? "set xlabel '" + x.name + " [" + x.unit + "]'\n" : "unset xlabel\n";
-  script +=
-      column == 0 ? "set ylabel '" + y.name + " [" + y.unit + "]'\n" : "unset ylabel\n";
+  const std::string script = "set border 15 linewidth 0.5\n" +
+                             axisScript("x", x, reaches[column], row == 5) +
+                             axisScript("y", y, reaches[row], column == 0);
   std::string plots;
   for (std::size_t i = 0; i < draws.chains.size(); ++i)
     plots += (i > 0 ? ", " : "plot ") +

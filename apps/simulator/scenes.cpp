@@ -45,17 +45,6 @@ Scene::distance(const Vector3d& point) const
   return nearest;
 }
 
-const std::string&
-Scene::nearestPart(const Vector3d& point) const
-{
-  return std::min_element(parts.begin(),
-                          parts.end(),
-                          [&point](const ScenePart& a, const ScenePart& b) {
-                            return a.distance(point) < b.distance(point);
-                          })
-      ->name;
-}
-
 std::vector<std::string>
 sceneNames()
 {

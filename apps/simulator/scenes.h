@@ -53,10 +53,6 @@ struct Scene {
   /** \brief Signed distance to the nearest part [m]; a lower bound outside. */
   double
   distance(const Eigen::Vector3d& point) const;
-
-  /** \brief Name of the part whose surface is nearest to \p point. */
-  const std::string&
-  nearestPart(const Eigen::Vector3d& point) const;
 };
 
 /** \brief The names that makeScene() knows, in the order in which they are listed. */

@@ -9,47 +9,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::uint32_t target_scan_number = 0;
-constexpr std::uint32_t source_scan_number = 1;
-
-/** \brief Twist of the sensor during one turn, in its own frame [m, rad]. */
-Vector6d
-sweepMotion(const SimulationOptions& options)
-{
-  const SensorKind kind = options.sensor.kind;
-  const Isometry3d T_target_source = sensorPose(kind, options.target_view).inverse() *
-                                     sensorPose(kind, options.source_view);
-  return options.sweep_motion * logSE3(T_target_source.matrix());
-}
-
-Scan
-scanView(const Scene& scene,
-         const SimulationOptions& options,
-         const View& view,
-         std::uint32_t scan_number,
-         const std::string& name)
-{
-  const Isometry3d T_world_sensor = sensorPose(options.sensor.kind, view);
-  Scan scan = scanScene(scene,
-                        options.sensor,
-                        T_world_sensor,
-                        options.seed,
-                        scan_number,
-                        sweepMotion(options));
-  if (scan.points.cols() == 0)
-    throw std::invalid_argument("the " + name + " view sees nothing of scene '" +
-                                options.scene + "'");
-  return scan;
-}
-
-/** \brief The frame of a cloud before the offset is applied. */
-Isometry3d
-cloudPose(const SimulationOptions& options, const View& view)
-{
-  return options.frame == CloudFrame::Sensor ? sensorPose(options.sensor.kind, view)
-                                             : Isometry3d::Identity();
-}
-
 void
 validateView(const Scene& scene, const View& view, const std::string& name)
 {
@@ -100,20 +59,37 @@ simulate(const SimulationOptions& options)
 {
   validate(options);
   const Scene scene = makeScene(options.scene);
-  const View& target_view = options.target_view;
-  const View& source_view = options.source_view;
-  const Scan target =
-      scanView(scene, options, target_view, target_scan_number, "target");
-  const Scan source =
-      scanView(scene, options, source_view, source_scan_number, "source");
+  const Isometry3d T_world_target_sensor =
+      sensorPose(options.sensor.kind, options.target_view);
+  const Isometry3d T_world_source_sensor =
+      sensorPose(options.sensor.kind, options.source_view);
+  // Twist of the sensor during one turn, in its own frame [m, rad].
+  const Isometry3d motion = T_world_target_sensor.inverse() * T_world_source_sensor;
+  const Vector6d sweep_motion = options.sweep_motion * logSE3(motion.matrix());
+  const auto scanFrom = [&](const Isometry3d& T_world_sensor,
+                            std::uint32_t scan_number,
+                            const std::string& name) {
+    Scan scan = scanScene(
+        scene, options.sensor, T_world_sensor, options.seed, scan_number, sweep_motion);
+    if (scan.points.cols() == 0)
+      throw std::invalid_argument("the " + name + " view sees nothing of scene '" +
+                                  options.scene + "'");
+    return scan;
+  };
+  const Scan target = scanFrom(T_world_target_sensor, 0, "target");
+  const Scan source = scanFrom(T_world_source_sensor, 1, "source");
 
-  const SensorKind kind = options.sensor.kind;
+  // The frame of a cloud before the offset is applied.
+  const auto frameOf = [&options](const Isometry3d& T_world_sensor) {
+    return options.frame == CloudFrame::Sensor ? T_world_sensor
+                                               : Isometry3d::Identity();
+  };
   const Isometry3d T_offset(matrixOf(options.offset));
-  const Isometry3d T_target_world = cloudPose(options, target_view).inverse();
+  const Isometry3d T_target_world = frameOf(T_world_target_sensor).inverse();
   const Isometry3d T_source_world =
-      (cloudPose(options, source_view) * T_offset).inverse();
-  const Isometry3d T_target_sensor = T_target_world * sensorPose(kind, target_view);
-  const Isometry3d T_source_sensor = T_source_world * sensorPose(kind, source_view);
+      (frameOf(T_world_source_sensor) * T_offset).inverse();
+  const Isometry3d T_target_sensor = T_target_world * T_world_target_sensor;
+  const Isometry3d T_source_sensor = T_source_world * T_world_source_sensor;
 
   ScanPair pair;
   pair.target = (T_target_sensor * target.points).cast<float>();

@@ -17,6 +17,9 @@ FIGURES = (
     + [PAIRS]
     + [f"chains-{name}" for name in NAMES]
 )
+MUG, CAN = (
+    [DATA / name / f"{role}.pcd" for role in ("source", "target")] for name in ("mug", "can")
+)
 CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
 MAX_SIZE = 2_000_000
 
@@ -56,9 +59,8 @@ class ReportPage(ReportTest):
         self.assertFalse(re.search(r"url\((?!#)", text))
 
     def test_all_figures_and_nothing_from_elsewhere(self):
-        mug = [DATA / "mug" / f"{role}.pcd" for role in ("source", "target")]
         for pair, options, more in (
-            (mug, CALIBRATED, ["directions"]),
+            (MUG, CALIBRATED, ["directions"]),
             (self.small_pair(), FAST, []),
             (self.small_pair(), ["--preset=paper", "--chains=1", "--samples=1"], []),
         ):
@@ -126,9 +128,8 @@ class ReportPage(ReportTest):
 
     def test_motions_that_the_clouds_do_not_hold(self):
         """A can looks the same turned about its axis."""
-        can = [DATA / "can" / f"{role}.pcd" for role in ("source", "target")]
         # With one seed of ten the noise of the clouds holds the turn a little.
-        _, text = self.report_of(*can, *CALIBRATED, "--seed=2")
+        _, text = self.report_of(*CAN, *CALIBRATED, "--seed=2")
         verdict = self.verdict_of(text)
         self.assertIn("1 of 6 motions cannot be observed", verdict)
         self.assertIn("held by the prior alone: rotation about", verdict)
@@ -194,8 +195,7 @@ class ReportInBrowser(ReportTest):
     def setUp(self):
         super().setUp()
         self.browser = Browser()
-        mug = [DATA / "mug" / f"{role}.pcd" for role in ("source", "target")]
-        self.file_of_report, _ = self.report_of(*mug, *CALIBRATED)
+        self.file_of_report, _ = self.report_of(*MUG, *CALIBRATED)
         self.figures = sorted(FIGURES + ["directions"])
 
     def test_nothing_on_the_console(self):

@@ -3,13 +3,14 @@
  * are bad options refused?
  */
 #include "simulate/simulate_helpers.h"
+#include "simulator/option_fields.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -75,31 +76,34 @@ TEST(SensorRays, OfTheCameraGoThroughThePixelsUpToTheJitter)
 
 TEST(SensorOptions, OutsideTheirRangeAreRefusedByName)
 {
-  using Change = std::function<void(SensorOptions&)>;
-  const std::vector<std::pair<std::string, Change>> bad = {
-      {"width", [](SensorOptions& o) { o.camera.width = 0; }},
-      {"height", [](SensorOptions& o) { o.camera.height = -3; }},
-      {"fov", [](SensorOptions& o) { o.camera.horizontal_fov = 180.0; }},
-      {"lateral-noise", [](SensorOptions& o) { o.camera.lateral_noise = -1.0; }},
-      {"rings", [](SensorOptions& o) { o.lidar.rings = 0; }},
-      {"max-elevation", [](SensorOptions& o) { o.lidar.max_elevation = -20.0; }},
-      {"azimuth-step", [](SensorOptions& o) { o.lidar.azimuth_step = 0.0; }},
-      {"range-noise", [](SensorOptions& o) { o.lidar.range_noise = NAN; }},
-      {"ring-offset", [](SensorOptions& o) { o.lidar.ring_offset = -0.01; }},
-      {"azimuth-phase", [](SensorOptions& o) { o.lidar.azimuth_phase = 1.5; }},
-      {"noise", [](SensorOptions& o) { o.noise = INFINITY; }},
-      {"noise-correlation", [](SensorOptions& o) { o.noise_correlation = 1.1; }},
-      {"noise-correlation-pixels",
-       [](SensorOptions& o) { o.noise_correlation_pixels = 0.0; }},
-      {"incidence-noise", [](SensorOptions& o) { o.incidence_noise = -1.0; }},
-      {"dropout-from", [](SensorOptions& o) { o.dropout_from = 91.0; }},
-      {"outliers", [](SensorOptions& o) { o.outliers = 1.5; }},
-      {"jitter", [](SensorOptions& o) { o.jitter = 2.0; }},
-      {"min-range", [](SensorOptions& o) { o.min_range = 0.0; }},
-      {"max-range", [](SensorOptions& o) { o.max_range = o.min_range; }}};
+  const std::vector<std::pair<std::string, double>> bad = {
+      {"width", 0},
+      {"height", -3},
+      {"fov", 180},
+      {"lateral-noise", -1},
+      {"rings", 0},
+      {"max-elevation", -20},
+      {"azimuth-step", 0},
+      {"range-noise", NAN},
+      {"ring-offset", -0.01},
+      {"azimuth-phase", 1.5},
+      {"noise", INFINITY},
+      {"noise-correlation", 1.1},
+      {"jitter", 2},
+      {"noise-correlation-pixels", 0},
+      {"outliers", 1.5},
+      {"incidence-noise", -1},
+      {"min-range", 0},
+      {"dropout-from", 91},
+      {"max-range", SensorOptions().min_range}};
   for (const auto& entry : bad) {
     SensorOptions options;
-    entry.second(options);
+    visitSensor(options, [&entry](const OptionField& field, auto& value) {
+      using Value = std::decay_t<decltype(value)>;
+      if constexpr (std::is_arithmetic_v<Value>)
+        if (field.name == entry.first)
+          value = static_cast<Value>(entry.second);
+    });
     try {
       validate(options);
       ADD_FAILURE() << entry.first << " was accepted";
