@@ -8,11 +8,9 @@
 #include "study/csv_row.h"
 #include "study/formatted_text.h"
 #include "study/option_values.h"
-#include "study/report_program.h"
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 
 namespace bayesian_icp::evaluate {
 
@@ -32,8 +30,7 @@ constexpr std::size_t max_lines = 20;
 struct CyclesOptions {
   int max_length = 4;
   app::SharedNoise shared;
-  std::string result_file = "results/cycles.csv";
-  bool has_report = false;
+  ResultOptions result{"results/cycles.csv"};
 };
 
 std::string
@@ -119,11 +116,8 @@ failuresText(const std::vector<ClosedCycle>& cycles)
   return text.empty() ? text : "Cycles that do not close (below 1 %):\n" + text;
 }
 
-std::string
-cyclesHelp(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_evaluate cycles GRAPH.g2o [options]
+constexpr const char* cycles_help =
+    R"(Usage: pcl_bayesian_icp_evaluate cycles GRAPH.g2o [options]
 
 Are the covariances of a pose graph right? Needs no true poses. Around each
 cycle of edges the product of the poses should be the identity, within the
@@ -148,10 +142,7 @@ which edges they have in common. If all covariances are right, it fails for
 one graph in a thousand.
 Exit codes: 0 good, 1 that test has failed, 2 usage, 3 cannot read or write a
 file.
-
-)" << options;
-  return help.str();
-}
+)";
 
 po::typed_value<double>*
 share(double& part)
@@ -177,19 +168,13 @@ runCyclesCommand(int argc, const char* const* argv)
      "part of the variance that edges with the same source have in common, its noise")
     ("common-share", share(options.shared.common),
      "part of the variance that all edges have in common; together with --source-share "
-     "below 1. Both are 0 for edges that are independent")
-    ("output", outputName("file", options.result_file), "CSV file of the closures")
-    ("report", io::flag(options.has_report),
-     "also make a report, with figures, of all results in that folder")
-    ("help", "show this text");
+     "below 1. Both are 0 for edges that are independent");
   // clang-format on
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, "graph");
-  if (io::printHelpOrVersion(
-          given, "", [&description] { return cyclesHelp(description); }))
+  addResultOptions(options.result, description, "CSV file of the closures");
+  const auto given = readOptions(argc, argv, description, cycles_help, "graph");
+  if (!given)
     return 0;
-  io::takeOptions(given, description);
-  const std::vector<std::string> files = io::optionTexts(given, "graph");
+  const std::vector<std::string> files = io::optionTexts(*given, "graph");
   if (files.size() != 1)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
   constexpr double rounding = 1e-6;
@@ -204,15 +189,14 @@ runCyclesCommand(int argc, const char* const* argv)
     throw io::FileError(files[0],
                         "has no cycle of at most " + io::textOf(options.max_length) +
                             " edges that the clouds have seen");
-  io::OutputFolder folder(io::folderOf(options.result_file));
-  folder.add(std::filesystem::path(options.result_file).filename().string(),
+  io::OutputFolder folder(io::folderOf(options.result.file));
+  folder.add(std::filesystem::path(options.result.file).filename().string(),
              csvOf(cycles));
   folder.commit();
   const app::JointClosure joint = app::jointClosureOf(edges, cycles);
   io::print(tableOf(cycles) + jointText(joint) + failuresText(cycles) +
             suspectsText(edges, cycles));
-  const int report_code =
-      options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
+  const int report_code = options.result.report();
   return joint.probability >= min_chance ? report_code : 1;
 }
 

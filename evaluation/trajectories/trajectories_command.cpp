@@ -7,14 +7,12 @@
 #include "study/formatted_text.h"
 #include "study/input_hash.h"
 #include "study/option_values.h"
-#include "study/report_program.h"
-#include "threads/first_exception.h"
+#include "study/parallel_tasks.h"
 #include "trajectories/trajectory_run.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <sstream>
 
 namespace bayesian_icp::evaluate {
 
@@ -33,8 +31,7 @@ struct TrajectoriesOptions {
   double closure_distance = 1.0;
   app::RobustLoss loss = app::RobustLoss::None;
   int num_threads = 0;
-  std::string result_file = "results/trajectories.csv";
-  bool has_report = false;
+  ResultOptions result{"results/trajectories.csv"};
 };
 
 std::vector<RegisteredRecording>
@@ -77,15 +74,14 @@ std::vector<std::uint64_t>
 hashesOf(const Recording& recording, int num_threads)
 {
   std::vector<std::uint64_t> hashes(recording.poses.size());
-  FirstException failure;
-#pragma omp parallel for schedule(dynamic) num_threads(num_threads)
-  for (std::size_t scan = 0; scan < hashes.size(); ++scan)
-    failure.guard([&] { // no exception may leave a parallel region
-      InputHash hash;
-      hash.addMatrix(recording.read(scan));
-      hashes[scan] = hash.value();
-    });
-  failure.rethrow();
+  StudyTasks tasks;
+  tasks.size = hashes.size();
+  tasks.run = [&](std::size_t scan) {
+    InputHash hash;
+    hash.addMatrix(recording.read(scan));
+    hashes[scan] = hash.value();
+  };
+  runTasks(tasks, num_threads);
   return hashes;
 }
 
@@ -143,29 +139,24 @@ registerMissing(const std::vector<PairOfScans>& pairs,
   const std::vector<PairOfScans> missing = missingOf(pairs, results);
   const std::string name =
       registered.recording.name + ", seed " + io::textOf(registered.seed);
-  std::size_t num_done = 0;
-  FirstException failure;
-#pragma omp parallel for schedule(dynamic) num_threads(num_threads)
-  for (std::size_t k = 0; k < missing.size(); ++k)
-    // No exception may leave a parallel region or a critical section.
-    failure.guard([&] {
-      const PairOfScans& pair = missing[k];
-      const auto read = [&](int scan) {
-        return registered.recording.read(static_cast<std::size_t>(scan));
-      };
-      const Eigen::Matrix3Xd source = read(pair.source), target = read(pair.target);
-      const Eigen::Isometry3d guess =
-          guessOf(registered.recording, registered.seed, pair.target, pair.source);
-      for (const EdgeName& edge : pair.names) {
-        const EdgeRun run = registeredEdge(edge, source, target, guess);
-#pragma omp critical(trajectory_results)
-        failure.guard([&] { results.add(run); });
-      }
-#pragma omp critical(trajectory_results)
-      std::cerr << name + ": " + io::textOf(++num_done) + " of " +
-                       io::textOf(missing.size()) + " pairs registered\n";
-    });
-  failure.rethrow();
+  StudyTasks tasks;
+  tasks.size = missing.size();
+  tasks.run = [&](std::size_t k) {
+    const PairOfScans& pair = missing[k];
+    const auto read = [&](int scan) {
+      return registered.recording.read(static_cast<std::size_t>(scan));
+    };
+    const Eigen::Matrix3Xd source = read(pair.source), target = read(pair.target);
+    const Eigen::Isometry3d guess =
+        guessOf(registered.recording, registered.seed, pair.target, pair.source);
+    for (const EdgeName& edge : pair.names)
+      results.add(registeredEdge(edge, source, target, guess));
+  };
+  tasks.report = [&](const StudyProgress& progress, std::size_t) {
+    std::cerr << name + ": " + io::textOf(progress.num_done) + " of " +
+                     io::textOf(progress.num_all) + " pairs registered\n";
+  };
+  runTasks(tasks, num_threads);
 }
 
 /** Register what is not in the file, and take all edges from there. */
@@ -213,10 +204,9 @@ tableOf(const std::vector<TrajectoryRun>& runs)
 }
 
 std::string
-trajectoriesHelp(const po::options_description& options)
+trajectoriesHelp()
 {
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_evaluate trajectories [FOLDER] [options]
+  std::string help = R"(Usage: pcl_bayesian_icp_evaluate trajectories [FOLDER] [options]
 
 Do the covariances of registrations make trajectories better, and is the
 stated accuracy of these true? Registers the scans of each recording to those
@@ -229,8 +219,8 @@ means of GICP and of point-to-plane ICP and their own.
 Without FOLDER, the recordings are simulated drives: )";
   const std::vector<std::string> drives = driveNames();
   for (const std::string& name : drives)
-    help << name << (name == drives.back() ? ".\n" : ", ");
-  help << R"(FOLDER has recordings with true poses, a folder each, as for
+    help += name + (name == drives.back() ? ".\n" : ", ");
+  return help + R"(FOLDER has recordings with true poses, a folder each, as for
 coverage --real. All methods begin at the true pose with errors of 0.1 m and
 0.03 rad on each axis. Edges do not contain that guess (the closed form keeps
 its wide prior); but as an odometry it is an edge of its own from each scan to
@@ -247,9 +237,7 @@ interrupted study goes on. Rows of other scans, other guesses or another
 version of this program do not count.
 
 Exit codes: 0 good, 2 usage, 3 cannot read or write a file.
-
-)" << options;
-  return help.str();
+)";
 }
 
 po::options_description
@@ -270,12 +258,9 @@ describe(TrajectoriesOptions& options)
          io::refuseValue(name, app::namesOfChoices(options.loss));
      }),
      "how edges outside of their 95 % regions count: none (as their covariances say), huber, cauchy")
-    ("threads", threads(options.num_threads), "registrations at a time; 0: as many as cores")
-    ("output", outputName("file", options.result_file), "CSV file of the trajectories")
-    ("report", io::flag(options.has_report),
-     "also make a report, with figures, of all results in that folder")
-    ("help", "show this text");
+    ("threads", threads(options.num_threads), "registrations at a time; 0: as many as cores");
   // clang-format on
+  addResultOptions(options.result, description, "CSV file of the trajectories");
   return description;
 }
 
@@ -294,34 +279,29 @@ runTrajectoriesCommand(int argc, const char* const* argv)
 {
   TrajectoriesOptions options;
   const po::options_description description = describe(options);
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, "folder");
-  if (io::printHelpOrVersion(
-          given, "", [&description] { return trajectoriesHelp(description); }))
+  const auto given = readOptions(argc, argv, description, trajectoriesHelp(), "folder");
+  if (!given)
     return 0;
-  io::takeOptions(given, description);
-  const std::vector<std::string> folders = io::optionTexts(given, "folder");
+  const std::vector<std::string> folders = io::optionTexts(*given, "folder");
   if (folders.size() > 1)
     throw io::UsageError("one folder of recordings at most");
   std::vector<RegisteredRecording> recordings =
       recordingsOf(options, folders.empty() ? "" : folders[0]);
-  io::OutputFolder folder(io::folderOf(options.result_file));
+  io::OutputFolder folder(io::folderOf(options.result.file));
   folder.commit();
   {
-    EdgeFile results(edgeFileName(options.result_file));
+    EdgeFile results(edgeFileName(options.result.file));
     for (RegisteredRecording& registered : recordings)
       registerAll(options, results, registered);
   }
   const std::vector<TrajectoryRun> runs = trajectoriesOf(recordings, options.loss);
-  folder.add(std::filesystem::path(options.result_file).filename().string(),
-             [&](std::ostream& stream) {
-               stream << headerOf<TrajectoryRun>() << '\n';
-               for (const TrajectoryRun& run : runs)
-                 stream << rowOf(run) << '\n';
-             });
+  std::string rows = headerOf<TrajectoryRun>() + '\n';
+  for (const TrajectoryRun& run : runs)
+    rows += rowOf(run) + '\n';
+  folder.add(std::filesystem::path(options.result.file).filename().string(), rows);
   folder.commit();
   io::print(tableOf(runs));
-  return options.has_report ? makeReport(io::folderOf(options.result_file)) : 0;
+  return options.result.report();
 }
 
 } // namespace bayesian_icp::evaluate
