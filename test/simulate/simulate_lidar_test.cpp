@@ -110,9 +110,9 @@ TEST(CarLidar, HasIndependentNoiseAboutTheOffsetOfTheRing)
   options.noise = 0.0;
   const Eigen::ArrayXd offsets = errorsOf(scanOf(hollowBall(), options));
   options.noise = 1.5;
-  options.lidar.range_noise = 0.02;
+  options.lidar.range_noise = 0.03;
   const Eigen::ArrayXd noise =
-      (errorsOf(scanOf(hollowBall(), options)) - offsets) / 0.03;
+      (errorsOf(scanOf(hollowBall(), options)) - offsets) / 0.045;
   const auto count = static_cast<double>(noise.size());
   EXPECT_NEAR(noise.sum(), 0.0, bound_in_sigmas * std::sqrt(count));
   EXPECT_NEAR(noise.square().sum(), count, bound_in_sigmas * std::sqrt(2.0 * count));
