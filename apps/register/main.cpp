@@ -66,13 +66,6 @@ runRegistration(const Request& request)
   return run;
 }
 
-/** Whether the pose is to be printed for other software. */
-bool
-printsExport(const Request& request)
-{
-  return !request.exports.formats.empty() && request.output_folder.empty();
-}
-
 /** \return whether it can be exported */
 bool
 printExport(const Request& request, const Run& run)
@@ -117,7 +110,11 @@ writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
   const auto refusals =
       addExports(request.exports, PoseEstimate(run.result.summary), folder);
   const std::string complaint = addReport(request, run, folder);
-  writeOutputFiles(run, folder);
+  folder.add("aligned.pcd", [&](std::ostream& stream) {
+    io::writeAligned(run.source, run.target, run.result.final_matrix, stream);
+  });
+  addPosteriorFiles(run, folder);
+  folder.commit();
   if (!complaint.empty())
     tell(complaint);
   for (const std::string& refusal : refusals)
@@ -129,16 +126,15 @@ writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
 bool
 report(const Request& request, const Run& run)
 {
-  bool is_exported = true;
-  if (printsExport(request))
-    is_exported = printExport(request, run);
-  else if (request.is_json)
+  const bool prints_export =
+      !request.exports.formats.empty() && request.output_folder.empty();
+  const bool has_table = !prints_export && !request.is_json && !request.is_quiet;
+  if (request.is_json)
     io::print(posteriorJson(run));
-  else if (!request.is_quiet)
+  else if (has_table)
     io::print(reportText(run));
+  const bool is_exported = !prints_export || printExport(request, run);
   // The table has the status already.
-  const bool has_table =
-      !printsExport(request) && !request.is_json && !request.is_quiet;
   if (run.result.summary.status != Status::Ok && !has_table)
     tell(statusText(run.result.summary));
   return is_exported;

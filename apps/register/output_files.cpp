@@ -25,16 +25,6 @@ writeSamples(const std::vector<Chain>& chains, std::ostream& stream)
 }
 
 void
-writeOutputFiles(const Run& run, io::OutputFolder& folder)
-{
-  folder.add("aligned.pcd", [&](std::ostream& stream) {
-    writeAligned(run.source, run.target, run.result.final_matrix, stream);
-  });
-  addPosteriorFiles(run, folder);
-  folder.commit();
-}
-
-void
 addPosteriorFiles(const Run& run, io::OutputFolder& folder)
 {
   folder.add("samples.csv",

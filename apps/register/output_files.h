@@ -20,9 +20,4 @@ writeSamples(const std::vector<Chain>& chains, std::ostream& stream);
 void
 addPosteriorFiles(const Run& run, io::OutputFolder& folder);
 
-/** \brief Write aligned.pcd, samples.csv and posterior.json.
- * \throws io::FileError if one cannot be written; then none is */
-void
-writeOutputFiles(const Run& run, io::OutputFolder& folder);
-
 } // namespace bayesian_icp::app

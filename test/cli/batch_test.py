@@ -41,6 +41,10 @@ def without_times(results):
 class BatchTest(ToolTest):
     program = "pcl_bayesian_icp_batch"
 
+    def setUp(self):
+        super().setUp()
+        self.results = self.folder / "results.jsonl"
+
     def manifest(self, pairs):
         return self.file("manifest.json", json.dumps(pairs))
 
@@ -209,10 +213,6 @@ class BatchRefused(BatchTest):
 
 
 class BatchResume(BatchTest):
-    def setUp(self):
-        super().setUp()
-        self.results = self.folder / "results.jsonl"
-
     def whole_run(self, manifest, *options):
         return without_times(results_of(run_batch(manifest, *options).stdout))
 
@@ -295,10 +295,6 @@ def has_mpi():
 @unittest.skipUnless(has_mpi(), "built without MPI, or no mpirun")
 class BatchRanks(BatchTest):
     MPIRUN = ("mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "2")
-
-    def setUp(self):
-        super().setUp()
-        self.results = self.folder / "results.jsonl"
 
     def rank_files(self):
         return [path.name for path in self.folder.iterdir() if ".rank" in path.name]
