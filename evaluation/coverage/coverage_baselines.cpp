@@ -33,7 +33,8 @@ sandwich(const BaselineProblem& problem)
 {
   const IcpFit fit = fitNaively(problem);
   const double noise =
-      SurfaceModel(problem.target(), SurfaceModelOptions(), 1).medianSigma();
+      SurfaceModel(problem.coverage_case.target, SurfaceModelOptions(), 1)
+          .medianSigma();
   return problem.combineWithPrior(fit.pose, pointToPointSandwich(problem, fit, noise));
 }
 

@@ -52,28 +52,30 @@ normalsOfMatches(const Matrix3Xd& target_normals, const MatchedPoints& matches)
 
 } // namespace
 
-BaselineProblem::BaselineProblem(const CoverageCase& coverage_case, Index max_points)
-: case_(coverage_case)
-, source_columns_(chosenColumns(case_.source.cols(), max_points, coverage_case.seed))
-, source_(case_.source(Eigen::all, source_columns_))
-, prior_(case_.prior_mean, case_.prior_sd.cwiseAbs2(), case_.source.rowwise().mean())
-, origin_(case_.target.col(0))
-, tree_((case_.target.colwise() - origin_).cast<float>())
-, hints_(source_columns_.size(), KdTree::none)
+BaselineProblem::BaselineProblem(const CoverageCase& registered, Index max_points)
+: coverage_case(registered)
+, source_columns(chosenColumns(registered.source.cols(), max_points, registered.seed))
+, source(registered.source(Eigen::all, source_columns))
+, prior(registered.prior_mean,
+        registered.prior_sd.cwiseAbs2(),
+        registered.source.rowwise().mean())
+, origin_(registered.target.col(0))
+, tree_((registered.target.colwise() - origin_).cast<float>())
+, hints_(source_columns.size(), KdTree::none)
 {}
 
 Isometry3d
 BaselineProblem::priorMean() const
 {
-  return isometryOf(prior_.mean());
+  return isometryOf(prior.mean());
 }
 
 MatchedPoints
 BaselineProblem::match(const Isometry3d& T_target_source) const
 {
   MatchedPoints matches;
-  matches.moved = T_target_source * source_;
-  matches.target.resize(3, source_.cols());
+  matches.moved = T_target_source * source;
+  matches.target.resize(3, source.cols());
   matches.target_indices.resize(hints_.size());
   for (std::size_t i = 0; i < hints_.size(); ++i) {
     const auto column = static_cast<Index>(i);
@@ -83,10 +85,10 @@ BaselineProblem::match(const Isometry3d& T_target_source) const
                              std::numeric_limits<float>::infinity(),
                              hints_[i])
                     .index;
-    matches.target.col(column) = case_.target.col(hints_[i]);
+    matches.target.col(column) = coverage_case.target.col(hints_[i]);
   }
   matches.target_indices = hints_;
-  num_queries_ += source_.cols();
+  num_queries_ += source.cols();
   return matches;
 }
 
@@ -96,12 +98,14 @@ BaselineProblem::combineWithPrior(const Isometry3d& T_target_source,
 {
   MethodResult result;
   result.centre = centreAt(T_target_source);
-  const TwistPrior prior = twistPrior(prior_, T_target_source, result.centre);
-  const Matrix6d covariance = (likelihood.information + prior.precision).inverse();
+  const TwistPrior twist_prior = twistPrior(prior, T_target_source, result.centre);
+  const Matrix6d covariance =
+      (likelihood.information + twist_prior.precision).inverse();
   result.covariance = 0.5 * (covariance + covariance.transpose());
-  result.mean = movedBy(-result.covariance * (likelihood.gradient + prior.gradient),
-                        result.centre,
-                        T_target_source);
+  result.mean =
+      movedBy(-result.covariance * (likelihood.gradient + twist_prior.gradient),
+              result.centre,
+              T_target_source);
   result.num_queries = num_queries_;
   result.is_valid = result.covariance.allFinite() && result.mean.matrix().allFinite();
   if (!result.is_valid)
@@ -123,7 +127,7 @@ fitIcp(const BaselineProblem& problem, const IcpCost& cost, const Isometry3d& st
   for (int i = 0; i < cost.max_steps; ++i) {
     const Vector3d centre = problem.centreAt(fit.pose);
     const GaussNewton sums = gaussNewton(fit.matches, centre);
-    const TwistPrior prior = twistPrior(problem.prior(), fit.pose, centre);
+    const TwistPrior prior = twistPrior(problem.prior, fit.pose, centre);
     const Matrix6d curvature = cost.weight * sums.hessian + prior.precision;
     Vector6d step =
         -curvature.ldlt().solve(cost.weight * sums.gradient + prior.gradient);

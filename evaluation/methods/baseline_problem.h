@@ -19,9 +19,16 @@ constexpr Eigen::Index max_source_points = 2000;
 
 class BaselineProblem {
 public:
-  /** \param[in] coverage_case must outlive this object; not empty */
-  explicit BaselineProblem(const CoverageCase& coverage_case,
+  /** \param[in] registered must outlive this object; not empty */
+  explicit BaselineProblem(const CoverageCase& registered,
                            Eigen::Index max_points = max_source_points);
+
+  const CoverageCase& coverage_case;
+  /** The points that are registered, columns of the case's source: a random choice, all
+   * if they are few. */
+  const std::vector<Eigen::Index> source_columns;
+  const Eigen::Matrix3Xd source;
+  const Prior prior;
 
   /** \brief Nearest target point of each source point, without normals. Not
    * thread-safe: it counts. */
@@ -33,7 +40,7 @@ public:
   Eigen::Vector3d
   centreAt(const Eigen::Isometry3d& T_target_source) const
   {
-    return T_target_source * prior_.referencePoint();
+    return T_target_source * prior.referencePoint();
   }
 
   /** \brief The posterior whose likelihood has this information about a pose, and
@@ -42,32 +49,6 @@ public:
   combineWithPrior(const Eigen::Isometry3d& T_target_source,
                    const GaussianInformation& likelihood) const;
 
-  /** \brief The points that are registered: a random choice, all if they are few. */
-  const Eigen::Matrix3Xd&
-  source() const
-  {
-    return source_;
-  }
-
-  /** \brief Their columns in the case's source. */
-  const std::vector<Eigen::Index>&
-  sourceColumns() const
-  {
-    return source_columns_;
-  }
-
-  const Eigen::Matrix3Xd&
-  target() const
-  {
-    return case_.target;
-  }
-
-  const Prior&
-  prior() const
-  {
-    return prior_;
-  }
-
   Eigen::Isometry3d
   priorMean() const;
 
@@ -75,21 +56,10 @@ public:
   PclProblem
   ofPcl() const
   {
-    return {case_.source, case_.target, source_columns_, priorMean()};
-  }
-
-  /** \brief Nearest-neighbour queries until now. */
-  long
-  numQueries() const
-  {
-    return num_queries_;
+    return {coverage_case.source, coverage_case.target, source_columns, priorMean()};
   }
 
 private:
-  const CoverageCase& case_;
-  std::vector<Eigen::Index> source_columns_;
-  Eigen::Matrix3Xd source_;
-  Prior prior_;
   /** The tree is in single precision: its points are relative to this one. */
   Eigen::Vector3d origin_;
   KdTree tree_;

@@ -55,7 +55,7 @@ coordinateScores(const BaselineProblem& problem,
       points.jacobians.col(column) << Vector3d::Unit(k), arm.cross(Vector3d::Unit(k));
       points.scores.col(column) =
           points.jacobians.col(column) * (matches.moved(k, i) - matches.target(k, i));
-      points.positions.col(column) = problem.source().col(i);
+      points.positions.col(column) = problem.source.col(i);
     }
   return points;
 }
@@ -90,7 +90,7 @@ public:
   , fit_(fit)
   , centre_(problem.centreAt(fit.pose))
   , noise_(noise)
-  , prior_precision_(twistPrior(problem.prior(), fit.pose, centre_).precision)
+  , prior_precision_(twistPrior(problem.prior, fit.pose, centre_).precision)
   , metric_(gaussNewton(fit.matches, centre_).hessian /
             double(fit.matches.moved.cols()))
   {}
@@ -150,7 +150,7 @@ private:
   {
     PointScores points;
     points.scores = 0.5 * (scoresAt(step) - scoresAt(-step));
-    points.positions = problem_.source();
+    points.positions = problem_.source;
     ClusterOptions options;
     options.num_partitions = 3;
     options.stream = 1000 + static_cast<std::uint64_t>(direction);

@@ -75,7 +75,7 @@ fitPlanes(const BaselineProblem& problem)
   IcpFit fit = fitNaively(problem);
   double variance = fit.variance;
   IcpCost cost;
-  cost.normals = planeNormals(problem.target());
+  cost.normals = planeNormals(problem.coverage_case.target);
   // A few steps by the naive scale, the rest by the planes' own.
   for (const int max_steps : {30, 10}) {
     cost.weight = 1.0 / variance;

@@ -175,7 +175,7 @@ TEST(BaselineProblem, CombinesInformationAsGaussiansDo)
   const CoverageCase c = waves(6);
   const BaselineProblem problem(c);
   const Isometry3d mean = problem.priorMean();
-  const TwistPrior prior = twistPrior(problem.prior(), mean, problem.centreAt(mean));
+  const TwistPrior prior = twistPrior(problem.prior, mean, problem.centreAt(mean));
   const MethodResult alone = problem.combineWithPrior(mean, {});
   EXPECT_LT((alone.mean.matrix() - mean.matrix()).norm(), 1e-12);
   EXPECT_LT((alone.covariance * prior.precision - Matrix6d::Identity()).norm(), 1e-9);
@@ -194,8 +194,8 @@ TEST(BaselineProblem, RegistersAtMostItsShareOfTheSource)
 {
   const CoverageCase c = waves(7, 5000);
   const BaselineProblem problem(c);
-  ASSERT_EQ(problem.source().cols(), max_source_points);
-  std::vector<Eigen::Index> columns = problem.sourceColumns();
+  ASSERT_EQ(problem.source.cols(), max_source_points);
+  std::vector<Eigen::Index> columns = problem.source_columns;
   std::sort(columns.begin(), columns.end());
   EXPECT_TRUE(std::adjacent_find(columns.begin(), columns.end()) == columns.end());
   // The mean of 2000 of 5000 indices, uniform: sd 5000 sqrt(0.6 / (12 * 2000)) = 25.
@@ -203,8 +203,7 @@ TEST(BaselineProblem, RegistersAtMostItsShareOfTheSource)
   for (const Eigen::Index column : columns)
     mean += static_cast<double>(column) / max_source_points;
   EXPECT_NEAR(mean, 2499.5, 4.0 * 25.0);
-  EXPECT_LT((problem.prior().referencePoint() - c.source.rowwise().mean()).norm(),
-            1e-12);
+  EXPECT_LT((problem.prior.referencePoint() - c.source.rowwise().mean()).norm(), 1e-12);
 }
 
 TEST(BaselineProblem, NaiveFitIsAMinimumForItsMatches)
@@ -218,7 +217,7 @@ TEST(BaselineProblem, NaiveFitIsAMinimumForItsMatches)
       fit.pose, {sums.hessian / fit.variance, sums.gradient / fit.variance});
   // The fit's last weight was another one, by a step of ICP.
   EXPECT_LT(twistBetween(fit.pose, result.mean, centre).norm(), 1e-5);
-  EXPECT_GT(problem.numQueries(), 2 * problem.source().cols());
+  EXPECT_GT(result.num_queries, 2 * problem.source.cols());
 }
 
 TEST(PclBaselines, FindTheExactPoseOfACopy)
