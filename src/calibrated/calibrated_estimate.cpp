@@ -2,6 +2,7 @@
 
 #include "algebra/decompositions.h"
 #include "calibrated/curvature/curvature.h"
+#include "calibrated/free_motions.h"
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
@@ -191,7 +192,7 @@ withUnheldNoise(const Matrix6d& score_covariance,
                 const DebitedInformation& debited,
                 const Matrix6d& covariance)
 {
-  const Matrix6d to_steps = debited.steps.inverse();
+  const Matrix6d to_steps = secants.steps.inverse();
   const Matrix6d in_steps = to_steps * covariance * to_steps.transpose();
   Matrix6d J = score_covariance;
   for (int k = 0; k < 6; ++k)
@@ -208,24 +209,16 @@ struct Curvature {
   int num_evaluations = 0;
 };
 
-/** Set what follows from J and from the curvature.
- * \param[in] num_ratio points of the score per point of the curvature */
+/** Set what follows from J, from the curvature and from the directions. */
 void
-finish(const Curvature& curvature, double num_ratio, CalibratedEstimate& e)
+finish(CalibratedEstimate& e)
 {
-  const DebitedInformation& debited = curvature.debited;
   const Eigen::LDLT<Matrix6d> J(e.score_covariance);
-  e.curvature = num_ratio * curvature.secants.curvature;
-  e.transfer = debited.transfer;
-  e.keep = debited.keep;
+  e.transfer = e.directions * e.keep.cwiseSqrt().asDiagonal() * e.directions.inverse();
   const Matrix6d HT = e.curvature * e.transfer;
   const Matrix6d weights = HT.transpose() * J.solve(Matrix6d::Identity());
   e.information = weights * HT;
   e.information = (0.5 * (e.information + e.information.transpose())).eval();
-  for (int k = 0; k < 6; ++k) {
-    const Vector6d step = debited.steps.col(k);
-    e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
-  }
   e.covariance = (e.information + e.prior.precision).inverse();
   e.covariance = (0.5 * (e.covariance + e.covariance.transpose())).eval();
   e.degrees_of_freedom = information_degrees_of_freedom;
@@ -311,7 +304,7 @@ estimateAt(const SurfaceScorer& scorer,
   const ScoreCovariance J = scoreCovarianceAt(e, scorer, options.num_threads);
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
-  // 5: H; 6: what noise explains of it; 7: mean and covariance.
+  // 5: H; 6: what noise explains of it, and what is free; 7: mean and covariance.
   const SurfaceScorer first = scorer.ofFirst(options.num_curvature_points);
   CalibratedEstimate of_first = atMode(first, prior, mode);
   const ScoreCovariance J_first =
@@ -323,9 +316,20 @@ estimateAt(const SurfaceScorer& scorer,
   e.score_covariance =
       J.covariance + num_ratio * J.kappa / J_first.kappa *
                          (of_first.score_covariance - J_first.covariance);
-  finish(curvature, num_ratio, e);
+  e.curvature = num_ratio * curvature.secants.curvature;
+  e.keep = curvature.debited.keep;
   e.num_queries = scorer.sourcePoints().cols() +
                   first.sourcePoints().cols() * (1 + curvature.num_evaluations);
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d step = curvature.secants.steps.col(k);
+    e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
+  }
+  turnFreeDirections(first,
+                     prior,
+                     contactsOf(cappedResiduals(of_first.scores)).misfit,
+                     options.num_threads,
+                     e);
+  finish(e);
   return e;
 }
 
@@ -334,23 +338,6 @@ double
 priorDistanceOfMean(const CalibratedEstimate& e)
 {
   return std::sqrt(e.mean.dot(e.prior.precision * e.mean));
-}
-
-/** The points that have a patch. */
-struct Contacts {
-  /** Of all points. */
-  double share;
-  /** Mean of their cappedResiduals(). */
-  double misfit;
-};
-
-Contacts
-contactsOf(const Eigen::VectorXd& capped_residuals)
-{
-  const auto has_patch = !capped_residuals.array().isNaN();
-  const auto count = static_cast<double>(has_patch.count());
-  return {count / static_cast<double>(capped_residuals.size()),
-          has_patch.select(capped_residuals.array(), 0.0).sum() / count};
 }
 
 /** Whether the body is as wide as the way to the mean. */
@@ -372,19 +359,6 @@ isFarFromMean(const CalibratedEstimate& e)
   return isMeanWithinReach(e) ||
          (distance > min_distance_of_far_mean &&
           contactsOf(cappedResiduals(e.scores)).share < max_overlap_before_far_move);
-}
-
-/** Precision that holds a pose along the free directions, to within \p tolerance [m].
- */
-Matrix6d
-holdOfFree(const CalibratedEstimate& e, double tolerance)
-{
-  const Matrix6d to_directions = e.directions.inverse();
-  Matrix6d hold = Matrix6d::Zero();
-  for (int k = 0; k < 6; ++k)
-    if (e.keep[k] == 0.0)
-      hold += to_directions.row(k).transpose() * to_directions.row(k);
-  return hold / (tolerance * tolerance);
 }
 
 /** The estimate about the mode nearest to the mean; in the \p last move, about that of

@@ -125,58 +125,6 @@ TEST(NoiseDebit, InformationIsTheSandwichAlongWhatIsKept)
   }
 }
 
-TEST(NoiseDebit, TurnsAFreeStepAlongWhatLeavesTheScoreAsItIs)
-{
-  // A curvature that knows nothing of one motion, and a step that is a little off it.
-  Random random(94, 0);
-  const Matrix6d V = randomSquare(random);
-  const Matrix6d to_V = V.inverse();
-  Vector6d known = Vector6d::Constant(100.0);
-  known[5] = 0.0;
-  Secants secants;
-  secants.curvature = to_V.transpose() * known.asDiagonal() * to_V;
-  secants.steps = V;
-  secants.steps.col(5) += 0.02 * V.leftCols<5>() * random.normal6().head<5>();
-  secants.differences = secants.curvature * secants.steps;
-  secants.noise.fill(Matrix6d::Zero());
-  secants.noise[5] = 1e9 * Matrix6d::Identity();
-  const DebitedInformation debited =
-      debitedInformation(secants, Matrix6d::Identity(), Matrix6d::Identity(), 0.0);
-  ASSERT_EQ(debited.keep[5], 0.0);
-  EXPECT_EQ(debited.steps.leftCols<5>(), secants.steps.leftCols<5>());
-  const Vector6d free = debited.steps.col(5);
-  EXPECT_LT((free - V.col(5)).norm(), 1e-9 * free.norm());
-  EXPECT_LT((debited.information * V.col(5)).norm(),
-            1e-9 * debited.information.norm() * V.col(5).norm());
-}
-
-TEST(NoiseDebit, DoesNotTurnAFreeStepByMoreThanAFifth)
-{
-  // The curvature along a held step is nearly zero, but not what it has to do with the
-  // others: only a turn by 1e6 steps would undo the free one's secant.
-  Secants secants;
-  secants.steps.setIdentity();
-  secants.curvature.setIdentity();
-  secants.curvature(0, 0) = 1e-6;
-  secants.curvature(0, 1) = secants.curvature(1, 0) = 100.0;
-  secants.curvature(1, 1) = 1e12;
-  secants.differences = secants.curvature;
-  secants.differences(0, 5) = 1.0;
-  const Matrix6d turned = alongTheSurface(
-      secants, {true, true, true, true, true, false}, Matrix6d::Identity());
-  EXPECT_EQ(turned, secants.steps);
-
-  secants.differences(0, 5) = 0.0;
-  secants.differences(2, 5) = 0.1;
-  Matrix6d expected = secants.steps;
-  expected(2, 5) = -0.1;
-  EXPECT_LT((alongTheSurface(
-                 secants, {true, true, true, true, true, false}, Matrix6d::Identity()) -
-             expected)
-                .norm(),
-            1e-12);
-}
-
 TEST(NoiseDebit, LeavesWhatThePriorKnowsBetterToThePrior)
 {
   Vector6d curvature = Vector6d::Ones();

@@ -167,8 +167,8 @@ TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)
   runs.back().name.sampler = "paper 0.001"; // only tried once
   std::ostringstream table;
   printTable(runs, table);
-  for (const char* line : {"can, sigma 0.0015 m, N 1000\n",
-                           "\n  paper 1e-05     3  0.2000  0.3000  "})
+  for (const char* line :
+       {"can, sigma 0.0015 m, N 1000\n", "\n  paper 1e-05     3  0.2000  0.3000  "})
     EXPECT_NE(table.str().find(line), std::string::npos) << table.str();
   EXPECT_EQ(table.str().find("paper 0.001"), std::string::npos);
 }

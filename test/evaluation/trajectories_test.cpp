@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/chi_squared.hpp>
+
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -97,11 +99,14 @@ protected:
 TEST(Trajectories, ACameraAlongABareWallIsRightAboutTheMotionsThatItSees)
 {
   // Most of what the camera sees is a wall and the floor. Two views of them overlap
-  // most where the camera has not moved, which must not count as evidence. Scans 20 and
-  // 30 have half of their points in common, and fits slide by a metre along the wall.
+  // most where the camera has not moved, which must not count as evidence. Scans that
+  // are ten apart have half of their points in common, and fits slide along the wall,
+  // by up to a metre. A free direction that turns on its way is wrong there.
   constexpr int num_runs = 6;
-  for (const auto& [target, source] : {std::pair(21, 24), std::pair(20, 30)}) {
+  for (const auto& [target, source] :
+       {std::pair(21, 24), std::pair(20, 30), std::pair(15, 25), std::pair(65, 75)}) {
     double sum = 0.0;
+    int num_used = 0;
     for (std::uint64_t seed = 1; seed <= num_runs; ++seed) {
       const Recording drive = makeDrive("room_camera", seed, 100);
       const EdgeName name{drive.name, seed, target, source, "calibrated", ""};
@@ -109,15 +114,19 @@ TEST(Trajectories, ACameraAlongABareWallIsRightAboutTheMotionsThatItSees)
                                          drive.read(std::size_t(source)),
                                          drive.read(std::size_t(target)),
                                          guessOf(drive, seed, target, source));
+      if (run.complaint.find("several_modes") != std::string::npos)
+        continue;
       ASSERT_EQ(run.complaint, "") << seed;
       const app::GraphEdge edge = graphEdgeOf(run);
       const Vector6d error =
           logSE3(Isometry3d(edge.T_target_source).inverse().matrix() *
                  drive.relativePose(std::size_t(target), std::size_t(source)).matrix());
       sum += error.dot(edge.covariance.ldlt().solve(error));
+      ++num_used;
     }
-    // 99.9 % quantile of chi-square with 36 degrees of freedom.
-    EXPECT_LT(sum, 67.985) << target << ' ' << source;
+    EXPECT_GE(num_used, num_runs - 1) << target << ' ' << source;
+    EXPECT_LT(sum, quantile(boost::math::chi_squared(6 * num_used), 0.999))
+        << target << ' ' << source;
   }
 }
 

@@ -23,8 +23,7 @@ namespace {
 constexpr double step_to_posterior_sd = 3.0;
 constexpr double max_step_to_prior_sd = 1.5;
 
-/** Longest steps: further away, points meet another side of the body, or its end.
- * [rad], and displacement in parts of the source's root mean square radius. */
+/** [rad], and displacement in parts of the source's root mean square radius. */
 constexpr double max_step_angle = 0.3, max_step_to_radius = 0.6;
 
 /** A step whose secant is below its noise is shortened by this factor, at most
@@ -76,17 +75,6 @@ struct Secant {
   Vector6d difference;
   Matrix6d noise;
 };
-
-/** Length of the longest step along \p axis, which is of unit displacement. */
-double
-longestStep(const Vector6d& axis, const SecantPlan& plan)
-{
-  const double angle = axis.tail<3>().norm();
-  return std::min(
-      {max_step_to_prior_sd / std::sqrt(axis.dot(plan.prior_precision * axis)),
-       max_step_to_radius * radiusOf(plan.displacement_metric),
-       angle > 0.0 ? max_step_angle / angle : std::numeric_limits<double>::infinity()});
-}
 
 /** The points that hold a direction, each with the weight of its Gauss-Newton
  * information along a step. */
@@ -258,7 +246,7 @@ lengthOf(const Vector6d& axis,
          double unit_change,
          const SecantPlan& plan)
 {
-  return std::min(longestStep(axis, plan),
+  return std::min(longestStep(axis, plan.prior_precision, plan.displacement_metric),
                   std::clamp(step_to_posterior_sd * standard_deviation,
                              least_change * unit_change,
                              most_change * unit_change));
@@ -362,6 +350,18 @@ measureDirection(int k,
 }
 
 } // namespace
+
+double
+longestStep(const Vector6d& axis,
+            const Matrix6d& prior_precision,
+            const Matrix6d& displacement_metric)
+{
+  const double angle = axis.tail<3>().norm();
+  return std::min(
+      {max_step_to_prior_sd / std::sqrt(axis.dot(prior_precision * axis)),
+       max_step_to_radius * radiusOf(displacement_metric),
+       angle > 0.0 ? max_step_angle / angle : std::numeric_limits<double>::infinity()});
+}
 
 Secants
 measureSecants(const SurfaceScorer& scorer,

@@ -20,8 +20,7 @@ struct SecantPlan {
   Matrix6d covariance;
   /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
   Matrix6d displacement_metric;
-  /** No step is longer than 1.5 prior standard deviations, 0.3 rad, or 0.6 of the
-   * source's root mean square radius. */
+  /** No step is longer than longestStep(). */
   Matrix6d prior_precision;
   /** Root mean squared displacement [m]. Steps are not shortened below a fifth of it,
    * or of half the step that changes the residuals by their scale, whichever is less.
@@ -56,6 +55,14 @@ struct Secants {
   int num_evaluations = 0;
 };
 
+/** \brief Length of the longest step along an axis of unit displacement: 1.5 prior
+ * standard deviations, 0.3 rad, or 0.6 of the source's root mean square radius [m].
+ * Further away, points meet another side of the body, or its end. */
+double
+longestStep(const Vector6d& axis,
+            const Matrix6d& prior_precision,
+            const Matrix6d& displacement_metric);
+
 /** \brief Measure the curvature about a mode.
  * \param[in] scorer of the source against the target's surface
  * \param[in] mode T_target_source
@@ -71,16 +78,6 @@ measureSecants(const SurfaceScorer& scorer,
                double tau,
                const SecantPlan& plan,
                const Secants& previous = Secants());
-
-/** \brief The steps, with those that are not \p held turned along the surface.
- *
- * A step that is not held may have a secant only because it is tilted a little towards
- * the held steps. This tilt is removed, unless it is longer than a fifth of the step
- * (both in prior standard deviations). */
-Matrix6d
-alongTheSurface(const Secants& secants,
-                const std::array<bool, 6>& held,
-                const Matrix6d& prior_precision);
 
 /** \brief Factor c such that the information of pure noise exceeds c tr(J^-1 N) with a
  * probability of 1 in 1000. tr(J^-1 N) is its expected value. The quantile is Wilson
@@ -98,11 +95,7 @@ struct DebitedInformation {
   Vector6d keep = Vector6d::Zero();
   /** info_k: information of the data along each step before the debit. */
   Vector6d raw = Vector6d::Zero();
-  /** V: the steps. Those that keep nothing are turned by alongTheSurface(): a wide
-   * prior lets the pose go far along them, and far along a slightly tilted axis the
-   * source has left the surface. */
-  Matrix6d steps = Matrix6d::Identity();
-  /** T = V diag(sqrt(keep)) V^-1. */
+  /** T = V diag(sqrt(keep)) V^-1, V the steps. */
   Matrix6d transfer = Matrix6d::Zero();
   /** Lambda = T^T H J^-1 H T. */
   Matrix6d information = Matrix6d::Zero();

@@ -3,22 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace bayesian_icp {
 
 namespace {
 
-using Axes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
 /** From this multiple of the noise threshold on, only the noise's mean is debited from
  * the information. */
 constexpr double full_to_threshold = 3.0;
-
-/** Longest turn of a step, as a part of its length, both in prior standard deviations.
- * A longer turn results from a curvature that is nearly zero along the held directions,
- * and the steps would be nearly dependent after it. */
-constexpr double max_turn = 0.2;
 
 /** Information to debit for a secant's noise of mean information \p noise. Nothing is
  * left of an information below the threshold. Far above it, the noise's mean is
@@ -32,36 +24,6 @@ noiseDebit(double information, double noise, double threshold)
 }
 
 } // namespace
-
-Matrix6d
-alongTheSurface(const Secants& secants,
-                const std::array<bool, 6>& held,
-                const Matrix6d& prior_precision)
-{
-  std::vector<int> firm, loose;
-  for (int k = 0; k < 6; ++k)
-    (held[static_cast<std::size_t>(k)] ? firm : loose).push_back(k);
-  Matrix6d steps = secants.steps;
-  if (firm.empty() || loose.empty())
-    return steps;
-  const Axes V = steps(Eigen::all, firm);
-  const Eigen::MatrixXd H = V.transpose() * secants.curvature * V;
-  // A product copies its factors, with a vector of indices in them if it is not mapped.
-  const Eigen::Map<const Eigen::VectorXi> columns(
-      loose.data(), static_cast<Eigen::Index>(loose.size()));
-  const Eigen::MatrixXd change =
-      V.transpose() * secants.differences(Eigen::all, columns);
-  const Axes turns = V * H.ldlt().solve(change);
-  const auto lengthOf = [&](const Vector6d& step) {
-    return std::sqrt(step.dot(prior_precision * step));
-  };
-  for (std::size_t i = 0; i < loose.size(); ++i) {
-    const Vector6d turn = turns.col(static_cast<Eigen::Index>(i));
-    if (lengthOf(turn) <= max_turn * lengthOf(steps.col(loose[i])))
-      steps.col(loose[i]) -= turn;
-  }
-  return steps;
-}
 
 double
 noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise)
@@ -89,7 +51,6 @@ debitedInformation(const Secants& secants,
   const Matrix6d HV = secants.curvature * secants.steps;
   DebitedInformation result;
   result.raw = (HV.transpose() * J.solve(HV)).diagonal();
-  std::array<bool, 6> held = {};
   for (int k = 0; k < 6; ++k) {
     const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
     const Vector6d step = secants.steps.col(k);
@@ -100,14 +61,12 @@ debitedInformation(const Secants& secants,
                                           noiseThreshold(score_covariance, noise))
                              : 0.0;
     const double kept = secants.trust[k] * (result.raw[k] - debit);
-    bool& is_held = held[static_cast<std::size_t>(k)];
-    is_held = kept > 0.0 &&
-              kept >= min_relative_information * step.dot(prior_precision * step);
+    const bool is_held = kept > 0.0 && kept >= min_relative_information *
+                                                   step.dot(prior_precision * step);
     result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
   }
-  result.steps = alongTheSurface(secants, held, prior_precision);
   result.transfer =
-      result.steps * result.keep.cwiseSqrt().asDiagonal() * result.steps.inverse();
+      secants.steps * result.keep.cwiseSqrt().asDiagonal() * secants.steps.inverse();
   const Matrix6d HT = secants.curvature * result.transfer;
   result.information = HT.transpose() * J.solve(HT);
   result.information =

@@ -1,0 +1,106 @@
+#include "calibrated/free_motions.h"
+
+#include "algebra/decompositions.h"
+#include "calibrated/curvature/curvature.h"
+#include "calibrated/modes/robust_mode.h"
+#include "threads/for_each_piece.h"
+
+#include <array>
+#include <cmath>
+
+namespace bayesian_icp {
+
+using Eigen::Isometry3d;
+
+namespace {
+
+/** Scale of Tukey's weight in units of the target's noise: as far off the surface as a
+ * tilted direction may lead. */
+constexpr double start_scale = 10.0;
+constexpr int max_steps = 10;
+
+/** In units of the target's noise: how exactly a fit stays where it is along the free
+ * directions, and when it has converged. */
+constexpr double hold_tolerance = 0.01, fit_tolerance = 0.03;
+
+/** Points miss their patches at an end by at most this many times as much as at the
+ * mode. Otherwise the way is shortened by this factor, down to this many times the
+ * target's noise: on a shorter way the noise of its ends would turn it. */
+constexpr double max_misfit = 1.2, shortening = 1.0 / 3.0, shortest = 3.0;
+
+/** Turn direction \p k by where fits end that start to both sides of the mode. \return
+ * whether they fit */
+bool
+turnDirection(int k,
+              double length,
+              const SurfaceScorer& scorer,
+              const Prior& prior,
+              double misfit,
+              int num_threads,
+              CalibratedEstimate& e)
+{
+  const double noise = scorer.model().medianSigma();
+  RobustFitOptions options;
+  options.start_scale = start_scale;
+  options.max_steps = max_steps;
+  options.tolerance = fit_tolerance * noise;
+  options.hold = holdOfFree(e, hold_tolerance * noise);
+  const Vector6d step = length * e.directions.col(k);
+  std::array<RobustFit, 2> ends;
+  forEachPiece(2, num_threads, [&](std::ptrdiff_t i) {
+    const Isometry3d start = movedBy(i == 0 ? step : Vector6d(-step), e.centre, e.mode);
+    ends[static_cast<std::size_t>(i)] = fitRobustly(scorer, prior, start, options);
+  });
+  for (const RobustFit& end : ends)
+    e.num_queries += scorer.sourcePoints().cols() * end.num_evaluations;
+  for (const RobustFit& end : ends)
+    if (!(contactsOf(end.residuals).misfit <= max_misfit * misfit))
+      return false;
+  const Vector6d way = twistBetween(e.mode, ends[0].pose, e.centre) -
+                       twistBetween(e.mode, ends[1].pose, e.centre);
+  e.directions.col(k) = way / std::sqrt(way.dot(e.displacement_metric * way));
+  return true;
+}
+
+} // namespace
+
+Contacts
+contactsOf(const Eigen::VectorXd& capped_residuals)
+{
+  const auto has_patch = !capped_residuals.array().isNaN();
+  const auto count = static_cast<double>(has_patch.count());
+  return {count / static_cast<double>(capped_residuals.size()),
+          has_patch.select(capped_residuals.array(), 0.0).sum() / count};
+}
+
+Matrix6d
+holdOfFree(const CalibratedEstimate& estimate, double tolerance)
+{
+  const Matrix6d to_directions = estimate.directions.inverse();
+  Matrix6d hold = Matrix6d::Zero();
+  for (int k = 0; k < 6; ++k)
+    if (estimate.keep[k] == 0.0)
+      hold += to_directions.row(k).transpose() * to_directions.row(k);
+  return hold / (tolerance * tolerance);
+}
+
+void
+turnFreeDirections(const SurfaceScorer& scorer,
+                   const Prior& prior,
+                   double misfit,
+                   int num_threads,
+                   CalibratedEstimate& estimate)
+{
+  for (int k = 0; k < 6; ++k) {
+    if (estimate.keep[k] > 0.0)
+      continue;
+    double length = longestStep(estimate.directions.col(k),
+                                estimate.prior.precision,
+                                estimate.displacement_metric);
+    while (length > shortest * scorer.model().medianSigma() &&
+           !turnDirection(k, length, scorer, prior, misfit, num_threads, estimate))
+      length *= shortening;
+  }
+}
+
+} // namespace bayesian_icp
