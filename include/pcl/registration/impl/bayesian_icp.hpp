@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace pcl {
 
@@ -21,6 +22,24 @@ smallerGate(double gate, double pcl_gate)
 {
   constexpr double no_gate = 1e18;
   return (std::abs(pcl_gate) < no_gate ? std::min(gate, std::abs(pcl_gate)) : gate);
+}
+
+/** Median of the points' largest |x|, |y|, |z| [m]; 0 if none is finite. As
+ * bayesian_icp::usualCoordinate(), without a copy of the cloud. */
+template <typename PointT>
+double
+usualCoordinate(const PointCloud<PointT>& cloud)
+{
+  std::vector<float> largest;
+  largest.reserve(cloud.size());
+  for (const auto& point : cloud)
+    if (isXYZFinite(point))
+      largest.push_back(point.getVector3fMap().cwiseAbs().maxCoeff());
+  if (largest.empty())
+    return (0.0);
+  const auto middle = largest.begin() + largest.size() / 2;
+  std::nth_element(largest.begin(), middle, largest.end());
+  return (static_cast<double>(*middle));
 }
 
 } // namespace bayesian_icp_detail
@@ -139,11 +158,10 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
     return;
   }
   estimate_ = estimateByPreset(source, bayesian_icp::poseOf(initial));
-  const auto usualCoordinate = [](const auto& cloud) {
-    return (bayesian_icp::usualCoordinate(bayesian_icp_detail::pointMatrix(cloud)));
-  };
-  bayesian_icp::doubtRounding(
-      std::max(usualCoordinate(*source), usualCoordinate(*target_)), options_, summary);
+  bayesian_icp::doubtRounding(std::max(bayesian_icp_detail::usualCoordinate(*source),
+                                       bayesian_icp_detail::usualCoordinate(*target_)),
+                              options_,
+                              summary);
   reportStatus();
 }
 
