@@ -28,8 +28,9 @@ constexpr double hold_tolerance = 0.01, fit_tolerance = 0.03;
  * target's noise: on a shorter way the noise of its ends would turn it. */
 constexpr double max_misfit = 1.2, shortening = 1.0 / 3.0, shortest = 3.0;
 
-/** Turn direction \p k by where fits end that start to both sides of the mode. \return
- * whether they fit */
+/** Let direction \p k lead from one end to the other of two fits, which start \p length
+ * to both sides of the mode. \return whether both ends fit; if not, nothing has changed
+ */
 bool
 turnDirection(int k,
               double length,
