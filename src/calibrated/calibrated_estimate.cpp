@@ -214,7 +214,7 @@ void
 finish(CalibratedEstimate& e)
 {
   const Eigen::LDLT<Matrix6d> J(e.score_covariance);
-  e.transfer = e.directions * e.keep.cwiseSqrt().asDiagonal() * e.directions.inverse();
+  e.transfer = transferOf(e.directions, e.keep);
   const Matrix6d HT = e.curvature * e.transfer;
   const Matrix6d weights = HT.transpose() * J.solve(Matrix6d::Identity());
   e.information = weights * HT;

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <tuple>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;
@@ -103,8 +104,11 @@ TEST(Trajectories, ACameraAlongABareWallIsRightAboutTheMotionsThatItSees)
   // are ten apart have half of their points in common, and fits slide along the wall,
   // by up to a metre. A free direction that turns on its way is wrong there.
   constexpr int num_runs = 6;
-  for (const auto& [target, source] :
-       {std::pair(21, 24), std::pair(20, 30), std::pair(15, 25), std::pair(65, 75)}) {
+  // Of scans 20 and 30, which have the fewest, one run may find two modes.
+  for (const auto& [target, source, least_used] : {std::tuple(21, 24, num_runs),
+                                                   std::tuple(20, 30, num_runs - 1),
+                                                   std::tuple(15, 25, num_runs),
+                                                   std::tuple(65, 75, num_runs)}) {
     double sum = 0.0;
     int num_used = 0;
     for (std::uint64_t seed = 1; seed <= num_runs; ++seed) {
@@ -124,7 +128,7 @@ TEST(Trajectories, ACameraAlongABareWallIsRightAboutTheMotionsThatItSees)
       sum += error.dot(edge.covariance.ldlt().solve(error));
       ++num_used;
     }
-    EXPECT_GE(num_used, num_runs - 1) << target << ' ' << source;
+    EXPECT_GE(num_used, least_used) << target << ' ' << source;
     EXPECT_LT(sum, quantile(boost::math::chi_squared(6 * num_used), 0.999))
         << target << ' ' << source;
   }

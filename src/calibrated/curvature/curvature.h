@@ -86,6 +86,11 @@ measureSecants(const SurfaceScorer& scorer,
 double
 noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise);
 
+/** \brief T = V diag(sqrt(keep)) V^-1.
+ * \param[in] directions V: each column is one */
+Matrix6d
+transferOf(const Matrix6d& directions, const Vector6d& keep);
+
 /** \brief What is left of the curvature after its noise is debited. */
 struct DebitedInformation {
   /** keep_k = trust_k max(0, 1 - d_k / info_k), one per step. The debit d_k is
@@ -95,7 +100,7 @@ struct DebitedInformation {
   Vector6d keep = Vector6d::Zero();
   /** info_k: information of the data along each step before the debit. */
   Vector6d raw = Vector6d::Zero();
-  /** T = V diag(sqrt(keep)) V^-1, V the steps. */
+  /** transferOf() the steps. */
   Matrix6d transfer = Matrix6d::Zero();
   /** Lambda = T^T H J^-1 H T. */
   Matrix6d information = Matrix6d::Zero();

@@ -41,6 +41,12 @@ noiseThreshold(const Matrix6d& score_covariance, const Matrix6d& noise)
   return root * root * root;
 }
 
+Matrix6d
+transferOf(const Matrix6d& directions, const Vector6d& keep)
+{
+  return directions * keep.cwiseSqrt().asDiagonal() * directions.inverse();
+}
+
 DebitedInformation
 debitedInformation(const Secants& secants,
                    const Matrix6d& score_covariance,
@@ -65,8 +71,7 @@ debitedInformation(const Secants& secants,
                                                    step.dot(prior_precision * step);
     result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
   }
-  result.transfer =
-      secants.steps * result.keep.cwiseSqrt().asDiagonal() * secants.steps.inverse();
+  result.transfer = transferOf(secants.steps, result.keep);
   const Matrix6d HT = secants.curvature * result.transfer;
   result.information = HT.transpose() * J.solve(HT);
   result.information =
