@@ -182,7 +182,7 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
       return target.parts().surface(num_threads);
     };
     return estimateCalibratedPosterior(
-        source_points, surface, initial_pose, options, progress);
+        source_points, target.points(), surface, initial_pose, options, progress);
   }
   const std::string complaint = options.validate();
   if (!complaint.empty())

@@ -131,8 +131,8 @@ visitCalibrated(SettingsT& settings, Visitor& visit)
   auto& calibrated = settings.options.calibrated;
   visitLengths(calibrated, visit);
   visit({"calibrated", "max_source_points", "calibrated-points", "N",
-         "Largest number of source points. Of a larger source, this many points are "
-         "used that cover it evenly."}, calibrated.max_source_points);
+         "Largest number of points of each cloud. Of a larger cloud, this many points "
+         "are used that cover it evenly."}, calibrated.max_source_points);
   visit({"calibrated", "num_mode_points", "mode-points", "N",
          "Number of these points that are used to follow the starts to their modes."},
         calibrated.num_mode_points);

@@ -59,10 +59,7 @@ resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
   result.centre = estimate.centre;
   result.shape = {estimate.degrees_of_freedom,
                   static_cast<int>((estimate.keep.array() > 0.0).count())};
-  result.notes =
-      notesOf(dataReportOf(estimate,
-                           static_cast<std::size_t>(scorer.sourcePoints().cols()),
-                           scorer.model()));
+  result.notes = notesOf(dataReportOf(estimate, scorer.model()));
   result.num_queries = estimate.num_queries;
   return result;
 }
@@ -71,10 +68,12 @@ resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
 struct Registration {
   explicit Registration(const CoverageCase& problem)
   : model(problem.target, SurfaceModelOptions(), 1)
-  , scorer(
-        evenSource(
-            problem.source, model, CalibratedOptions().max_source_points, problem.seed),
-        model)
+  , scorer(scorerOf(problem.source,
+                    problem.target,
+                    model,
+                    CalibratedOptions().max_source_points,
+                    problem.seed,
+                    1))
   , prior(priorOf(problem))
   {}
 

@@ -301,10 +301,10 @@ struct ExactOptions {
 
 /** \brief Options of preset `calibrated`. It finds scale, steps and starts itself. */
 struct CalibratedOptions {
-  /** Largest number of source points that are used; of a larger source, points that
-   * cover it evenly: this many, but beyond 2000 no more than 40 % of it, or of the
-   * target's points. Starts and curvature use 2000 of them, so that 4000 take an
-   * eighth more time than 2000. At least min_calibrated_points. */
+  /** Largest number of source points that are used, and of target points, which are
+   * compared with the source's surface. Of a larger cloud, points that cover it evenly:
+   * this many, but beyond 2000 no more than 40 % of it, or of the other cloud's points.
+   * Starts and curvature use 2000 points. At least min_calibrated_points. */
   int max_source_points = 4000;
   /** Number of these points that are used to follow the starts to their modes. At least
    * min_calibrated_points; if it exceeds the number of points, all are used. */

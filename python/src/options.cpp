@@ -177,7 +177,7 @@ bindOptions(py::module_& module)
       module, "CalibratedOptions", "Options of preset calibrated.")
       .add("max_source_points",
            &CalibratedOptions::max_source_points,
-           "Largest number of source points that are used, at least 30.")
+           "Largest number of points of each cloud that are used, at least 30.")
       .add("num_mode_points",
            &CalibratedOptions::num_mode_points,
            "Of these, the number used to follow the starts to their modes.")

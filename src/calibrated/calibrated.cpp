@@ -40,11 +40,12 @@ isCancelled(const ProgressCallback& progress)
 
 /** Why there is nothing to draw from; empty if there is. */
 std::string
-complaintAbout(const CalibratedEstimate& estimate, Eigen::Index num_source_points)
+complaintAbout(const CalibratedEstimate& estimate)
 {
-  if (estimate.scores.num_active < min_calibrated_points)
-    return "only " + std::to_string(estimate.scores.num_active) + " of " +
-           std::to_string(num_source_points) +
+  const SurfaceScores& scores = estimate.scores;
+  if (scores.num_active_of_source < min_calibrated_points)
+    return "only " + std::to_string(scores.num_active_of_source) + " of " +
+           std::to_string(scores.num_source_points) +
            " source points lie on a usable surface of the target at the best pose";
   if (!estimate.mode.matrix().allFinite() || !estimate.covariance.allFinite() ||
       !estimate.mean.allFinite())
@@ -71,7 +72,6 @@ estimateAndDraw(const SurfaceScorer& scorer,
                 const Options& options,
                 const ProgressCallback& progress)
 {
-  const Eigen::Index num_points = scorer.sourcePoints().cols();
   ModeSearchOptions search;
   search.seed = options.chains.seed;
   search.estimate.num_mode_points = options.calibrated.num_mode_points;
@@ -79,7 +79,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
   // 3 to 7, in estimateCalibrated() for each mode.
   const std::vector<CalibratedMode> modes = calibratedModes(scorer, prior, search);
   const CalibratedEstimate& heaviest = modes.front().estimate;
-  const std::string complaint = complaintAbout(heaviest, num_points);
+  const std::string complaint = complaintAbout(heaviest);
   if (!complaint.empty())
     return failure(Status::TooFewCorrespondences, complaint);
   if (isCancelled(progress))
@@ -91,8 +91,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
   // 9: report.
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";
-  result.summary.data =
-      dataReportOf(heaviest, static_cast<std::size_t>(num_points), scorer.model());
+  result.summary.data = dataReportOf(heaviest, scorer.model());
   result.summary.message += whatThePriorHolds(result.summary.data.directions);
   addDoubts(describeFlags(result.summary.data), result.summary);
   return result;
@@ -103,6 +102,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
 PosteriorEstimate
 estimateCalibratedPosterior(
     const Eigen::Matrix3Xd& source_points,
+    const Eigen::Matrix3Xd& target_points,
     const std::function<const PreparedSurface&()>& target_surface,
     const Vector6d& initial_pose,
     const Options& options,
@@ -117,12 +117,13 @@ estimateCalibratedPosterior(
   const PreparedSurface& surface = target_surface();
   if (!surface.complaint.empty())
     return failure(surface.status, surface.complaint);
-  // 2: what source points say.
-  const SurfaceScorer scorer(evenSource(source_points,
+  // 2: what the points of both clouds say.
+  const SurfaceScorer scorer = scorerOf(source_points,
+                                        target_points,
                                         surface.model,
                                         options.calibrated.max_source_points,
-                                        options.chains.seed),
-                             surface.model);
+                                        options.chains.seed,
+                                        options.chains.num_threads);
   const Prior prior = priorOf(options, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }

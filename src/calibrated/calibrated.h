@@ -17,6 +17,7 @@ namespace bayesian_icp {
 PosteriorEstimate
 estimateCalibratedPosterior(
     const Eigen::Matrix3Xd& source_points,
+    const Eigen::Matrix3Xd& target_points,
     const std::function<const PreparedSurface&()>& target_surface,
     const Vector6d& initial_pose,
     const Options& options,

@@ -6,13 +6,16 @@
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
+#include "calibrated/surface/prepared_surface.h"
 #include "geometry/principal_axes.h"
+#include "search/finite_columns.h"
 #include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -20,6 +23,7 @@ namespace bayesian_icp {
 
 using Eigen::Index;
 using Eigen::Isometry3d;
+using Eigen::Matrix3Xd;
 
 namespace {
 
@@ -48,8 +52,9 @@ constexpr double points_to_prior = 0.2;
 constexpr double min_step_to_noise = 0.5;
 
 /** Directions with less information, in units of the prior's, are held by the prior
- * only. */
-constexpr double smallest_information_share = 0.02;
+ * only: it would be the noise that is left of a free motion, with a direction that is
+ * not turned to follow the surface. */
+constexpr double smallest_information_share = 0.2;
 
 /** Along a free motion the score is as unknown as the axis is. Its variance grows with
  * the square of the motion, up to this number of squared steps: then new patches are
@@ -100,7 +105,7 @@ followStarts(const SurfaceScorer& scorer,
              const Isometry3d* start)
 {
   const SurfaceScorer subset = scorer.ofFirst(options.num_mode_points);
-  const Index num_points = subset.sourcePoints().cols();
+  const Index num_points = subset.numPoints();
   RobustFitOptions fit;
   fit.tolerance = start_tolerance * scorer.model().medianSigma();
   Ends ends;
@@ -147,7 +152,7 @@ followEnds(const SurfaceScorer& scorer, const Prior& prior, Ends& ends)
 {
   const auto follow = [&](RobustFit& end) {
     end = fitOnAllPoints(scorer, prior, end.pose);
-    ends.num_queries += scorer.sourcePoints().cols() * end.num_evaluations;
+    ends.num_queries += scorer.numPoints() * end.num_evaluations;
   };
   const auto putBetterFirst = [&ends] {
     if (relativeCost(ends.other, ends.best) < 1.0)
@@ -263,7 +268,7 @@ scoreCovarianceAt(const CalibratedEstimate& e,
                   const SurfaceScorer& scorer,
                   int num_threads)
 {
-  return scoreCovariance(activeScores(e.scores, scorer.sourcePoints()),
+  return scoreCovariance(activeScores(e.scores, scorer.pointsAt(e.mode)),
                          e.residual_scale * e.residual_scale * e.prior.precision,
                          num_threads);
 }
@@ -305,7 +310,7 @@ estimateAt(const SurfaceScorer& scorer,
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
   // 5: H; 6: what noise explains of it, and what is free; 7: mean and covariance.
-  const SurfaceScorer first = scorer.ofFirst(options.num_curvature_points);
+  const SurfaceScorer first = scorer.ofFirstOfBoth(options.num_curvature_points);
   CalibratedEstimate of_first = atMode(first, prior, mode);
   const ScoreCovariance J_first =
       scoreCovarianceAt(of_first, first, options.num_threads);
@@ -318,8 +323,8 @@ estimateAt(const SurfaceScorer& scorer,
                          (of_first.score_covariance - J_first.covariance);
   e.curvature = num_ratio * curvature.secants.curvature;
   e.keep = curvature.debited.keep;
-  e.num_queries = scorer.sourcePoints().cols() +
-                  first.sourcePoints().cols() * (1 + curvature.num_evaluations);
+  e.num_queries =
+      scorer.numPoints() + first.numPoints() * (1 + curvature.num_evaluations);
   for (int k = 0; k < 6; ++k) {
     const Vector6d step = curvature.secants.steps.col(k);
     e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
@@ -377,7 +382,7 @@ moveToMean(const SurfaceScorer& scorer,
                      prior,
                      movedBy(e.mean, e.centre, e.mode),
                      last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
-  e.num_queries += scorer.sourcePoints().cols() * mode.num_evaluations;
+  e.num_queries += scorer.numPoints() * mode.num_evaluations;
   if (!isMeanWithinReach(e) &&
       !(contactsOf(mode.residuals).misfit <
         max_misfit_after_far_move * contactsOf(cappedResiduals(e.scores)).misfit))
@@ -395,8 +400,8 @@ moveToMean(const SurfaceScorer& scorer,
 
 } // namespace
 
-Eigen::Matrix3Xd
-evenSource(const Eigen::Matrix3Xd& points,
+Matrix3Xd
+evenPoints(const Matrix3Xd& points,
            const SurfaceModel& model,
            Index max_points,
            std::uint64_t seed)
@@ -410,20 +415,41 @@ evenSource(const Eigen::Matrix3Xd& points,
   const Eigen::Matrix3Xf centred = (points.colwise() - centroid).cast<float>();
   Random random(seed, order_stream);
   std::vector<Index> columns =
-      evenChoice(centred, std::min(max_points, num_first), ChoiceStream::Source);
+      evenChoice(centred, std::min(max_points, num_first), ChoiceStream::Points);
   shuffle(columns, random);
   std::vector<bool> is_chosen(static_cast<std::size_t>(points.cols()));
   for (const Index column : columns)
     is_chosen[static_cast<std::size_t>(column)] = true;
   std::vector<Index> others;
   if (max_points > num_first)
-    others = evenChoice(centred, max_points, ChoiceStream::Source);
+    others = evenChoice(centred, max_points, ChoiceStream::Points);
   shuffle(others, random);
   for (const Index column : others)
     if (!is_chosen[static_cast<std::size_t>(column)] &&
         static_cast<Index>(columns.size()) < max_points)
       columns.push_back(column);
   return points(Eigen::all, columns);
+}
+
+SurfaceScorer
+scorerOf(const Matrix3Xd& source_points,
+         const Matrix3Xd& target_points,
+         const SurfaceModel& target,
+         Index max_points,
+         std::uint64_t seed,
+         int num_threads)
+{
+  SurfaceScorer scorer(evenPoints(source_points, target, max_points, seed), target);
+  const auto source = std::make_shared<const PreparedSurface>(
+      prepareSurface(source_points, num_threads));
+  if (source->complaint.empty())
+    scorer.addTargetPoints(
+        evenPoints(target_points(Eigen::all, finiteColumns(target_points)),
+                   source->model,
+                   max_points,
+                   seed),
+        {source, &source->model});
+  return scorer;
 }
 
 CalibratedEstimate
@@ -437,8 +463,7 @@ estimateCalibrated(const SurfaceScorer& scorer,
   followEnds(scorer.ofFirst(options.num_curvature_points), prior, ends);
   const RobustFit mode = fitOnAllPoints(scorer, prior, ends.best.pose);
   CalibratedEstimate e = estimateAt(scorer, prior, options, mode);
-  e.num_queries +=
-      ends.num_queries + scorer.sourcePoints().cols() * mode.num_evaluations;
+  e.num_queries += ends.num_queries + scorer.numPoints() * mode.num_evaluations;
   for (int move = 0; move < max_moves && isFarFromMean(e); ++move)
     if (!moveToMean(scorer, prior, options, move + 1 == max_moves, e))
       break;

@@ -66,8 +66,9 @@ struct CalibratedEstimate {
 struct EstimateOptions {
   /** Source points on which the starts are followed. */
   int num_mode_points = 500;
-  /** Source points with which the ends of the starts are compared, and the curvature is
-   * measured. The score and its covariance are those of all points. */
+  /** Source points with which the ends of the starts are compared, and points of both
+   * clouds with which the curvature is measured. The score and its covariance are those
+   * of all points. */
   int num_curvature_points = 2000;
   /** Rounds of curvature. */
   int num_rounds = 3;
@@ -75,24 +76,37 @@ struct EstimateOptions {
   int num_threads = 1;
 };
 
-/** \brief The source points that the estimate uses. They cover the source evenly: near
- * the sensor most points repeat each other, but the far points hold rotations. So do
- * the first EstimateOptions::num_curvature_points by themselves.
- * \param[in] points 3 x n, finite [m]
- * \param[in] model of the target
- * \param[in] max_points how many, at most. More than num_curvature_points are no more
- *            than 40 % of the points and 0.4 per patch.
- * \param[in] seed of their order. The order of the first is random, so that the search
- *            of the mode, which uses the first of these, gets a random choice. */
+/** \brief The points of a cloud that the estimate uses. They cover the cloud evenly:
+ * near the sensor most points repeat each other, but the far points hold rotations. So
+ * do the first EstimateOptions::num_curvature_points by themselves. \param[in] points 3
+ * x n, finite [m] \param[in] model of the other cloud \param[in] max_points how many,
+ * at most. More than num_curvature_points are no more than 40 % of the points and 0.4
+ * per patch. \param[in] seed of their order. The order of the first is random, so that
+ * the search of the mode, which uses the first of these, gets a random choice. */
 Eigen::Matrix3Xd
-evenSource(const Eigen::Matrix3Xd& points,
+evenPoints(const Eigen::Matrix3Xd& points,
            const SurfaceModel& model,
            Eigen::Index max_points,
            std::uint64_t seed);
 
+/** \brief evenPoints() of each cloud against the surface of the other. Where the source
+ * has no usable surface, its points alone are compared with the target's. \param[in]
+ * source_points 3 x n, finite [m] \param[in] target_points 3 x m; those that are not
+ * finite are left out [m] \param[in] target surface of these; must outlive the scorer
+ * \param[in] max_points of each cloud
+ * \param[in] seed of their order
+ * \param[in] num_threads 0: as OpenMP would */
+SurfaceScorer
+scorerOf(const Eigen::Matrix3Xd& source_points,
+         const Eigen::Matrix3Xd& target_points,
+         const SurfaceModel& target,
+         Eigen::Index max_points,
+         std::uint64_t seed,
+         int num_threads);
+
 /** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
  * result from there) and estimate its covariance.
- * \param[in] scorer of the source against the target's surface
+ * \param[in] scorer of both clouds
  * \param[in] prior whose mean is the first start
  * \param[in] options how many points and rounds
  * \param[in] start of a single start in place of the two; may be null */

@@ -170,18 +170,16 @@ priorProbability(const CalibratedEstimate& estimate,
 } // namespace
 
 DataReport
-dataReportOf(const CalibratedEstimate& estimate,
-             std::size_t num_source_points,
-             const SurfaceModel& target)
+dataReportOf(const CalibratedEstimate& estimate, const SurfaceModel& target)
 {
   DataReport report;
   report.is_available = true;
   report.residual_scale = estimate.residual_scale;
   report.noise_scale = estimate.residual_scale * target.medianSigma();
   report.effective_patches =
-      num_smallest_clusters * estimate.kappa_48 / estimate.kappa_inf;
-  report.active_fraction = static_cast<double>(estimate.scores.num_active) /
-                           static_cast<double>(num_source_points);
+      num_smallest_clusters * std::max(1.0, estimate.kappa_48) / estimate.kappa_inf;
+  report.active_fraction = static_cast<double>(estimate.scores.num_active_of_source) /
+                           static_cast<double>(estimate.scores.num_source_points);
   report.correlation_factor = estimate.kappa_inf;
   report.degrees_of_freedom = estimate.degrees_of_freedom;
   report.other_cost_ratio = estimate.other_cost_ratio;

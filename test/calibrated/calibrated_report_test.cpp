@@ -40,7 +40,8 @@ diagonalEstimate()
   CalibratedEstimate estimate;
   estimate.centre = body_centre;
   estimate.residual_scale = 1.5;
-  estimate.scores.num_active = 90;
+  estimate.scores.num_active_of_source = 90;
+  estimate.scores.num_source_points = 100;
   estimate.keep << 1.0, 0.9, 0.4, 0.0, 1.0, 0.5;
   Vector6d relative_information;
   relative_information << 99.0, 24.0, 3.0, 0.0, 399.0, 8.0;
@@ -61,7 +62,7 @@ diagonalEstimate()
 
 TEST(Report, ClosedFormOfADiagonalEstimate)
 {
-  const DataReport report = dataReportOf(diagonalEstimate(), 100, target());
+  const DataReport report = dataReportOf(diagonalEstimate(), target());
   EXPECT_TRUE(report.is_available);
   EXPECT_DOUBLE_EQ(report.residual_scale, 1.5);
   EXPECT_DOUBLE_EQ(report.noise_scale, 1.5 * target().medianSigma());
@@ -109,7 +110,7 @@ TEST(Report, WhatHardlyNarrowsThePriorIsNotObserved)
     estimate.information(0, 0) = 4.0 * information[i];
     estimate.curvature(0, 0) = std::sqrt(4.0 * information[i]);
     estimate.covariance(0, 0) = 0.25 / (1.0 + information[i]);
-    const DataReport report = dataReportOf(estimate, 100, target());
+    const DataReport report = dataReportOf(estimate, target());
     const auto found = std::find_if(
         report.directions.begin(), report.directions.end(), [](const DataDirection& d) {
           return std::abs(d.twist[0]) > 0.999;
@@ -138,7 +139,7 @@ TEST(Report, DirectionsAreIndependentInPosteriorAndPrior)
   estimate.curvature = estimate.information;
   estimate.score_covariance = estimate.information + 1e-9 * Matrix6d::Identity();
   estimate.covariance = (estimate.information + estimate.prior.precision).inverse();
-  const DataReport report = dataReportOf(estimate, 100, target());
+  const DataReport report = dataReportOf(estimate, target());
   int num_free = 0;
   for (const DataDirection& a : report.directions) {
     EXPECT_NEAR(a.twist.dot(estimate.displacement_metric * a.twist), 1.0, 1e-10);
@@ -171,7 +172,7 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
   const auto tail = [](int degrees, double x) {
     return cdf(complement(boost::math::chi_squared(degrees), x));
   };
-  EXPECT_NEAR(dataReportOf(estimate, 100, target()).prior_probability,
+  EXPECT_NEAR(dataReportOf(estimate, target()).prior_probability,
               tail(5, squared_distance),
               1e-12);
   // Held by five, four, ... directions.
@@ -188,7 +189,7 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
         ++num_held;
         distance += std::pow(2.0 * (estimate.prior.deviation + estimate.mean)[i], 2);
       }
-    EXPECT_NEAR(dataReportOf(estimate, 100, target()).prior_probability,
+    EXPECT_NEAR(dataReportOf(estimate, target()).prior_probability,
                 num_held > 0 ? tail(num_held, distance) : 1.0,
                 1e-12)
         << k;
@@ -199,7 +200,7 @@ TEST(Report, StartsMayDifferFreelyWherePriorOnlyHolds)
 {
   CalibratedEstimate estimate = diagonalEstimate();
   estimate.other_end << 0.0, 0.0, 0.0, 50.0, 0.0, 0.0;
-  EXPECT_NEAR(dataReportOf(estimate, 100, target()).basin_distance, 0.0, 1e-6);
+  EXPECT_NEAR(dataReportOf(estimate, target()).basin_distance, 0.0, 1e-6);
 }
 
 /** An estimate without flags. */
@@ -220,7 +221,7 @@ flagsAfter(const Change& change)
 {
   CalibratedEstimate estimate = goodEstimate();
   change(estimate);
-  return dataReportOf(estimate, 100, target()).flags;
+  return dataReportOf(estimate, target()).flags;
 }
 
 TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
@@ -234,8 +235,8 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
                  e.other_end[0] = 1.0;
                  e.other_cost_ratio = max_other_cost_ratio + 0.01;
                }).any());
-  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active = 40; }).any());
-  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active = 39; }).low_support);
+  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active_of_source = 40; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active_of_source = 39; }).low_support);
   EXPECT_FALSE(flagsAfter([](E& e) { e.kappa_inf = 5.75; }).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.kappa_inf = 5.77; }).few_patches);
   // The prior alone holds one direction, which a disagreement may hide ...

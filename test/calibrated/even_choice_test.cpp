@@ -42,7 +42,7 @@ TEST(EvenChoice, CoversASheetEvenly)
 {
   const Matrix3Xf points = unevenSheet(100000);
   for (const Index count : {200, 2000, 4000}) {
-    const auto chosen = evenChoice(points, count, ChoiceStream::Target);
+    const auto chosen = evenChoice(points, count, ChoiceStream::Patches);
     const auto num_chosen = static_cast<double>(chosen.size());
     EXPECT_LE(num_chosen, static_cast<double>(count));
     EXPECT_GE(num_chosen, 0.97 * static_cast<double>(count));
@@ -58,20 +58,41 @@ TEST(EvenChoice, CoversASheetEvenly)
   }
 }
 
+TEST(EvenChoice, TakesTheTailsOfAWallsNoiseOnBothSides)
+{
+  // The wall is parallel to two axes, and its noise is about as wide as the cubes.
+  constexpr Index num_points = 100000, count = 4000;
+  Random random(72, 0);
+  for (const float noise : {0.004f, 0.006f, 0.008f, 0.01f, 0.012f}) {
+    Matrix3Xf points(3, num_points);
+    for (Index i = 0; i < num_points; ++i)
+      points.col(i) << static_cast<float>(random.uniform()),
+          static_cast<float>(random.uniform()),
+          noise * static_cast<float>(random.normal());
+    double sum = 0.0, sum_of_squares = 0.0;
+    for (const Index i : evenChoice(points, count, ChoiceStream::Points)) {
+      sum += points(2, i);
+      sum_of_squares += points(2, i) * points(2, i);
+    }
+    // The mean is 0 to within four of its standard deviations.
+    EXPECT_LT(std::abs(sum), 4.0 * std::sqrt(sum_of_squares)) << noise;
+  }
+}
+
 TEST(EvenChoice, ReturnsAllPointsOfASmallCloud)
 {
-  EXPECT_EQ(evenChoice(unevenSheet(50), 50, ChoiceStream::Source).size(), 50U);
+  EXPECT_EQ(evenChoice(unevenSheet(50), 50, ChoiceStream::Points).size(), 50U);
 }
 
 TEST(EvenChoice, NeedsNoExtent)
 {
   const Matrix3Xf one_place = Matrix3Xf::Constant(3, 100, 2.f);
-  const auto chosen = evenChoice(one_place, 10, ChoiceStream::Source);
+  const auto chosen = evenChoice(one_place, 10, ChoiceStream::Points);
   EXPECT_GE(chosen.size(), 1U);
   EXPECT_LE(chosen.size(), 10U);
   Matrix3Xf two_places = Matrix3Xf::Zero(3, 100);
   two_places.rightCols(50).setConstant(1e7f);
-  const auto of_two = evenChoice(two_places, 10, ChoiceStream::Source);
+  const auto of_two = evenChoice(two_places, 10, ChoiceStream::Points);
   EXPECT_LT(of_two.front(), 50);
   EXPECT_GE(of_two.back(), 50);
 }
@@ -79,9 +100,9 @@ TEST(EvenChoice, NeedsNoExtent)
 TEST(EvenChoice, OfOneStreamHasPointsInCommonWithAnotherCount)
 {
   const Matrix3Xf points = unevenSheet(100000);
-  const auto few = evenChoice(points, 2000, ChoiceStream::Source);
-  const auto many = evenChoice(points, 4000, ChoiceStream::Source);
-  const auto others = evenChoice(points, 4000, ChoiceStream::Target);
+  const auto few = evenChoice(points, 2000, ChoiceStream::Points);
+  const auto many = evenChoice(points, 4000, ChoiceStream::Points);
+  const auto others = evenChoice(points, 4000, ChoiceStream::Patches);
   // A coarse cube's first point is that of its fine cube, too, where it meets few.
   EXPECT_GT(numInCommon(few, many), 1000);
   // By chance: 25 points to choose from in a fine cube.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 namespace bayesian_icp {
 namespace {
@@ -123,6 +124,66 @@ TEST(SurfaceScore, IsTheGradientOfTukeysEnergy)
   }
   const Vector6d sum = scores.scores.rowwise().sum();
   EXPECT_LT((scores.total - sum).norm(), 1e-12 * scores.scores.norm());
+}
+
+TEST(SurfaceScore, OfATargetPointIsTheGradientToo)
+{
+  // The plane is the source here, and the points about it are the target's.
+  const PlaneCase c;
+  const Isometry3d T_target_source = c.pose.inverse();
+  const Vector3d centre = T_target_source * c.centre();
+  const Matrix3Xd source_point = Vector3d(50.0, 0.0, 0.0);
+  SurfaceScorer scorer(source_point, c.model);
+  scorer.addTargetPoints(c.source, {std::shared_ptr<void>(), &c.model});
+  PatchHints hints;
+  SurfaceScores scores;
+  scorer.evaluate(T_target_source, centre, c.tau, hints, scores);
+
+  ASSERT_EQ(scores.residuals.size(), 1 + c.source.cols());
+  EXPECT_EQ(scores.num_source_points, 1);
+  EXPECT_EQ(scores.num_active_of_source, 0);
+  EXPECT_EQ(cappedResiduals(scores).size(), 1);
+  // All as if the points were the source's.
+  const SurfaceScores other_way = c.scoresAt(c.pose, c.tau);
+  EXPECT_EQ(scores.num_active, other_way.num_active);
+  EXPECT_LT((scores.residuals.tail(c.source.cols()) - other_way.residuals).norm(),
+            1e-7);
+  const double sigma = c.model.medianSigma();
+  for (Index i = 0; i < c.source.cols(); ++i) {
+    const auto energy = [&](const Vector6d& xi) {
+      const Isometry3d moved = movedBy(xi, centre, T_target_source);
+      return tukeyEnergy((moved.inverse() * c.source.col(i)).z() / sigma, c.tau);
+    };
+    const bool is_inside = i != 7 && i != 33;
+    const Vector6d expected =
+        is_inside ? test::centralDifferences(energy, Vector6d::Zero(), c.step())
+                  : Vector6d::Zero();
+    // See IsTheGradientOfTukeysEnergy.
+    EXPECT_LT((scores.scores.col(1 + i) - expected).norm(), 2e-4 / sigma) << i;
+  }
+  Vector6d total;
+  scorer.batchScore(T_target_source, centre, c.tau, {0, 3, 12}, hints, total);
+  EXPECT_LT((total - scores.scores.col(3) - scores.scores.col(12)).norm(),
+            1e-12 * scores.scores.norm());
+}
+
+TEST(SurfaceScore, FirstPointsAreHalfOfEachCloud)
+{
+  Random random(65, 0);
+  const SurfaceModel model(test::randomPoints(random, 10));
+  const Matrix3Xd source = test::randomPoints(random, 30),
+                  target = test::randomPoints(random, 20);
+  SurfaceScorer scorer(source, model);
+  EXPECT_EQ(scorer.ofFirstOfBoth(10).sourcePoints(), source.leftCols(10));
+  scorer.addTargetPoints(target, {std::shared_ptr<void>(), &model});
+  const Isometry3d pose = isometryOf(random.normal6());
+  const auto points = [&](const SurfaceScorer& of) { return of.pointsAt(pose); };
+  Matrix3Xd expected(3, 10);
+  expected << source.leftCols(5), pose.inverse() * target.leftCols(5);
+  EXPECT_EQ(points(scorer.ofFirstOfBoth(10)), expected);
+  EXPECT_EQ(scorer.ofFirstOfBoth(10).centroid(), scorer.centroid());
+  EXPECT_EQ(points(scorer.ofFirst(10)), source.leftCols(10));
+  EXPECT_EQ(points(scorer.ofFirstOfBoth(1000)), points(scorer));
 }
 
 TEST(SurfaceScore, InformationIsThatOfWeightedResiduals)
@@ -283,6 +344,7 @@ TEST(SurfaceScore, ScaleAndCostOfResiduals)
   scores.residuals.resize(6);
   scores.residuals << 1.0, -2.0, 0.5, 100.0, -7.0, 0.1;
   scores.has_patch = {1, 1, 1, 0, 1, 1};
+  scores.num_source_points = 6;
   // Magnitudes 0.1, 0.5, 1, 2, 7; the fourth point has no patch and costs 5.
   EXPECT_DOUBLE_EQ(residualScale(scores), 1.4826);
   EXPECT_DOUBLE_EQ(meanCappedResidual(scores), (1.0 + 2.0 + 0.5 + 5.0 + 5.0 + 0.1) / 6);

@@ -8,6 +8,7 @@ from cli_tool import call, strict_json
 from faults import EVALUATE, TRACK, TRACKED
 from trajectories import (
     CHI2_HIGH,
+    STUDENT_HIGH,
     TrajectoryTest,
     composed,
     g2o_error,
@@ -45,7 +46,7 @@ class TrackOfSimulatedScans(TrackTest):
         self.assertEqual(sorted(vertices), [0, 1, 2, 3, 4])
         for (i, j), (pose, information) in edges.items():
             true = composed(from_world[i], inverted(from_world[j]))
-            self.assertLess(quadratic(g2o_error(pose, true), information), CHI2_HIGH[6], (i, j))
+            self.assertLess(quadratic(g2o_error(pose, true), information), STUDENT_HIGH, (i, j))
         for k, line in enumerate(self.lines(), 1):
             self.assertEqual(line["scan"], k)
             # Rotations of right_se3 are whole angles, those of g2o half ones.

@@ -13,6 +13,9 @@ FOUR_EYES = ["0,-1.2,0.7", "0.06,-1.19,0.72", "0.12,-1.17,0.71", "0.18,-1.14,0.7
 # 99.9 % and 0.1 % quantiles of chi-square, by degrees of freedom (R 4.2, qchisq).
 CHI2_HIGH = {1: 10.828, 6: 22.458, 18: 42.312}
 CHI2_LOW = {18: 4.905}
+# The posterior of one registration is Student's t with 20 degrees of freedom, of the covariance
+# that it states. 99.9 % of its squared errors of six: 6 18 / 20 qf(0.999, 6, 20).
+STUDENT_HIGH = 32.500
 IDENTITY = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 
 

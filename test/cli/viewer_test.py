@@ -146,8 +146,8 @@ class Pictures(ScreenTest):
         self.assertGreater(draws.count_hues(45, 65), 2000)
         one = self.saved("mug", "--show", "draws", "--draws", "1", "--magnify", "1")
         self.assertNotEqual(one.pixels, draws.pixels)
-        small = self.saved("mug", "--show", "position", "--magnify", "20")
-        large = self.saved("mug", "--show", "position", "--magnify", "60")
+        small = self.saved("mug", "--show", "position", "--magnify", "40")
+        large = self.saved("mug", "--show", "position", "--magnify", "120")
         self.assertGreater(large.count_hues(300, 340), 2 * small.count_hues(300, 340))
         cones = self.saved("mug", "--show", "rotation")
         for lowest, highest in ((0, 10), (110, 130), (230, 250)):

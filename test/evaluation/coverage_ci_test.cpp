@@ -61,6 +61,8 @@ runControlled(const CoverageRunName& name)
   calibrated.mean = movedBy(e.mean, e.centre, e.mode);
   calibrated.covariance = e.covariance;
   calibrated.centre = e.centre;
+  calibrated.shape = {e.degrees_of_freedom,
+                      static_cast<int>((e.keep.array() > 0.0).count())};
   const MethodResult independent =
       posteriorOf(weight * e.scores.total, weight * e.scores.information, e);
   return {{name, coverageScoreOf(problem, calibrated)},

@@ -104,6 +104,7 @@ public:
   , centre_(mode * scorer.centroid())
   , at_mode_(at_mode)
   , tau_(tau)
+  , points_(scorer.pointsAt(mode))
   {
     scorer_.evaluate(
         mode_, centre_, std::numeric_limits<double>::infinity(), hints_, linear_);
@@ -133,14 +134,14 @@ public:
   {
     double sum = 0.0, sum_of_squares = 0.0, motions = 0.0, cosines = 0.0;
     double on_curves = 0.0;
-    for (Index i = 0; i < scorer_.sourcePoints().cols(); ++i) {
+    for (Index i = 0; i < points_.cols(); ++i) {
       const auto index = static_cast<std::size_t>(i);
       if (!at_mode_.active[index])
         continue;
       const double rate = at_mode_.jacobians.col(i).dot(step), weight = rate * rate;
-      const Eigen::Vector3d arm = mode_ * scorer_.sourcePoints().col(i) - centre_;
+      const Eigen::Vector3d arm = mode_ * points_.col(i) - centre_;
       const double motion = (step.head<3>() + step.tail<3>().cross(arm)).norm();
-      const SurfacePatch& patch = scorer_.model().patches()[patches_[index]];
+      const SurfacePatch& patch = scorer_.patchOf(i, patches_[index]);
       sum += weight;
       sum_of_squares += weight * weight;
       motions += weight * motion / patch.radius;
@@ -185,7 +186,7 @@ private:
   PointScores
   unpredictedScores(const Vector6d& step) const
   {
-    const Index num_points = scorer_.sourcePoints().cols();
+    const Index num_points = points_.cols();
     PointScores points;
     points.scores.resize(6, num_points);
     points.positions.resize(3, num_points);
@@ -200,7 +201,7 @@ private:
       points.scores.col(count) =
           0.5 * (forward_.scores.col(i) - backward_.scores.col(i) -
                  (psi(u + change) - psi(u - change)) * rates);
-      points.positions.col(count) = scorer_.sourcePoints().col(i);
+      points.positions.col(count) = points_.col(i);
       ++count;
     }
     points.scores.conservativeResize(6, count);
@@ -213,6 +214,8 @@ private:
   Eigen::Vector3d centre_;
   const SurfaceScores& at_mode_;
   double tau_;
+  /** Of both clouds, source frame. */
+  Eigen::Matrix3Xd points_;
   PatchHints hints_;
   /** Of the points at the mode. */
   PatchHints patches_;

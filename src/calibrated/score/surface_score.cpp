@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -19,61 +20,37 @@ constexpr double residual_cap = 5.0;
 /** Smallest residualScale(): below, the target's noise is overestimated. */
 constexpr double min_residual_scale = 0.3;
 
-/** J^T n: derivative of a distance along n with respect to a twist. */
-Vector6d
-distanceRates(const Vector3d& normal, const Vector3d& arm)
-{
-  Vector6d rates;
-  rates << normal, arm.cross(normal);
-  return rates;
-}
-
-/** The distance of one moved point to the surface. */
+/** The distance of one point to the surface of the other cloud. */
 struct Contact {
   bool has_patch = false;
   /** u. */
   double residual = 0.0;
-  /** J^T n / sigma. */
-  Vector6d rates = Vector6d::Zero();
+  /** n / sigma, in the model's frame. */
+  Vector3d normal = Vector3d::Zero();
 };
 
-/** Everything about a pose that is the same for all points. */
-struct Placement {
-  Placement(const SurfaceModel& surface,
-            const Isometry3d& T_target_source,
-            const Vector3d& centre)
-  : model(surface)
-  , T_model_source(Eigen::Translation3d(-surface.origin()) * T_target_source)
-  , centre_in_model(centre - surface.origin())
-  {}
-
-  /** \param[in,out] hint nearest patch of the last time, and of this one */
-  Contact
-  contactOf(const Vector3d& source_point, std::uint32_t& hint) const
-  {
-    Contact contact;
-    const Vector3d point = T_model_source * source_point;
-    const auto neighbor = model.tree().nearest(
-        point.cast<float>(), std::numeric_limits<float>::infinity(), hint);
-    hint = neighbor.index;
-    if (neighbor.index == KdTree::none)
-      return contact;
-    const SurfacePatch& patch = model.patches()[neighbor.index];
-    if (!patch.isUsable())
-      return contact;
-    const SurfaceOffset offset = offsetFrom(patch, point);
-    if (offset.in_plane > SurfaceScorer::max_in_plane * patch.radius)
-      return contact;
-    contact.has_patch = true;
-    contact.residual = offset.distance / patch.sigma;
-    contact.rates = distanceRates(offset.normal, point - centre_in_model) / patch.sigma;
+/** \param[in] point in the model's frame
+ * \param[in,out] hint nearest patch of the last time, and of this one */
+Contact
+contactWith(const SurfaceModel& model, const Vector3d& point, std::uint32_t& hint)
+{
+  Contact contact;
+  const auto neighbor = model.tree().nearest(
+      point.cast<float>(), std::numeric_limits<float>::infinity(), hint);
+  hint = neighbor.index;
+  if (neighbor.index == KdTree::none)
     return contact;
-  }
-
-  const SurfaceModel& model;
-  Isometry3d T_model_source;
-  Vector3d centre_in_model;
-};
+  const SurfacePatch& patch = model.patches()[neighbor.index];
+  if (!patch.isUsable())
+    return contact;
+  const SurfaceOffset offset = offsetFrom(patch, point);
+  if (offset.in_plane > SurfaceScorer::max_in_plane * patch.radius)
+    return contact;
+  contact.has_patch = true;
+  contact.residual = offset.distance / patch.sigma;
+  contact.normal = offset.normal / patch.sigma;
+  return contact;
+}
 
 void
 clear(SurfaceScores& scores, Eigen::Index num_points)
@@ -86,9 +63,59 @@ clear(SurfaceScores& scores, Eigen::Index num_points)
   scores.total.setZero();
   scores.information.setZero();
   scores.num_active = 0;
+  scores.num_active_of_source = 0;
 }
 
 } // namespace
+
+/** Everything about a pose that is the same for all points. */
+class SurfaceScorer::Placement {
+public:
+  Placement(const SurfaceScorer& scorer,
+            const Isometry3d& T_target_source,
+            const Vector3d& centre)
+  : scorer_(scorer)
+  , T_model_source_(Eigen::Translation3d(-scorer.model_.origin()) * T_target_source)
+  , centre_in_model_(centre - scorer.model_.origin())
+  , centre_(centre)
+  , R_(T_target_source.linear())
+  {
+    if (scorer.source_model_)
+      T_source_model_target_ = Eigen::Translation3d(-scorer.source_model_->origin()) *
+                               T_target_source.inverse();
+  }
+
+  /** \param[in] index of the point, in the order of SurfaceScores
+   * \param[in,out] hint as in contactWith()
+   * \param[out] rates J^T n / sigma: derivative of the residual with respect to a
+   * twist, if the point has a patch \return whether it has one, and its residual */
+  Contact
+  contactOf(Eigen::Index index, std::uint32_t& hint, Vector6d& rates) const
+  {
+    const Eigen::Index num_source = scorer_.source_points_.cols();
+    if (index < num_source) {
+      const Vector3d point = T_model_source_ * scorer_.source_points_.col(index);
+      const Contact contact = contactWith(scorer_.model_, point, hint);
+      const Vector3d arm = point - centre_in_model_;
+      rates << contact.normal, arm.cross(contact.normal);
+      return contact;
+    }
+    // The surface moves, and the point does not: the opposite of the above.
+    const auto point = scorer_.target_points_.col(index - num_source);
+    const Contact contact =
+        contactWith(*scorer_.source_model_, T_source_model_target_ * point, hint);
+    const Vector3d normal = -(R_ * contact.normal), arm = point - centre_;
+    rates << normal, arm.cross(normal);
+    return contact;
+  }
+
+private:
+  const SurfaceScorer& scorer_;
+  Isometry3d T_model_source_;
+  Vector3d centre_in_model_, centre_;
+  Eigen::Matrix3d R_;
+  Isometry3d T_source_model_target_ = Isometry3d::Identity();
+};
 
 double
 tukeyWeight(double z)
@@ -112,10 +139,11 @@ residualScale(const SurfaceScores& scores)
 Eigen::VectorXd
 cappedResiduals(const SurfaceScores& scores)
 {
-  Eigen::VectorXd capped = scores.residuals.cwiseAbs().cwiseMin(residual_cap);
-  for (std::size_t i = 0; i < scores.has_patch.size(); ++i)
-    if (!scores.has_patch[i])
-      capped[static_cast<Eigen::Index>(i)] = std::numeric_limits<double>::quiet_NaN();
+  Eigen::VectorXd capped =
+      scores.residuals.head(scores.num_source_points).cwiseAbs().cwiseMin(residual_cap);
+  for (Eigen::Index i = 0; i < capped.size(); ++i)
+    if (!scores.has_patch[static_cast<std::size_t>(i)])
+      capped[i] = std::numeric_limits<double>::quiet_NaN();
   return capped;
 }
 
@@ -131,7 +159,16 @@ SurfaceScorer::SurfaceScorer(const Eigen::Matrix3Xd& source_points,
 : source_points_(source_points)
 , centroid_(source_points.rowwise().mean())
 , model_(model)
+, target_points_(3, 0)
 {}
+
+void
+SurfaceScorer::addTargetPoints(const Eigen::Matrix3Xd& target_points,
+                               std::shared_ptr<const SurfaceModel> source_model)
+{
+  target_points_ = target_points;
+  source_model_ = std::move(source_model);
+}
 
 SurfaceScorer
 SurfaceScorer::ofFirst(Eigen::Index num_points) const
@@ -142,6 +179,25 @@ SurfaceScorer::ofFirst(Eigen::Index num_points) const
   return first;
 }
 
+SurfaceScorer
+SurfaceScorer::ofFirstOfBoth(Eigen::Index num_points) const
+{
+  const Eigen::Index num_of_target = std::min(num_points / 2, target_points_.cols());
+  SurfaceScorer first = ofFirst(num_points - num_of_target);
+  if (num_of_target > 0)
+    first.addTargetPoints(target_points_.leftCols(num_of_target), source_model_);
+  return first;
+}
+
+Eigen::Matrix3Xd
+SurfaceScorer::pointsAt(const Isometry3d& T_target_source) const
+{
+  Eigen::Matrix3Xd points(3, numPoints());
+  points.leftCols(source_points_.cols()) = source_points_;
+  points.rightCols(target_points_.cols()) = T_target_source.inverse() * target_points_;
+  return points;
+}
+
 void
 SurfaceScorer::evaluate(const Isometry3d& T_target_source,
                         const Vector3d& centre,
@@ -149,13 +205,14 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
                         PatchHints& hints,
                         SurfaceScores& scores) const
 {
-  const Eigen::Index num_points = source_points_.cols();
-  hints.resize(static_cast<std::size_t>(num_points), KdTree::none);
-  clear(scores, num_points);
-  const Placement placement(model_, T_target_source, centre);
-  for (Eigen::Index i = 0; i < num_points; ++i) {
+  hints.resize(static_cast<std::size_t>(numPoints()), KdTree::none);
+  clear(scores, numPoints());
+  scores.num_source_points = source_points_.cols();
+  const Placement placement(*this, T_target_source, centre);
+  Vector6d rates;
+  for (Eigen::Index i = 0; i < numPoints(); ++i) {
     const auto index = static_cast<std::size_t>(i);
-    const Contact contact = placement.contactOf(source_points_.col(i), hints[index]);
+    const Contact contact = placement.contactOf(i, hints[index], rates);
     if (!contact.has_patch)
       continue;
     scores.has_patch[index] = 1;
@@ -166,8 +223,9 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
       continue;
     scores.active[index] = 1;
     ++scores.num_active;
-    scores.scores.col(i) = weight * contact.residual * contact.rates;
-    scores.jacobians.col(i) = std::sqrt(weight) * contact.rates;
+    scores.num_active_of_source += i < source_points_.cols();
+    scores.scores.col(i) = weight * contact.residual * rates;
+    scores.jacobians.col(i) = std::sqrt(weight) * rates;
     scores.total += scores.scores.col(i);
     scores.information.selfadjointView<Eigen::Lower>().rankUpdate(
         scores.jacobians.col(i));
@@ -183,18 +241,19 @@ SurfaceScorer::batchScore(const Isometry3d& T_target_source,
                           PatchHints& hints,
                           Vector6d& total) const
 {
-  hints.resize(static_cast<std::size_t>(source_points_.cols()), KdTree::none);
-  const Placement placement(model_, T_target_source, centre);
+  hints.resize(static_cast<std::size_t>(numPoints()), KdTree::none);
+  const Placement placement(*this, T_target_source, centre);
   total.setZero();
   int num_with_patch = 0;
+  Vector6d rates;
   for (const std::size_t index : indices) {
-    const Contact contact = placement.contactOf(
-        source_points_.col(static_cast<Eigen::Index>(index)), hints[index]);
+    const Contact contact =
+        placement.contactOf(static_cast<Eigen::Index>(index), hints[index], rates);
     if (!contact.has_patch)
       continue;
     ++num_with_patch;
     total += tukeyWeight(contact.residual / tau / SurfaceScorer::tukey_constant) *
-             contact.residual * contact.rates;
+             contact.residual * rates;
   }
   return num_with_patch;
 }

@@ -1,6 +1,6 @@
 /** \file
- * \brief What every source point says about the pose: robust scores of its distance to
- * the target's surface.
+ * \brief What every point of the two clouds says about the pose: robust scores of its
+ * distance to the other cloud's surface.
  */
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace bayesian_icp {
@@ -18,11 +19,12 @@ namespace bayesian_icp {
 /** \brief Six numbers for each point, one point per column. */
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/** \brief Nearest patch of each source point at the last evaluation; speeds up the next
+/** \brief Nearest patch of each point at the last evaluation; speeds up the next
  * one and never changes it. One object per thread. */
 using PatchHints = std::vector<std::uint32_t>;
 
-/** \brief Scores of all points at one pose, in twists about a centre. */
+/** \brief Scores of all points at one pose, in twists about a centre: first those of
+ * the source's points, then those of the target's. */
 struct SurfaceScores {
   /** Residual u = distance / sigma of each point; 0 where there is no patch. */
   Eigen::VectorXd residuals;
@@ -39,6 +41,9 @@ struct SurfaceScores {
   /** Sum of the Gauss-Newton informations. */
   Matrix6d information;
   int num_active;
+  /** ... of the points of the source. */
+  int num_active_of_source = 0;
+  Eigen::Index num_source_points = 0;
 };
 
 /** \brief Tukey's weight (1 - z^2)^2, zero beyond |z| = 1; z is the residual over
@@ -51,15 +56,19 @@ tukeyWeight(double z);
 double
 residualScale(const SurfaceScores& scores);
 
-/** \brief min(|u|, 5) of each point; NaN of a point without a usable patch. */
+/** \brief min(|u|, 5) of each source point; NaN of one without a usable patch. */
 Eigen::VectorXd
 cappedResiduals(const SurfaceScores& scores);
 
-/** \brief Mean of min(|u|, 5). A point without a usable patch counts 5. */
+/** \brief Mean of min(|u|, 5) of the source points. One without a usable patch
+ * counts 5.
+ */
 double
 meanCappedResidual(const SurfaceScores& scores);
 
-/** \brief Evaluates scores. Functions are const; threads may share an object. */
+/** \brief Evaluates scores: of source points against the target's surface, and of
+ * target points against the source's, if there are any. Functions are const; threads
+ * may share an object. */
 class SurfaceScorer {
 public:
   /** Tukey's constant: 95 % efficiency on Gaussian residuals. */
@@ -72,10 +81,20 @@ public:
    * \param[in] model must outlive this object */
   SurfaceScorer(const Eigen::Matrix3Xd& source_points, const SurfaceModel& model);
 
-  /** \brief A scorer of the first points, of all if there are fewer. Its centroid is
-   * that of all points, so that twists are the same. */
+  /** \brief Adds \p target_points, 3 x m, finite, target frame [m], which are compared
+   * with the surface of the source. */
+  void
+  addTargetPoints(const Eigen::Matrix3Xd& target_points,
+                  std::shared_ptr<const SurfaceModel> source_model);
+
+  /** \brief A scorer of the first points of the source, of all if there are fewer. Its
+   * centroid is that of all points, so that twists are the same. */
   SurfaceScorer
   ofFirst(Eigen::Index num_points) const;
+
+  /** \brief The same of the first points of both clouds, half of them of each. */
+  SurfaceScorer
+  ofFirstOfBoth(Eigen::Index num_points) const;
 
   /** \brief Evaluate all points.
    * \param[in] T_target_source where
@@ -94,7 +113,7 @@ public:
    * \param[in] T_target_source where
    * \param[in] centre of the twists, target frame [m]
    * \param[in] tau as in evaluate()
-   * \param[in] indices columns of the source, repeats allowed
+   * \param[in] indices of points, in the order of SurfaceScores, repeats allowed
    * \param[in,out] hints as in evaluate()
    * \param[out] total sum of their scores
    * \return how many of them have a usable patch, whatever their weight */
@@ -106,12 +125,34 @@ public:
              PatchHints& hints,
              Vector6d& total) const;
 
+  /** \brief Of both clouds. */
+  Eigen::Index
+  numPoints() const
+  {
+    return source_points_.cols() + target_points_.cols();
+  }
+
+  /** \brief All points in the source's frame [m]. */
+  Eigen::Matrix3Xd
+  pointsAt(const Eigen::Isometry3d& T_target_source) const;
+
+  /** \brief A patch of the surface with which a point is compared.
+   * \param[in] point in the order of SurfaceScores
+   * \param[in] patch from its hint */
+  const SurfacePatch&
+  patchOf(Eigen::Index point, std::uint32_t patch) const
+  {
+    const SurfaceModel& model = point < source_points_.cols() ? model_ : *source_model_;
+    return model.patches()[patch];
+  }
+
   const Eigen::Matrix3Xd&
   sourcePoints() const
   {
     return source_points_;
   }
 
+  /** \brief The target's surface. */
   const SurfaceModel&
   model() const
   {
@@ -126,9 +167,13 @@ public:
   }
 
 private:
+  class Placement;
+
   Eigen::Matrix3Xd source_points_;
   Eigen::Vector3d centroid_;
   const SurfaceModel& model_;
+  Eigen::Matrix3Xd target_points_;
+  std::shared_ptr<const SurfaceModel> source_model_;
 };
 
 } // namespace bayesian_icp

@@ -1,5 +1,7 @@
 #include "calibrated/surface/even_choice.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +25,13 @@ constexpr int max_trials = 24;
  * parts of the cloud's extent. */
 constexpr int num_bits = 21;
 constexpr double smallest_cube = 1.0 / (1 << 20);
+
+/** Of the grid; no axis is near another one. */
+Eigen::Quaternionf
+tilt()
+{
+  return Eigen::Quaternionf(0.5F, 0.31F, -0.7F, 0.4F).normalized();
+}
 
 /** The points that are chosen from cubes: of those in one cube that with the smallest
  * rank, which is random. */
@@ -276,10 +285,11 @@ evenlyThinned(const Eigen::Matrix3Xf& points, Index count)
 }
 
 std::vector<Index>
-evenChoice(const Eigen::Matrix3Xf& points, Index count, ChoiceStream stream)
+evenChoice(const Eigen::Matrix3Xf& upright_points, Index count, ChoiceStream stream)
 {
-  if (points.cols() <= count)
-    return allOf(points);
+  if (upright_points.cols() <= count)
+    return allOf(upright_points);
+  const Eigen::Matrix3Xf points = tilt().toRotationMatrix() * upright_points;
   const Eigen::Vector3f corner = points.rowwise().minCoeff();
   const double extent = double((points.rowwise().maxCoeff() - corner).maxCoeff());
   double low = extent * smallest_cube, high = 2.0 * extent;

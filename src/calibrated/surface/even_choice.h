@@ -15,13 +15,16 @@ namespace bayesian_icp {
 void
 shuffle(std::vector<Eigen::Index>& columns, Random& random);
 
-/** \brief Whose points are chosen. The random choice depends on their numbers: with one
- * stream for both clouds, the same rays of a standing sensor would be chosen from its
- * two scans. */
-enum class ChoiceStream { Target, Source };
+/** \brief What points are chosen for: to get a patch, or to be compared with the
+ * patches of the other cloud. The random choice depends on the points' numbers: with
+ * one stream for both, the same rays of a standing sensor would be chosen from its two
+ * scans. */
+enum class ChoiceStream { Patches, Points };
 
 /** \brief Columns of points that cover a cloud evenly, ascending: a random point of
  * each cube of a grid. The cubes are so large that nearly \p count of them hold points.
+ * The grid is tilted: if cubes were parallel to a wall, they would cut off more of the
+ * noise's tail on one side of it.
  * Choices of one stream for several counts have many points in common. All columns if
  * there are no more than \p count.
  * \param[in] points 3 x n, finite

@@ -72,7 +72,7 @@ SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
 : options_(options)
 , num_threads_(numThreadsFor(num_threads, points.cols() / share_size))
 , points_(points)
-, columns_(evenChoice(points, options.max_patches, ChoiceStream::Target))
+, columns_(evenChoice(points, options.max_patches, ChoiceStream::Patches))
 , patch_of_(static_cast<std::size_t>(points.cols()), KdTree::none)
 , patches_(columns_.size())
 , neighbors_(columns_.size())
