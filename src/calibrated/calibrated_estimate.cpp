@@ -30,7 +30,7 @@ namespace {
 /** Stream of the random order of source points; those of chains count from 0. */
 constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
-/** More than num_curvature_points are at most this part of the source, because a choice
+/** More than num_curvature_points are at most this part of the cloud, because a choice
  * of nearly all points is as uneven as they are, and this number per patch: more would
  * repeat the noise of the patches, of which J sees only what differs between them. */
 constexpr double max_part_used = 0.4;

@@ -78,11 +78,14 @@ struct EstimateOptions {
 
 /** \brief The points of a cloud that the estimate uses. They cover the cloud evenly:
  * near the sensor most points repeat each other, but the far points hold rotations. So
- * do the first EstimateOptions::num_curvature_points by themselves. \param[in] points 3
- * x n, finite [m] \param[in] model of the other cloud \param[in] max_points how many,
- * at most. More than num_curvature_points are no more than 40 % of the points and 0.4
- * per patch. \param[in] seed of their order. The order of the first is random, so that
- * the search of the mode, which uses the first of these, gets a random choice. */
+ * do the first EstimateOptions::num_curvature_points by themselves.
+ *
+ * \param[in] points 3 x n, finite [m]
+ * \param[in] model of the other cloud
+ * \param[in] max_points how many, at most. More than num_curvature_points are no more
+ *            than 40 % of the points and 0.4 per patch.
+ * \param[in] seed of their order. The order of the first is random, so that the search
+ *            of the mode, which uses the first of these, gets a random choice. */
 Eigen::Matrix3Xd
 evenPoints(const Eigen::Matrix3Xd& points,
            const SurfaceModel& model,
@@ -90,9 +93,11 @@ evenPoints(const Eigen::Matrix3Xd& points,
            std::uint64_t seed);
 
 /** \brief evenPoints() of each cloud against the surface of the other. Where the source
- * has no usable surface, its points alone are compared with the target's. \param[in]
- * source_points 3 x n, finite [m] \param[in] target_points 3 x m; those that are not
- * finite are left out [m] \param[in] target surface of these; must outlive the scorer
+ * has no usable surface, its points alone are compared with the target's.
+ *
+ * \param[in] source_points 3 x n, finite [m]
+ * \param[in] target_points 3 x m; those that are not finite are left out [m]
+ * \param[in] target surface of these; must outlive the scorer
  * \param[in] max_points of each cloud
  * \param[in] seed of their order
  * \param[in] num_threads 0: as OpenMP would */

@@ -28,10 +28,13 @@ holdOfFree(const CalibratedEstimate& estimate, double tolerance);
  * The source is moved to both sides along a direction, as far as the prior or its own
  * size lets it, and the other motions are fitted there. The direction then leads from
  * the one end to the other. A way whose ends do not fit is tried again at a third of
- * its length. \param[in] scorer of the source against the target's surface \param[in]
- * prior of the pose \param[in] misfit of the contacts at the mode \param[in,out]
- * estimate with mode, metric, prior, keep and directions; the directions keep their
- * unit displacement */
+ * its length.
+ *
+ * \param[in] scorer of both clouds
+ * \param[in] prior of the pose
+ * \param[in] misfit of the contacts at the mode
+ * \param[in,out] estimate with mode, metric, prior, keep and directions; the directions
+ *                keep their unit displacement */
 void
 turnFreeDirections(const SurfaceScorer& scorer,
                    const Prior& prior,

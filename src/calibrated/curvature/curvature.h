@@ -64,7 +64,7 @@ longestStep(const Vector6d& axis,
             const Matrix6d& displacement_metric);
 
 /** \brief Measure the curvature about a mode.
- * \param[in] scorer of the source against the target's surface
+ * \param[in] scorer of both clouds
  * \param[in] mode T_target_source
  * \param[in] at_mode scores there
  * \param[in] tau scale of the residuals in Tukey's weight

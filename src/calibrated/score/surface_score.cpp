@@ -85,10 +85,11 @@ public:
                                T_target_source.inverse();
   }
 
-  /** \param[in] index of the point, in the order of SurfaceScores
+  /** \return whether the point has a patch, and its residual
+   * \param[in] index of the point, in the order of SurfaceScores
    * \param[in,out] hint as in contactWith()
    * \param[out] rates J^T n / sigma: derivative of the residual with respect to a
-   * twist, if the point has a patch \return whether it has one, and its residual */
+   *             twist, if there is a patch */
   Contact
   contactOf(Eigen::Index index, std::uint32_t& hint, Vector6d& rates) const
   {
