@@ -147,7 +147,8 @@ file.
 po::typed_value<double>*
 share(double& part)
 {
-  return po::value<double>()->default_value(part)->notifier([&part](double value) {
+  const auto option = po::value<double>()->default_value(part, io::textOf(part, 3));
+  return option->notifier([&part](double value) {
     if (!(value >= 0.0 && value < 1.0))
       io::refuseValue(io::textOf(value), "from 0 to below 1");
     part = value;
