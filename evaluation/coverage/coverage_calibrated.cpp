@@ -50,15 +50,9 @@ notesOf(const DataReport& report)
 }
 
 MethodResult
-resultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
+notedResultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
 {
-  MethodResult result;
-  result.is_valid = true;
-  result.mean = movedBy(estimate.mean, estimate.centre, estimate.mode);
-  result.covariance = estimate.covariance;
-  result.centre = estimate.centre;
-  result.shape = {estimate.degrees_of_freedom,
-                  static_cast<int>((estimate.keep.array() > 0.0).count())};
+  MethodResult result = resultOf(estimate);
   result.notes = notesOf(dataReportOf(estimate, scorer.model()));
   result.num_queries = estimate.num_queries;
   return result;
@@ -84,6 +78,19 @@ struct Registration {
 
 } // namespace
 
+MethodResult
+resultOf(const CalibratedEstimate& estimate)
+{
+  MethodResult result;
+  result.is_valid = true;
+  result.mean = movedBy(estimate.mean, estimate.centre, estimate.mode);
+  result.covariance = estimate.covariance;
+  result.centre = estimate.centre;
+  result.shape = {estimate.degrees_of_freedom,
+                  static_cast<int>((estimate.keep.array() > 0.0).count())};
+  return result;
+}
+
 CalibratedEstimate
 calibratedEstimateOf(const CoverageCase& problem)
 {
@@ -95,8 +102,8 @@ MethodResult
 runCalibrated(const CoverageCase& problem)
 {
   const Registration registration(problem);
-  return resultOf(estimateCalibrated(registration.scorer, registration.prior),
-                  registration.scorer);
+  return notedResultOf(estimateCalibrated(registration.scorer, registration.prior),
+                       registration.scorer);
 }
 
 MethodResult

@@ -85,6 +85,10 @@ calibratedEstimateOf(const CoverageCase& problem);
 MethodResult
 runCalibrated(const CoverageCase& problem);
 
+/** \brief An estimate's posterior as a result, without notes and queries. */
+MethodResult
+resultOf(const CalibratedEstimate& estimate);
+
 /** \brief What a user gets: 2000 draws of the preset, from all modes, with its status
  * as a flag. */
 MethodResult

@@ -111,10 +111,43 @@ TEST(CalibratedEstimate, ErrorsAreAsLargeAsItSays)
   EXPECT_GE(num_within, 53);
 }
 
+/** Estimates of several cases, and others of fewer points. */
+class Comparison {
+public:
+  void
+  add(const Case& c, const CalibratedEstimate& e, const CalibratedEstimate& other)
+  {
+    const Vector6d error = c.error(e);
+    sum_ += error.dot(e.covariance.ldlt().solve(error));
+    log_ratio_ += std::log(e.covariance.determinant() / other.covariance.determinant());
+    ++num_cases_;
+  }
+
+  /** Whether the sum of NEES is among 99.9 % of those of exact posteriors. */
+  void
+  expectRight() const
+  {
+    const boost::math::chi_squared all(6.0 * num_cases_);
+    EXPECT_GT(sum_, quantile(all, 0.0005));
+    EXPECT_LT(sum_, quantile(all, 0.9995));
+  }
+
+  /** Geometric mean of the ratios of deviations. */
+  double
+  ratio() const
+  {
+    return std::exp(log_ratio_ / (12.0 * num_cases_));
+  }
+
+private:
+  double sum_ = 0.0, log_ratio_ = 0.0;
+  int num_cases_ = 0;
+};
+
 TEST(CalibratedEstimate, MorePointsThanThoseOfTheCurvatureMakeItSharper)
 {
   constexpr int num_cases = 40;
-  double sum = 0.0, log_ratio = 0.0;
+  Comparison comparison;
   EstimateOptions options;
   options.num_curvature_points = 500;
   for (int k = 0; k < num_cases; ++k) {
@@ -122,26 +155,20 @@ TEST(CalibratedEstimate, MorePointsThanThoseOfTheCurvatureMakeItSharper)
     const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior, options);
     const CalibratedEstimate of_first =
         estimateCalibrated(c.scorer->ofFirst(500), *c.prior, options);
-    const Vector6d error = c.error(e);
-    sum += error.dot(e.covariance.ldlt().solve(error));
-    log_ratio +=
-        std::log(e.covariance.determinant() / of_first.covariance.determinant());
+    comparison.add(c, e, of_first);
   }
-  const boost::math::chi_squared all(6.0 * num_cases);
-  EXPECT_GT(sum, quantile(all, 0.0005));
-  EXPECT_LT(sum, quantile(all, 0.9995));
+  comparison.expectRight();
   // Four times as many points halve the deviations, less what the target's noise adds:
   // if it counted as much as the noise of its 2000 points in the source, by (2 /
   // 5)^1/2.
-  const double ratio = std::exp(log_ratio / (12.0 * num_cases));
-  EXPECT_GT(ratio, 0.5);
-  EXPECT_LT(ratio, 0.7);
+  EXPECT_GT(comparison.ratio(), 0.5);
+  EXPECT_LT(comparison.ratio(), 0.7);
 }
 
 TEST(CalibratedEstimate, TheTargetsPointsMakeItSharper)
 {
   constexpr int num_cases = 40;
-  double sum = 0.0, log_ratio = 0.0;
+  Comparison comparison;
   for (int k = 0; k < num_cases; ++k) {
     const Case c(400 + static_cast<std::uint64_t>(k), 2000, 2000);
     const SurfaceScorer both =
@@ -149,19 +176,13 @@ TEST(CalibratedEstimate, TheTargetsPointsMakeItSharper)
     ASSERT_EQ(both.numPoints(), 4000);
     const CalibratedEstimate e = estimateCalibrated(both, *c.prior);
     const CalibratedEstimate of_source = estimateCalibrated(*c.scorer, *c.prior);
-    const Vector6d error = c.error(e);
-    sum += error.dot(e.covariance.ldlt().solve(error));
-    log_ratio +=
-        std::log(e.covariance.determinant() / of_source.covariance.determinant());
+    comparison.add(c, e, of_source);
   }
-  const boost::math::chi_squared all(6.0 * num_cases);
-  EXPECT_GT(sum, quantile(all, 0.0005));
-  EXPECT_LT(sum, quantile(all, 0.9995));
+  comparison.expectRight();
   // Twice as many points, of which every other one would be new if patches had no
   // noise.
-  const double ratio = std::exp(log_ratio / (12.0 * num_cases));
-  EXPECT_GT(ratio, std::sqrt(0.5));
-  EXPECT_LT(ratio, 0.95);
+  EXPECT_GT(comparison.ratio(), std::sqrt(0.5));
+  EXPECT_LT(comparison.ratio(), 0.95);
 }
 
 TEST(CalibratedEstimate, IsTheSameTheOtherWay)

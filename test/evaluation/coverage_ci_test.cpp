@@ -56,16 +56,9 @@ runControlled(const CoverageRunName& name)
   const CoverageCase problem = makeCoverageCase(name.scene, name.condition, name.seed);
   const CalibratedEstimate e = calibratedEstimateOf(problem);
   const double weight = 1.0 / (e.residual_scale * e.residual_scale);
-  MethodResult calibrated;
-  calibrated.is_valid = true;
-  calibrated.mean = movedBy(e.mean, e.centre, e.mode);
-  calibrated.covariance = e.covariance;
-  calibrated.centre = e.centre;
-  calibrated.shape = {e.degrees_of_freedom,
-                      static_cast<int>((e.keep.array() > 0.0).count())};
   const MethodResult independent =
       posteriorOf(weight * e.scores.total, weight * e.scores.information, e);
-  return {{name, coverageScoreOf(problem, calibrated)},
+  return {{name, coverageScoreOf(problem, resultOf(e))},
           {name, coverageScoreOf(problem, independent)}};
 }
 

@@ -25,7 +25,7 @@ struct Contact {
   bool has_patch = false;
   /** u. */
   double residual = 0.0;
-  /** n / sigma, in the model's frame. */
+  /** n / sigma. */
   Vector3d normal = Vector3d::Zero();
 };
 
@@ -94,19 +94,22 @@ public:
   contactOf(Eigen::Index index, std::uint32_t& hint, Vector6d& rates) const
   {
     const Eigen::Index num_source = scorer_.source_points_.cols();
+    Contact contact;
+    Vector3d arm;
     if (index < num_source) {
       const Vector3d point = T_model_source_ * scorer_.source_points_.col(index);
-      const Contact contact = contactWith(scorer_.model_, point, hint);
-      const Vector3d arm = point - centre_in_model_;
-      rates << contact.normal, arm.cross(contact.normal);
-      return contact;
+      contact = contactWith(scorer_.model_, point, hint);
+      arm = point - centre_in_model_;
     }
-    // The surface moves, and the point does not: the opposite of the above.
-    const auto point = scorer_.target_points_.col(index - num_source);
-    const Contact contact =
-        contactWith(*scorer_.source_model_, T_source_model_target_ * point, hint);
-    const Vector3d normal = -(R_ * contact.normal), arm = point - centre_;
-    rates << normal, arm.cross(normal);
+    else {
+      const auto point = scorer_.target_points_.col(index - num_source);
+      contact =
+          contactWith(*scorer_.source_model_, T_source_model_target_ * point, hint);
+      // The surface moves, and the point does not: the opposite of the above.
+      contact.normal = -(R_ * contact.normal);
+      arm = point - centre_;
+    }
+    rates << contact.normal, arm.cross(contact.normal);
     return contact;
   }
 

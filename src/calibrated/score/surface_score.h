@@ -41,7 +41,7 @@ struct SurfaceScores {
   /** Sum of the Gauss-Newton informations. */
   Matrix6d information;
   int num_active;
-  /** ... of the points of the source. */
+  /** Active points of the source, and all of its points. */
   int num_active_of_source = 0;
   Eigen::Index num_source_points = 0;
 };
@@ -60,9 +60,8 @@ residualScale(const SurfaceScores& scores);
 Eigen::VectorXd
 cappedResiduals(const SurfaceScores& scores);
 
-/** \brief Mean of min(|u|, 5) of the source points. One without a usable patch
- * counts 5.
- */
+/** \brief Mean of min(|u|, 5) of the source points. One without a usable patch counts
+ * 5. */
 double
 meanCappedResidual(const SurfaceScores& scores);
 
