@@ -77,10 +77,10 @@ public:
   {
     const auto row = static_cast<int>(errors_.size());
     errors_.push_back(error);
-    common_.emplace_back(Vector6d::Zero());
+    common_.emplace_back(CommonFactors::Zero());
     for (const auto& [noise, factor] : terms) {
       if (noise.first == NoiseOf::Common) {
-        common_.back() = factor.transpose() * direction;
+        common_.back().segment<6>(6 * noise.second) = factor.transpose() * direction;
         continue;
       }
       const int column =
@@ -108,22 +108,24 @@ public:
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(covariance);
     // The common noise would fill the covariance, so it is added by Woodbury's
     // identity.
-    Eigen::MatrixXd common(size(), 6);
+    Eigen::MatrixXd common(size(), CommonFactors::SizeAtCompileTime);
     for (int row = 0; row < size(); ++row)
       common.row(row) = common_[static_cast<std::size_t>(row)];
     const Eigen::VectorXd weighted = solver.solve(errors);
-    const Vector6d seen = common.transpose() * weighted;
-    const Matrix6d rest =
-        Matrix6d::Identity() + common.transpose() * solver.solve(common);
+    const CommonFactors seen = common.transpose() * weighted;
+    Eigen::MatrixXd rest = common.transpose() * solver.solve(common);
+    rest.diagonal().array() += 1.0;
     return errors.dot(weighted) - seen.dot(rest.ldlt().solve(seen));
   }
 
 private:
+  /** Of the columns of the noise that all edges have in common. */
+  using CommonFactors = Eigen::Matrix<double, 36, 1>;
+
   std::vector<double> errors_;
   std::map<Noise, int> columns_;
   std::vector<Eigen::Triplet<double>> factors_;
-  /** Those of the noise that all edges have in common. */
-  std::vector<Vector6d> common_;
+  std::vector<CommonFactors> common_;
 };
 
 CycleStatistics

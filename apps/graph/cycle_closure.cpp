@@ -113,8 +113,14 @@ addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms
     terms.try_emplace(noise, Matrix6d::Zero()).first->second += factor;
   };
   add({NoiseOf::Edge, static_cast<long>(k)}, std::sqrt(edge.shared.own()) * root);
-  add({NoiseOf::Source, edge.source}, std::sqrt(edge.shared.source) * root);
-  add({NoiseOf::Common, 0}, std::sqrt(edge.shared.common) * root);
+  const double of_scan = std::sqrt(edge.shared.scan);
+  add({NoiseOf::Scan, edge.source}, of_scan * root);
+  add({NoiseOf::Scan, edge.target},
+      -of_scan * root * noiseToSource(edge.T_target_source));
+  const Vector6d of_all =
+      std::sqrt(edge.shared.common) * directionOf(edge.T_target_source);
+  for (int column = 0; column < 6; ++column)
+    add({NoiseOf::Common, column}, of_all[column] * root);
 }
 
 } // namespace
@@ -143,7 +149,11 @@ Way::append(const GraphEdge& edge)
   const Matrix6d carry = adjointOf(step.T.inverse());
   const Matrix6d of_step = step.carry * edge.covariance * step.carry.transpose();
   const Matrix6d root = step.carry * squareRootOf(edge.covariance);
-  common = (carry * common + std::sqrt(edge.shared.common) * root).eval();
+  common = (carry * common).eval();
+  const Vector6d of_all =
+      std::sqrt(edge.shared.common) * directionOf(edge.T_target_source);
+  for (int k = 0; k < 6; ++k)
+    common.middleCols<6>(6 * k) += of_all[k] * root;
   own = (carry * own * carry.transpose() + (1.0 - edge.shared.common) * of_step).eval();
   T_begin_end = T_begin_end * step.T;
   end = step.end;

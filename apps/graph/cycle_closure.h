@@ -34,11 +34,12 @@ struct Way {
   Eigen::Matrix4d T_begin_end = Eigen::Matrix4d::Identity();
   /** CovarianceConvention::RightSE3 of what is not common to all edges [m, rad]. */
   Matrix6d own = Matrix6d::Zero();
-  /** Factor of the noise that is. */
-  Matrix6d common = Matrix6d::Zero();
+  /** Factors of the noise that is. */
+  Eigen::Matrix<double, 6, 36> common = Eigen::Matrix<double, 6, 36>::Zero();
 
   /** \brief Go on along an edge from the end; it may be taken backwards. Its error is
-   * independent of those before but for what all edges have in common. */
+   * taken as independent of those before but for what all edges have in common: the
+   * noise of a scan between two edges would cancel in part. */
   void
   append(const GraphEdge& edge);
 
@@ -75,12 +76,12 @@ chanceOf(double squared_error, int num_degrees);
  * rad]: there an edge has no information of the clouds. */
 constexpr double max_deviation = 3.0;
 
-/** \brief Whose a noise is: of an edge alone, of all edges with one source, or of all
+/** \brief Whose a noise is: of an edge alone, of all edges of one scan, or of all
  * edges. */
-enum class NoiseOf { Edge, Source, Common };
+enum class NoiseOf { Edge, Scan, Common };
 
 /** \brief Six independent standard normal numbers; and the position of the edge, the
- * vertex, or 0. */
+ * vertex, or the column of what all edges share. */
 using Noise = std::pair<NoiseOf, long>;
 
 /** \brief An error as a sum over noises, each times its factor. */

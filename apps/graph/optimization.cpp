@@ -97,14 +97,20 @@ struct EdgeError {
   Eigen::Quaterniond rotation;
   /** S^-1/2, symmetric. */
   Matrix6d whitening;
+  /** noiseToSource() of the edge. */
+  Matrix6d to_source;
+  /** directionOf() it. */
+  Vector6d direction;
   SharedNoise shared;
 
-  /** \param[in] source_noise 6 independent numbers with variance 1
-   * \param[in] common_noise of all edges, as well */
+  /** \param[in] target_noise 6 independent numbers with variance 1
+   * \param[in] source_noise as well
+   * \param[in] common_noise 36 of all edges, column by column */
   template <typename T>
   bool
   operator()(const T* target_pose,
              const T* source_pose,
+             const T* target_noise,
              const T* source_noise,
              const T* common_noise,
              T* residual) const
@@ -121,11 +127,13 @@ struct EdgeError {
     const Vector3 turned = w.cross(shift);
     Eigen::Matrix<T, 6, 1> error;
     error << shift - T(0.5) * turned + T(1.0 / 12.0) * w.cross(turned), w;
+    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_target(target_noise);
     const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_source(source_noise);
-    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_all(common_noise);
+    const Eigen::Map<const Eigen::Matrix<T, 6, 6>> of_all(common_noise);
     Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} =
-        (whitening.cast<T>() * error - T(std::sqrt(shared.source)) * of_source -
-         T(std::sqrt(shared.common)) * of_all) /
+        (whitening.cast<T>() * error -
+         T(std::sqrt(shared.scan)) * (of_source - to_source.cast<T>() * of_target) -
+         T(std::sqrt(shared.common)) * (of_all * direction.cast<T>())) /
         T(std::sqrt(shared.own()));
     return true;
   }
@@ -162,6 +170,8 @@ errorOf(const GraphEdge& edge)
   return {pose.translation(),
           Eigen::Quaterniond(pose.linear()).normalized(),
           solver.operatorInverseSqrt(),
+          noiseToSource(edge.T_target_source),
+          directionOf(edge.T_target_source),
           edge.shared};
 }
 
@@ -185,7 +195,7 @@ requireConnected(std::size_t num_poses, const std::vector<GraphEdge>& edges)
 }
 
 /** Of an edge's own part of its error, in units of its deviation. Of an error of d
- * deviations of S the source takes its share, and d sqrt(own) / (1 - common) is left.
+ * deviations of S the scans take their shares, and d sqrt(own) / (1 - common) is left.
  * The problem owns the result. */
 ceres::LossFunction*
 lossOf(RobustLoss loss, const SharedNoise& shared)
@@ -206,16 +216,17 @@ public:
          const std::vector<GraphEdge>& edges,
          RobustLoss loss)
   : loss_(loss)
-  , unknowns_(poses.size() + 1)
+  , num_poses_(poses.size())
+  , unknowns_(num_poses_ * size_of_scan + size_of_common)
   , problem_(borrowing())
   {
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      unknowns_[k].pose = parametersOf(poses[k]);
-      problem_.AddParameterBlock(unknowns_[k].pose.data(), 7, &twists_);
-      addNoise(1.0, unknowns_[k].noise);
+    for (std::size_t k = 0; k < num_poses_; ++k) {
+      Eigen::Map<Parameters>{pose(k)} = parametersOf(poses[k]);
+      problem_.AddParameterBlock(pose(k), 7, &twists_);
+      addNoise(1.0, 6, noise(k));
     }
-    addNoise(considered_deviation, commonNoise());
-    problem_.SetParameterBlockConstant(unknowns_.front().pose.data());
+    addNoise(considered_deviation, size_of_common, commonNoise());
+    problem_.SetParameterBlockConstant(pose(0));
     for (const GraphEdge& edge : edges)
       addEdge(edge);
   }
@@ -234,9 +245,9 @@ public:
     OptimizedPoses result;
     if (summary.termination_type != ceres::CONVERGENCE)
       result.complaint = "the poses have not converged: " + summary.message;
-    for (std::size_t k = 0; k < numPoses(); ++k)
+    for (std::size_t k = 0; k < num_poses_; ++k)
       result.poses.push_back(
-          {poseOf(transformOf(unknowns_[k].pose)), Matrix6d::Zero()});
+          {poseOf(transformOf(Parameters(pose(k)))), Matrix6d::Zero()});
     for (const PlacedEdge& edge : edges_)
       result.squared_errors.push_back(squaredErrorOf(edge));
     addCovariances(result);
@@ -249,62 +260,70 @@ private:
     const double *target, *source;
   };
 
-  /** Of one scan: its pose, and its noise as a source in units of the deviations of its
-   * edges. */
-  struct Unknowns {
-    Parameters pose = Parameters::Zero();
-    Vector6d noise = Vector6d::Zero();
-  };
+  /** Unknowns of one scan, and those that all edges have in common. */
+  static constexpr int size_of_scan = 7 + 6, size_of_common = 36;
 
-  std::size_t
-  numPoses() const
+  double*
+  pose(std::size_t scan)
   {
-    return unknowns_.size() - 1;
+    return unknowns_.data() + scan * size_of_scan;
   }
 
-  /** Of all edges, held at 0. */
-  Vector6d&
+  /** In units of the deviations of the scan's edges. */
+  double*
+  noise(std::size_t scan)
+  {
+    return pose(scan) + 7;
+  }
+
+  /** Held at 0. */
+  double*
   commonNoise()
   {
-    return unknowns_.back().noise;
+    return pose(num_poses_);
   }
 
   /** Of numbers that are 0 to a deviation. */
   void
-  addNoise(double deviation, Vector6d& noise)
+  addNoise(double deviation, int size, double* numbers)
   {
     problem_.AddResidualBlock(
-        new ceres::NormalPrior(ceres::Matrix::Identity(6, 6) / deviation,
-                               ceres::Vector::Zero(6)),
+        new ceres::NormalPrior(ceres::Matrix::Identity(size, size) / deviation,
+                               ceres::Vector::Zero(size)),
         nullptr,
-        noise.data());
+        numbers);
   }
 
   void
   addEdge(const GraphEdge& edge)
   {
     const EdgeError error = errorOf(edge);
-    Unknowns& source = unknowns_[static_cast<std::size_t>(edge.source)];
-    double* const target_pose =
-        unknowns_[static_cast<std::size_t>(edge.target)].pose.data();
-    edges_.push_back({error, target_pose, source.pose.data()});
+    const auto target = static_cast<std::size_t>(edge.target);
+    const auto source = static_cast<std::size_t>(edge.source);
+    edges_.push_back({error, pose(target), pose(source)});
     problem_.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6, 6>(new EdgeError(error)),
+        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6, 6, 36>(
+            new EdgeError(error)),
         lossOf(loss_, edge.shared),
-        target_pose,
-        source.pose.data(),
-        source.noise.data(),
-        commonNoise().data());
+        pose(target),
+        pose(source),
+        noise(target),
+        noise(source),
+        commonNoise());
   }
 
   /** Whatever parts of the error other edges have, too. */
   static double
   squaredErrorOf(const PlacedEdge& edge)
   {
-    const Vector6d no_noise = Vector6d::Zero();
+    const std::array<double, size_of_common> no_noise{};
     Vector6d residual;
-    edge.error(
-        edge.target, edge.source, no_noise.data(), no_noise.data(), residual.data());
+    edge.error(edge.target,
+               edge.source,
+               no_noise.data(),
+               no_noise.data(),
+               no_noise.data(),
+               residual.data());
     return edge.error.shared.own() * residual.squaredNorm();
   }
 
@@ -320,34 +339,33 @@ private:
   addCovariances(OptimizedPoses& result)
   {
     std::vector<std::pair<const double*, const double*>> blocks;
-    for (std::size_t k = 1; k < numPoses(); ++k)
-      for (const double* other : {unknowns_[k].pose.data(), commonNoise().data()})
-        blocks.emplace_back(unknowns_[k].pose.data(), other);
+    for (std::size_t k = 1; k < num_poses_; ++k)
+      for (const double* other : {pose(k), commonNoise()})
+        blocks.emplace_back(pose(k), other);
     ceres::Covariance covariance({});
     if (!blocks.empty() && !covariance.Compute(blocks, &problem_)) {
       result.complaint = "the edges leave a motion of a pose free";
       return;
     }
-    for (std::size_t k = 1; k < numPoses(); ++k) {
-      const double* const block = unknowns_[k].pose.data();
+    for (std::size_t k = 1; k < num_poses_; ++k) {
+      const double* const block = pose(k);
       Matrix6d& sum = result.poses[k].covariance;
       // Row by row; symmetric, so that the order is of no importance.
       covariance.GetCovarianceBlockInTangentSpace(block, block, sum.data());
-      Eigen::Matrix<double, 6, 6, Eigen::RowMajor> with_common;
-      covariance.GetCovarianceBlockInTangentSpace(
-          block, commonNoise().data(), with_common.data());
+      Eigen::Matrix<double, 6, size_of_common, Eigen::RowMajor> motion;
+      covariance.GetCovarianceBlockInTangentSpace(block, commonNoise(), motion.data());
       // How far the common noise moves the pose, by its unit.
-      const Matrix6d motion =
-          with_common / (considered_deviation * considered_deviation);
+      motion /= considered_deviation * considered_deviation;
       sum += motion * motion.transpose();
     }
   }
 
   ceres::AutoDiffManifold<RightTwists, 7, 6> twists_;
   RobustLoss loss_;
-  /** Of the scans, and the common noise; in one piece, because Ceres sorts them by
-   * their addresses, and the order decides about the last bits. */
-  std::vector<Unknowns> unknowns_;
+  std::size_t num_poses_;
+  /** In one piece, because Ceres sorts them by their addresses, and the order decides
+   * about the last bits. */
+  std::vector<double> unknowns_;
   std::vector<PlacedEdge> edges_;
   ceres::Problem problem_;
 };

@@ -22,6 +22,23 @@ adjointOf(const Eigen::Matrix4d& T)
   return adjoint;
 }
 
+Matrix6d
+noiseToSource(const Eigen::Matrix4d& T)
+{
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() =
+      T.topLeftCorner<3, 3>().transpose();
+  return turn;
+}
+
+Vector6d
+directionOf(const Eigen::Matrix4d& T)
+{
+  const Vector6d twist = logSE3(T);
+  const double length = twist.norm();
+  return length > 0.0 ? Vector6d(twist / length) : Vector6d(Vector6d::Unit(0));
+}
+
 std::vector<std::pair<int, int>>
 loopCandidates(const std::vector<GaussianPose>& poses, double radius)
 {

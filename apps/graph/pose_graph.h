@@ -22,21 +22,23 @@ struct GaussianPose {
 };
 
 /** \brief Parts of the variance of an edge that it has in common with others. Measured
- * on simulated drives with three sensors (docs/track.md); a target's noise is averaged
- * over its surface, and registrations with the same target have less in common. From 0,
- * and together below 1. */
+ * on simulated drives with three sensors (docs/track.md). From 0, and 2 scan + common
+ * below 1. */
 struct SharedNoise {
-  /** With all edges that have the same source: the noise of its points. */
-  double source = 0.5;
-  /** With all edges of the graph: what a sensor does wrong in each scan, such as the
-   * offsets of its rings. */
-  double common = 0.1;
+  /** Of each of its two scans: the noise of its points, which moves the scan. As the
+   * target it moves the edge the other way than as the source, so that it cancels along
+   * a chain. */
+  double scan = 0.25;
+  /** With all edges of the graph that move in the same direction: what a sensor does
+   * wrong in each scan, such as the offsets of its rings. It is the other way if the
+   * motion is, because both scans are treated alike. */
+  double common = 0.2;
 
   /** \brief The part that an edge has for itself. */
   constexpr double
   own() const
   {
-    return 1.0 - source - common;
+    return 1.0 - 2.0 * scan - common;
   }
 };
 
@@ -49,6 +51,16 @@ squareRootOf(const Matrix6d& covariance);
  * carries them from the left to the right. */
 Matrix6d
 adjointOf(const Eigen::Matrix4d& T);
+
+/** \brief Of a scan's noise, in its axes and in units of the deviations of its edges,
+ * to the axes of a source whose pose in that scan is \p T. */
+Matrix6d
+noiseToSource(const Eigen::Matrix4d& T);
+
+/** \brief The twist of \p T over its length, a radian counting as a metre; of no motion
+ * the x axis. */
+Vector6d
+directionOf(const Eigen::Matrix4d& T);
 
 /** \brief Where a trajectory comes back to where it was: for each pose the nearest
  * earlier one within \p radius, if in between the trajectory was more than twice the
@@ -72,9 +84,10 @@ struct GraphEdge {
   Eigen::Matrix4d T_target_source = Eigen::Matrix4d::Identity();
   /** CovarianceConvention::RightSE3 [m, rad]. */
   Matrix6d covariance = Matrix6d::Identity();
-  /** What its error S^1/2 z has in common with other errors: the covariance of the z of
-   * two edges is sqrt(common common') times the identity, and sqrt(source source') more
-   * if both have the same source. */
+  /** What its error S^1/2 z has in common with other errors:
+   * z = sqrt(scan) (n_source - R n_target) + sqrt(common) G d + sqrt(own) n_edge. R is
+   * noiseToSource(T_target_source) and d directionOf() it; each n has six independent
+   * numbers of variance 1, of a scan and of this edge, and G has 36, of all edges. */
   SharedNoise shared = SharedNoise();
 };
 

@@ -9,8 +9,10 @@ namespace bayesian_icp::app {
 
 namespace {
 
-/** Where the errors of the parts are, and what registrations have in common. */
-constexpr Eigen::Index of_target = 0, of_scan = 6, of_velocity = 12, of_common = 18;
+/** Where the errors of the parts are, and the noises of registrations. */
+constexpr Eigen::Index of_target = 0, of_scan = 6, of_velocity = 12,
+                       noise_of_target = 18, noise_of_scan = 24, noise_of_all = 30;
+constexpr int num_noises = 48;
 
 /** Times that an update is linearised. */
 constexpr int num_iterations = 5;
@@ -47,7 +49,7 @@ MotionFilter::MotionFilter(const MotionModel& model)
 , velocity_(model.velocity)
 {
   covariance_.block<6, 6>(of_velocity, of_velocity) = model.velocity_covariance;
-  covariance_.block<6, 6>(of_common, of_common).setIdentity();
+  covariance_.bottomRightCorner<num_noises, num_noises>().setIdentity();
 }
 
 void
@@ -71,7 +73,10 @@ MotionFilter::predict(double seconds)
   State F = State::Identity();
   F.block<6, 6>(of_scan, of_scan) = adjointOf(step.inverse());
   F.block<6, 6>(of_scan, of_velocity) = seconds * rightJacobian(motion);
+  F.block<6, 6>(noise_of_scan, noise_of_scan).setZero(); // it is another scan
   covariance_ = symmetric(State(F * covariance_ * F.transpose()));
+  covariance_.block<6, 6>(noise_of_scan, noise_of_scan).setIdentity();
+  scan_noise_.setZero();
 }
 
 double
@@ -79,10 +84,18 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
 {
   const Eigen::Matrix4d to_measured =
       matrixOf(measured.mean).inverse() * scan_in_target_;
-  const Matrix6d own = (1.0 - shared.common) * measured.covariance;
+  const Matrix6d own = shared.own() * measured.covariance;
+  const Matrix6d root = squareRootOf(measured.covariance);
   Eigen::Matrix<double, 6, num_errors> H = Eigen::Matrix<double, 6, num_errors>::Zero();
-  H.middleCols<6>(of_common) =
-      -std::sqrt(shared.common) * squareRootOf(measured.covariance);
+  H.middleCols<6>(noise_of_scan) = -std::sqrt(shared.scan) * root;
+  H.middleCols<6>(noise_of_target) =
+      std::sqrt(shared.scan) * root * noiseToSource(matrixOf(measured.mean));
+  const Vector6d of_all =
+      -std::sqrt(shared.common) * directionOf(matrixOf(measured.mean));
+  for (int k = 0; k < 6; ++k)
+    H.middleCols<6>(noise_of_all + 6 * k) = of_all[k] * root;
+  const Vector6d of_noise = H.middleCols<6>(noise_of_target) * target_noise_ +
+                            H.middleCols<6>(noise_of_scan) * scan_noise_;
   Eigen::Matrix<double, num_errors, 6> gain;
   Errors correction = Errors::Zero();
   double squared_innovation = 0.0;
@@ -93,14 +106,16 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
     H.middleCols<6>(of_scan) = of_xi;
     const Eigen::LDLT<Matrix6d> S(H * covariance_ * H.transpose() + own);
     if (iteration == 0)
-      squared_innovation = difference.dot(S.solve(difference));
+      squared_innovation = (difference + of_noise).dot(S.solve(difference + of_noise));
     gain = S.solve(H * covariance_).transpose();
-    gain.middleRows<6>(of_common).setZero();
-    correction = gain * (of_xi * xi - difference);
+    gain.bottomRows<36>().setZero();
+    correction = gain * (of_xi * xi - difference - of_noise);
   }
   target_ = target_ * expSE3(correction.segment<6>(of_target));
   scan_in_target_ = scan_in_target_ * expSE3(correction.segment<6>(of_scan));
   velocity_ += correction.segment<6>(of_velocity);
+  target_noise_ += correction.segment<6>(noise_of_target);
+  scan_noise_ += correction.segment<6>(noise_of_scan);
   // Joseph's form stays positive semi-definite. Errors are then about the new poses.
   State about_new = State::Identity();
   for (const Eigen::Index part : {of_target, of_scan})
@@ -119,9 +134,12 @@ MotionFilter::makeScanTheTarget()
   F.block<6, 6>(of_target, of_target) = adjointOf(scan_in_target_.inverse());
   F.block<6, 6>(of_target, of_scan).setIdentity();
   F.block<6, 6>(of_scan, of_scan).setZero();
+  F.block<6, 6>(noise_of_target, noise_of_target).setZero();
+  F.block<6, 6>(noise_of_target, noise_of_scan).setIdentity();
   covariance_ = symmetric(State(F * covariance_ * F.transpose()));
   target_ = target_ * scan_in_target_;
   scan_in_target_.setIdentity();
+  target_noise_ = scan_noise_;
 }
 
 GaussianPose

@@ -48,10 +48,10 @@ public:
    *
    * What all registrations have in common makes covariances wider and is not estimated
    * (a considered parameter, Schmidt 1966), because how it depends on the motion is not
-   * known well enough.
+   * known well enough. The noise of a scan is estimated: it cancels in part between the
+   * registration of the scan and those to it.
    * \param[in] measured the scan in the target's frame
-   * \param[in] shared only its part common counts: each scan is the source of one
-   *            registration
+   * \param[in] shared of the registration's variance with others
    * \return normalised innovation squared: chi-square of as many degrees of freedom as
    *         the registration sees, if the model and both covariances are right */
   double
@@ -70,7 +70,7 @@ public:
   pose() const;
 
 private:
-  static constexpr int num_errors = 24;
+  static constexpr int num_errors = 66;
   using Errors = Eigen::Matrix<double, num_errors, 1>;
   using State = Eigen::Matrix<double, num_errors, num_errors>;
 
@@ -79,8 +79,11 @@ private:
   Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();
   Eigen::Matrix4d scan_in_target_ = Eigen::Matrix4d::Identity();
   Vector6d velocity_;
-  /** Of the errors of target_, scan_in_target_ and velocity_, and of the noise that
-   * registrations have in common, in units of its standard deviations. */
+  /** Expected noises, in units of their standard deviations. */
+  Vector6d target_noise_ = Vector6d::Zero(), scan_noise_ = Vector6d::Zero();
+  /** Of the errors of target_, scan_in_target_ and velocity_, and of the noises of the
+   * target, of the scan and, in six columns, of all registrations (GraphEdge::shared).
+   */
   State covariance_ = State::Zero();
 };
 

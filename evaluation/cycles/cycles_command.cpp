@@ -123,9 +123,9 @@ Are the covariances of a pose graph right? Needs no true poses. Around each
 cycle of edges the product of the poses should be the identity, within the
 sum of the covariances. The normalised squared error of closures (NEES) is
 then 1 per degree of freedom on average, and 50 % and 95 % of the closures
-are in their regions. Edges with the same source (the second vertex) share its
+are in their regions. Edges of the same scan share its
 noise, and all edges share what the sensor does wrong in each scan:
---source-share and --common-share say how much of their variance. Larger
+--scan-share and --common-share say how much of their variance. Larger
 errors mean that covariances are too small, or that an edge is wrong.
 Directions in which a closure is less certain than 3 m or 3 rad are not
 counted: no cloud has seen them.
@@ -165,11 +165,12 @@ runCyclesCommand(int argc, const char* const* argv)
   // clang-format off
   description.add_options()
     ("max-length", integer(options.max_length, 3, 100), "most edges of a cycle")
-    ("source-share", share(options.shared.source),
-     "part of the variance that edges with the same source have in common, its noise")
+    ("scan-share", share(options.shared.scan),
+     "part of the variance of an edge that is the noise of each of its two scans, which "
+     "moves edges to the scan the other way than edges from it")
     ("common-share", share(options.shared.common),
-     "part of the variance that all edges have in common; together with --source-share "
-     "below 1. Both are 0 for edges that are independent");
+     "part of the variance that all edges have in common; together with twice the "
+     "--scan-share below 1. Both are 0 for edges that are independent");
   // clang-format on
   addResultOptions(options.result, description, "CSV file of the closures");
   const auto given = readOptions(argc, argv, description, cycles_help, "graph");
@@ -180,7 +181,7 @@ runCyclesCommand(int argc, const char* const* argv)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
   constexpr double rounding = 1e-6;
   if (!(options.shared.own() > rounding))
-    throw io::UsageError("--source-share and --common-share: together below 1");
+    throw io::UsageError("twice --scan-share and --common-share: together below 1");
   std::vector<GraphEdge> edges = app::readGraph(files[0]);
   for (GraphEdge& edge : edges)
     edge.shared = options.shared;

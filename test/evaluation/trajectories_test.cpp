@@ -59,21 +59,26 @@ drawnRecording(const std::string& name, std::uint64_t seed)
   for (int k = 0; k < 20; ++k, pose = pose * Isometry3d(expSE3(step)))
     registered.recording.poses.push_back(pose);
   Random random(seed, 7);
-  const Vector6d common = random.normal6();
-  std::map<int, Vector6d> noises; // of sources
+  Matrix6d common;
+  for (int k = 0; k < 6; ++k)
+    common.col(k) = random.normal6();
+  std::vector<Vector6d> noises;
+  for (std::size_t k = 0; k < registered.recording.poses.size(); ++k)
+    noises.push_back(random.normal6());
   for (const auto& [target, source] : pairsOf(registered.recording, 3, 0.5)) {
     Vector6d deviations;
     deviations << (source % 2 == 0 ? 0.5 : 0.01), 0.01, 0.01, Vector3d::Constant(0.002);
-    const Vector6d noise = noises.emplace(source, random.normal6()).first->second;
     const app::SharedNoise shared;
+    const Eigen::Matrix4d T =
+        registered.recording.relativePose(std::size_t(target), std::size_t(source))
+            .matrix();
     const Vector6d error = deviations.cwiseProduct(
-        std::sqrt(shared.source) * noise + std::sqrt(shared.common) * common +
+        std::sqrt(shared.scan) * (noises[std::size_t(source)] -
+                                  app::noiseToSource(T) * noises[std::size_t(target)]) +
+        std::sqrt(shared.common) * common * app::directionOf(T) +
         std::sqrt(shared.own()) * random.normal6());
     EdgeRun run;
-    run.mean = poseOf(
-        registered.recording.relativePose(std::size_t(target), std::size_t(source))
-            .matrix() *
-        expSE3(-error));
+    run.mean = poseOf(T * expSE3(-error));
     for (const std::string& method : edgeMethods()) {
       run.name = {name, seed, target, source, method, ""};
       run.complaint = method == "closed-form" ? "none" : "";

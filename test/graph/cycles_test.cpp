@@ -49,7 +49,7 @@ TEST(Cycles, CloseWithinTheSumOfTheCovariances)
 TEST(Cycles, TogetherAreChiSquareWhateverTheyHaveInCommon)
 {
   constexpr int num_runs = 1500, num_poses = 8;
-  constexpr app::SharedNoise shared{0.6, 0.1};
+  constexpr app::SharedNoise shared{0.3, 0.1};
   Random random(6, 0);
   double squared_error = 0.0;
   int num_rare = 0, num_rare_if_independent = 0;

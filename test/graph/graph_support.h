@@ -92,27 +92,57 @@ squaredErrorOf(const app::GaussianPose& estimate, const Eigen::Matrix4d& truth)
   return error.dot(estimate.covariance.ldlt().solve(error));
 }
 
+/** \brief Both halves of \p noise, each by the inverse of T's rotation. */
+inline Vector6d
+turnedBack(const Eigen::Matrix4d& T, const Vector6d& noise)
+{
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  Vector6d turned;
+  turned << R.transpose() * noise.head<3>(), R.transpose() * noise.tail<3>();
+  return turned;
+}
+
+/** \brief 36 independent numbers of variance 1. */
+inline Matrix6d
+drawnSquare(Random& random)
+{
+  Matrix6d square;
+  for (int k = 0; k < 6; ++k)
+    square.col(k) = random.normal6();
+  return square;
+}
+
+/** \brief Unit vector of the motion [m, rad]. */
+inline Vector6d
+alongMotion(const Eigen::Matrix4d& T)
+{
+  return logSE3(T).normalized();
+}
+
 /** \brief From each pose to up to \p span before it. */
 inline std::vector<app::GraphEdge>
 drawnSpan(const Poses& poses, int span, const app::SharedNoise& shared, Random& random)
 {
-  const Vector6d common = random.normal6();
+  const Matrix6d common = drawnSquare(random);
+  std::vector<Vector6d> noises; // of scans
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    noises.push_back(random.normal6());
   std::vector<app::GraphEdge> edges;
-  for (int source = 1; source < static_cast<int>(poses.size()); ++source) {
-    const Vector6d noise = random.normal6();
+  for (int source = 1; source < static_cast<int>(poses.size()); ++source)
     for (int target = source - 1; target >= std::max(0, source - span); --target) {
       app::GraphEdge edge = drawnEdge(poses, target, source, random);
-      const Vector6d z = std::sqrt(shared.source) * noise +
-                         std::sqrt(shared.common) * common +
-                         std::sqrt(shared.own()) * random.normal6();
+      const Eigen::Matrix4d T =
+          poses[std::size_t(target)].inverse() * poses[std::size_t(source)];
+      const Vector6d z =
+          std::sqrt(shared.scan) * (noises[std::size_t(source)] -
+                                    turnedBack(T, noises[std::size_t(target)])) +
+          std::sqrt(shared.common) * common * alongMotion(T) +
+          std::sqrt(shared.own()) * random.normal6();
       const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
-      edge.T_target_source = poses[std::size_t(target)].inverse() *
-                             poses[std::size_t(source)] *
-                             expSE3(Vector6d(-solver.operatorSqrt() * z));
+      edge.T_target_source = T * expSE3(Vector6d(-solver.operatorSqrt() * z));
       edge.shared = shared;
       edges.push_back(edge);
     }
-  }
   return edges;
 }
 

@@ -138,7 +138,7 @@ TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
 TEST(OptimizedPosesOf, EdgesThatShareNoiseAreAsFarOffAsStated)
 {
   constexpr int num_runs = 300, num_poses = 16;
-  constexpr app::SharedNoise shared{0.5, 0.1}, without_common{0.6, 0.0};
+  constexpr app::SharedNoise shared{0.25, 0.1}, without_common{0.25, 0.0};
   Random random(7, 0);
   double as_drawn = 0.0, without = 0.0, alone = 0.0;
   for (int run = 0; run < num_runs; ++run) {
@@ -160,9 +160,8 @@ TEST(OptimizedPosesOf, EdgesThatShareNoiseAreAsFarOffAsStated)
     alone += squaredErrorFor(app::independent_noise) / num_runs;
     // The common noise has no part in the weights.
     const double scale = 1.0 / (1.0 - shared.common);
-    EXPECT_LT(
-        (lastPoseFor({shared.source * scale, 0.0}).mean - with_common.mean).norm(),
-        1e-6);
+    EXPECT_LT((lastPoseFor({shared.scan * scale, 0.0}).mean - with_common.mean).norm(),
+              1e-6);
   }
   EXPECT_NEAR(as_drawn, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
   EXPECT_GT(without, 7.5);
@@ -223,7 +222,7 @@ TEST(OptimizedPosesOf, AnEdgePullsNoHarderThanAtItsBorder)
   // deviations of 0.1 m. Huber's loss lets the wrong one pull as one would that is as
   // far off as the border of its 95 % region, 3.548 deviations.
   for (const app::SharedNoise& shared :
-       {app::independent_noise, app::SharedNoise{0.6, 0.0}, app::SharedNoise()}) {
+       {app::independent_noise, app::SharedNoise{0.3, 0.0}, app::SharedNoise()}) {
     const GraphEdge right = edgeAlongX(0, 1, 1.0, 0.01);
     GraphEdge wrong = edgeAlongX(0, 1, 11.0, 0.01);
     wrong.shared = shared;
@@ -233,7 +232,7 @@ TEST(OptimizedPosesOf, AnEdgePullsNoHarderThanAtItsBorder)
     EXPECT_EQ(found.complaint, "");
     EXPECT_NEAR(
         found.poses[1].mean[0], 1.0 + 0.05 * 3.548 / (1.0 - shared.common), 0.001)
-        << shared.source << ' ' << shared.common;
+        << shared.scan << ' ' << shared.common;
   }
 }
 

@@ -79,7 +79,8 @@ runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
   Eigen::Matrix4d truth = Eigen::Matrix4d::Identity(), target = truth;
   const Matrix6d root =
       Eigen::SelfAdjointEigenSolver<Matrix6d>(covariance).operatorSqrt();
-  const Vector6d common = std::sqrt(shared.common) * random.normal6();
+  const Matrix6d common = drawnSquare(random);
+  Vector6d noise_of_target = random.normal6();
   RunOfTrack run;
   int num_on_target = 0;
   for (int scan = 1; scan <= num_steps; ++scan) {
@@ -93,8 +94,12 @@ runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
       continue;
     // Along x the registration says what the prediction says, as withoutPrior() does.
     const Eigen::Matrix4d in_target = target.inverse() * truth;
+    const Vector6d noise = random.normal6();
     Vector6d error =
-        -root * (common + std::sqrt(1.0 - shared.common) * random.normal6());
+        -root *
+        (std::sqrt(shared.scan) * (noise - turnedBack(in_target, noise_of_target)) +
+         std::sqrt(shared.common) * common * alongMotion(in_target) +
+         std::sqrt(shared.own()) * random.normal6());
     error[0] = logSE3(in_target.inverse() * matrixOf(filter.poseInTarget().mean))[0];
     run.innovation +=
         filter.update({poseOf(in_target * expSE3(error)), covariance}, shared);
@@ -102,6 +107,7 @@ runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
     if (++num_on_target == scans_on_target) {
       filter.makeScanTheTarget();
       target = truth;
+      noise_of_target = noise;
       num_on_target = 0;
     }
   }
@@ -109,19 +115,19 @@ runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
   return run;
 }
 
-/** Scans on a target, and the part of the noise that all registrations share. */
-class MotionFilterOnTracks : public ::testing::TestWithParam<std::tuple<int, double>> {
-};
+/** Scans on a target, and the parts of the noise of a scan and of all registrations. */
+class MotionFilterOnTracks
+: public ::testing::TestWithParam<std::tuple<int, double, double>> {};
 
 } // namespace
 
 TEST_P(MotionFilterOnTracks, KnowsHowFarItIsOff)
 {
-  const auto [scans_on_target, common] = GetParam();
+  const auto [scans_on_target, of_scan, common] = GetParam();
   Eigen::ArrayXd squared_errors(num_runs), innovations(num_runs);
   for (int k = 0; k < num_runs; ++k) {
     const RunOfTrack run =
-        runOf(static_cast<std::uint64_t>(k + 1), scans_on_target, {0.5, common});
+        runOf(static_cast<std::uint64_t>(k + 1), scans_on_target, {of_scan, common});
     squared_errors[k] = run.squared_error;
     innovations[k] = run.innovation / run.num_updates;
   }
@@ -135,6 +141,7 @@ TEST_P(MotionFilterOnTracks, KnowsHowFarItIsOff)
 INSTANTIATE_TEST_SUITE_P(ScansOnATarget,
                          MotionFilterOnTracks,
                          ::testing::Combine(::testing::Values(1, 3),
+                                            ::testing::Values(0.0, 0.25, 0.4),
                                             ::testing::Values(0.0, 0.1)));
 
 TEST(MotionFilter, CarriesTheVelocitysErrorAsTheMotionDoes)
