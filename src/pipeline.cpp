@@ -1,8 +1,8 @@
 #include "calibrated/calibrated.h"
+#include "cloud_parts.h"
 #include "exact/exact.h"
 #include "paper/paper.h"
 #include "summary/estimates.h"
-#include "target_parts.h"
 
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/tree_search.h>
@@ -170,25 +170,35 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
 }
 
 PosteriorEstimate
-estimatePosterior(const Eigen::Matrix3Xd& source_points,
-                  const PreparedTarget& target,
+estimatePosterior(const PreparedCloud& source,
+                  const PreparedCloud& target,
                   const Vector6d& initial_pose,
                   const Options& options,
                   const ProgressCallback& progress)
 {
   const int num_threads = options.chains.num_threads;
   if (options.preset == Preset::Calibrated) {
-    const auto surface = [&]() -> const PreparedSurface& {
-      return target.parts().surface(num_threads);
+    const auto surfaceOf = [num_threads](const PreparedCloud& cloud) {
+      return [&cloud, num_threads]() -> const PreparedSurface& {
+        return cloud.parts().surface(num_threads);
+      };
     };
-    return estimateCalibratedPosterior(
-        source_points, target.points(), surface, initial_pose, options, progress);
+    return estimateCalibratedPosterior(source.points(),
+                                       target.points(),
+                                       surfaceOf(source),
+                                       surfaceOf(target),
+                                       initial_pose,
+                                       options,
+                                       progress);
   }
   const std::string complaint = options.validate();
   if (!complaint.empty())
     return failure(Status::InvalidOptions, complaint);
-  return estimatePosterior(
-      source_points, target.parts().tree(num_threads), initial_pose, options, progress);
+  return estimatePosterior(source.points(),
+                           target.parts().tree(num_threads),
+                           initial_pose,
+                           options,
+                           progress);
 }
 
 } // namespace bayesian_icp

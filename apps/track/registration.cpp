@@ -8,8 +8,8 @@
 namespace bayesian_icp::app {
 
 Registration
-registered(const Eigen::Matrix3Xd& points,
-           const PreparedTarget& target,
+registered(const PreparedCloud& source,
+           const PreparedCloud& target,
            const Options& options,
            const ProgressCallback& progress)
 {
@@ -19,11 +19,12 @@ registered(const Eigen::Matrix3Xd& points,
     return !is_cancelled;
   };
   PosteriorEstimate estimate =
-      estimatePosterior(points, target, options.prior.mean, options, watch);
+      estimatePosterior(source, target, options.prior.mean, options, watch);
   Summary& summary = estimate.summary;
-  doubtRounding(std::max(usualCoordinate(points), usualCoordinate(target.points())),
-                options,
-                summary);
+  doubtRounding(
+      std::max(usualCoordinate(source.points()), usualCoordinate(target.points())),
+      options,
+      summary);
   Registration result;
   result.status = toString(summary.status);
   result.message = summary.message;

@@ -7,7 +7,7 @@
 
 #include <bayesian_icp/draws.h>
 #include <bayesian_icp/options.h>
-#include <bayesian_icp/prepared_target.h>
+#include <bayesian_icp/prepared_cloud.h>
 
 #include <string>
 
@@ -28,12 +28,13 @@ struct Registration {
 };
 
 /** \brief Register a scan.
- * \param[in] points of the scan, 3 x n, finite [m]
+ * \param[in] source the scan; its points are finite [m]
+ * \param[in] target another scan, or a map [m]
  * \param[in] options with a prior about the sensor
  * \param[in] progress returns false to cancel; may be empty */
 Registration
-registered(const Eigen::Matrix3Xd& points,
-           const PreparedTarget& target,
+registered(const PreparedCloud& source,
+           const PreparedCloud& target,
            const Options& options,
            const ProgressCallback& progress);
 

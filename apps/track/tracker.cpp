@@ -52,16 +52,16 @@ Tracker::Tracker(const TrackRequest& request, const Track& track)
 , track_(track)
 {}
 
-PreparedTarget
+PreparedCloud
 Tracker::preparedScan(int scan)
 {
   auto found = prepared_.find(scan);
   if (found == prepared_.end())
-    found = prepared_.emplace(scan, PreparedTarget(pointsOf(scan))).first;
+    found = prepared_.emplace(scan, PreparedCloud(pointsOf(scan))).first;
   return found->second;
 }
 
-PreparedTarget
+PreparedCloud
 Tracker::mapOfTarget()
 {
   Eigen::Matrix3Xd map(3, 0), part;
@@ -83,12 +83,10 @@ Tracker::prepareTarget()
   target_scan_ = track_.target();
   target_ = request_.voxel_size > 0.0 ? mapOfTarget() : preparedScan(target_scan_);
   points_.clear();
-  prepared_.erase(prepared_.begin(),
-                  prepared_.lower_bound(track_.size() - request_.span));
 }
 
 Registration
-Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
+Tracker::registerToTarget(const PreparedCloud& source,
                           const ProgressCallback& progress,
                           bool& is_velocity_doubted) const
 {
@@ -98,7 +96,7 @@ Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
     Options options = request_.settings.options;
     options.prior =
         priorFrom(statedPoseOf(prediction.mean, prediction.covariance)).options;
-    Registration result = registered(points, *target_, options, progress);
+    Registration result = registered(source, *target_, options, progress);
     result.edge.pose.covariance +=
         track_.targetCovariance(matrixOf(result.edge.pose.mean));
     return result;
@@ -114,7 +112,7 @@ Tracker::registerToTarget(const Eigen::Matrix3Xd& points,
 }
 
 bool
-Tracker::registerToMore(const Eigen::Matrix3Xd& points,
+Tracker::registerToMore(const PreparedCloud& source,
                         const ProgressCallback& progress,
                         TrackStep& step)
 {
@@ -133,7 +131,7 @@ Tracker::registerToMore(const Eigen::Matrix3Xd& points,
     Options options = request_.settings.options;
     options.prior.mean = poseOf(poseIn0(other).inverse() * pose);
     options.prior.frame = PriorFrame::Origin;
-    Registration result = registered(points, preparedScan(other), options, progress);
+    Registration result = registered(source, preparedScan(other), options, progress);
     if (result.quality == Quality::Cancelled)
       return false;
     result.edge.target = other;
@@ -148,12 +146,15 @@ Tracker::registerNext(const ProgressCallback& progress)
 {
   const auto start = std::chrono::steady_clock::now();
   prepareTarget();
+  prepared_.erase(prepared_.begin(),
+                  prepared_.lower_bound(track_.size() - request_.span));
   TrackStep step;
   step.scan = track_.size();
   Registration result;
   result.status = "error";
   try {
-    result = registerToTarget(pointsOf(step.scan), progress, step.is_velocity_doubted);
+    result =
+        registerToTarget(preparedScan(step.scan), progress, step.is_velocity_doubted);
   }
   catch (const io::FileError& error) {
     result.message = error.what();
@@ -177,7 +178,7 @@ Tracker::registerNext(const ProgressCallback& progress)
     step.kind =
         result.quality == Quality::Good ? StepKind::Registered : StepKind::Widened;
     step.edge.target = track_.target();
-    if (!registerToMore(pointsOf(step.scan), progress, step))
+    if (!registerToMore(preparedScan(step.scan), progress, step))
       return std::nullopt;
   }
   if (step.kind == StepKind::Predicted)

@@ -7,7 +7,7 @@
 #include "track/registration.h"
 
 #include <bayesian_icp/draws.h>
-#include <bayesian_icp/prepared_target.h>
+#include <bayesian_icp/prepared_cloud.h>
 
 #include <map>
 #include <optional>
@@ -62,10 +62,10 @@ private:
   const Eigen::Matrix3Xd&
   pointsOf(int scan);
 
-  PreparedTarget
+  PreparedCloud
   preparedScan(int scan);
 
-  PreparedTarget
+  PreparedCloud
   mapOfTarget();
 
   void
@@ -75,14 +75,14 @@ private:
    * velocity were unknown.
    * \param[out] is_velocity_doubted whether the second try is the result */
   Registration
-  registerToTarget(const Eigen::Matrix3Xd& points,
+  registerToTarget(const PreparedCloud& source,
                    const ProgressCallback& progress,
                    bool& is_velocity_doubted) const;
 
   /** To scans before the target, from where \p step puts the scan. Those that cannot be
    * registered are left out. \return false if it was cancelled */
   bool
-  registerToMore(const Eigen::Matrix3Xd& points,
+  registerToMore(const PreparedCloud& source,
                  const ProgressCallback& progress,
                  TrackStep& step);
 
@@ -90,11 +90,12 @@ private:
   const Track& track_;
   /** Of scans that the next target will have [m], by their numbers. */
   std::map<int, Eigen::Matrix3Xd> points_;
-  /** The last scans as targets, each from when it is first needed. */
-  std::map<int, PreparedTarget> prepared_;
+  /** The last scans, each from when it is first needed: the source of one registration
+   * is the target of the next. */
+  std::map<int, PreparedCloud> prepared_;
   /** The scan in whose frame target_ is; -1 before the first one. */
   int target_scan_ = -1;
-  std::optional<PreparedTarget> target_;
+  std::optional<PreparedCloud> target_;
 };
 
 } // namespace bayesian_icp::app

@@ -61,17 +61,18 @@ notedResultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
 /** A case, ready to be estimated. */
 struct Registration {
   explicit Registration(const CoverageCase& problem)
-  : model(problem.target, SurfaceModelOptions(), 1)
+  : source(prepareSurface(problem.source, 1))
+  , target(prepareSurface(problem.target, 1))
   , scorer(scorerOf(problem.source,
+                    source,
                     problem.target,
-                    model,
+                    target.model,
                     CalibratedOptions().max_source_points,
-                    problem.seed,
-                    1))
+                    problem.seed))
   , prior(priorOf(problem))
   {}
 
-  SurfaceModel model;
+  PreparedSurface source, target;
   SurfaceScorer scorer;
   Prior prior;
 };

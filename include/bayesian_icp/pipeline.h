@@ -6,7 +6,7 @@
 #include <bayesian_icp/correspondence.h>
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/options.h>
-#include <bayesian_icp/prepared_target.h>
+#include <bayesian_icp/prepared_cloud.h>
 #include <bayesian_icp/summary.h>
 
 namespace bayesian_icp {
@@ -43,19 +43,20 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());
 
-/** \brief The same for a target given by its points, or by a PreparedTarget that is
- * kept for other sources. This is the only overload for preset `calibrated` that keeps
+/** \brief The same for clouds given by their points, or by PreparedClouds that are kept
+ * for other registrations. This is the only overload for preset `calibrated` that keeps
  * all digits of far coordinates.
  *
- * \param[in] source_points 3 x n, finite, source frame [m]
- * \param[in] target points in the target frame [m], and what has been made of them
+ * \param[in] source finite points in the source frame [m], and what has been made of
+ *            them
+ * \param[in] target points in the target frame [m], as well
  * \param[in] initial_pose as above
  * \param[in] options as above; any preset
  * \param[in] progress as above
- * \return as above. It does not depend on what \p target was used for before. */
+ * \return as above. It does not depend on what the clouds were used for before. */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
-estimatePosterior(const Eigen::Matrix3Xd& source_points,
-                  const PreparedTarget& target,
+estimatePosterior(const PreparedCloud& source,
+                  const PreparedCloud& target,
                   const Vector6d& initial_pose,
                   const Options& options,
                   const ProgressCallback& progress = ProgressCallback());

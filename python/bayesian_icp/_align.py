@@ -36,11 +36,12 @@ def align(
 
     Parameters
     ----------
-    source : array_like, (N, 3)
+    source : array_like, (N, 3), or Target
         Points [m], any real dtype and strides, or an ``open3d.geometry.PointCloud``.
-        Preset calibrated needs 30 or more.
+        Preset calibrated needs 30 or more. A `Target` is prepared once and used many
+        times: in odometry a scan is the source first, and then the target.
     target : array_like, (M, 3), or Target
-        The same; a `Target` is prepared once for many sources.
+        The same.
     init_T_target_source : array_like, (4, 4), optional
         Initial guess, which maps source points into the target frame; the identity
         unless it is given. Where no `prior_mean` is given it is the mean of the prior.

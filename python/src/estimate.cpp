@@ -17,7 +17,7 @@ namespace bayesian_icp::python {
 
 namespace {
 
-/** A target that is prepared once. */
+/** A cloud that is prepared once. */
 class Target {
 public:
   explicit Target(Points points)
@@ -28,7 +28,7 @@ public:
 
   const bool is_rounded;
   const double usual_coordinate;
-  const PreparedTarget prepared;
+  const PreparedCloud prepared;
 };
 
 /** Says what the status InvalidOptions or InvalidInput says as an exception. */
@@ -50,11 +50,14 @@ estimate(const py::object& source_cloud,
   const std::string complaint = options.validate();
   if (!complaint.empty())
     throw py::value_error(complaint);
-  const auto source = std::make_shared<const Points>(pointsOf(source_cloud, "source"));
+  const auto source =
+      py::isinstance<Target>(source_cloud)
+          ? source_cloud.cast<std::shared_ptr<const Target>>()
+          : std::make_shared<const Target>(pointsOf(source_cloud, "source"));
   PosteriorEstimate result = runBeside(
       [=](const ProgressCallback& progress) {
         return estimatePosterior(
-            source->xyz, target->prepared, guess, options, progress);
+            source->prepared, target->prepared, guess, options, progress);
       },
       observer);
   refuseMisuse(result.summary);
@@ -167,7 +170,7 @@ bindEstimate(py::module_& module)
   py::class_<Target, std::shared_ptr<Target>>(
       module,
       "Target",
-      "A target cloud that is prepared once and used for many sources.\n\n"
+      "A cloud that is prepared once and used many times, as target or source.\n\n"
       "Parameters\n----------\n"
       "points : array_like, (N, 3)\n"
       "    Finite points [m], or an open3d.geometry.PointCloud.\n\n"

@@ -100,30 +100,30 @@ estimateAndDraw(const SurfaceScorer& scorer,
 } // namespace
 
 PosteriorEstimate
-estimateCalibratedPosterior(
-    const Eigen::Matrix3Xd& source_points,
-    const Eigen::Matrix3Xd& target_points,
-    const std::function<const PreparedSurface&()>& target_surface,
-    const Vector6d& initial_pose,
-    const Options& options,
-    const ProgressCallback& progress)
+estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
+                            const Eigen::Matrix3Xd& target_points,
+                            const SurfaceGiver& source_surface,
+                            const SurfaceGiver& target_surface,
+                            const Vector6d& initial_pose,
+                            const Options& options,
+                            const ProgressCallback& progress)
 {
   PosteriorEstimate checked = checkInput(source_points, initial_pose, options);
   if (checked.summary.status != Status::NotRun)
     return checked;
   if (isCancelled(progress))
     return failure(Status::Cancelled, "interrupted before the first draw");
-  // 1: the target as a surface.
-  const PreparedSurface& surface = target_surface();
-  if (!surface.complaint.empty())
-    return failure(surface.status, surface.complaint);
+  // 1: both clouds as surfaces.
+  const PreparedSurface& target = target_surface();
+  if (!target.complaint.empty())
+    return failure(target.status, target.complaint);
   // 2: what the points of both clouds say.
   const SurfaceScorer scorer = scorerOf(source_points,
+                                        source_surface(),
                                         target_points,
-                                        surface.model,
+                                        target.model,
                                         options.calibrated.max_source_points,
-                                        options.chains.seed,
-                                        options.chains.num_threads);
+                                        options.chains.seed);
   const Prior prior = priorOf(options, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }

@@ -11,16 +11,20 @@
 
 namespace bayesian_icp {
 
-/** \brief As estimatePosterior(), for preset `calibrated`.
- * \param[in] target_surface gives the target's surface, which it may have to make
- *            first; it is not asked for where the other arguments are wrong */
+/** \brief Gives the surface of a cloud, which it may have to make first. */
+using SurfaceGiver = std::function<const PreparedSurface&()>;
+
+/** \brief As estimatePosterior(), for preset `calibrated`. Surfaces are not asked for
+ * where the other arguments are wrong.
+ * \param[in] source_surface of \p source_points
+ * \param[in] target_surface of \p target_points */
 PosteriorEstimate
-estimateCalibratedPosterior(
-    const Eigen::Matrix3Xd& source_points,
-    const Eigen::Matrix3Xd& target_points,
-    const std::function<const PreparedSurface&()>& target_surface,
-    const Vector6d& initial_pose,
-    const Options& options,
-    const ProgressCallback& progress);
+estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
+                            const Eigen::Matrix3Xd& target_points,
+                            const SurfaceGiver& source_surface,
+                            const SurfaceGiver& target_surface,
+                            const Vector6d& initial_pose,
+                            const Options& options,
+                            const ProgressCallback& progress);
 
 } // namespace bayesian_icp

@@ -6,7 +6,6 @@
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
-#include "calibrated/surface/prepared_surface.h"
 #include "geometry/principal_axes.h"
 #include "search/finite_columns.h"
 #include "threads/for_each_piece.h"
@@ -15,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -433,22 +431,20 @@ evenPoints(const Matrix3Xd& points,
 
 SurfaceScorer
 scorerOf(const Matrix3Xd& source_points,
+         const PreparedSurface& source,
          const Matrix3Xd& target_points,
          const SurfaceModel& target,
          Index max_points,
-         std::uint64_t seed,
-         int num_threads)
+         std::uint64_t seed)
 {
   SurfaceScorer scorer(evenPoints(source_points, target, max_points, seed), target);
-  const auto source = std::make_shared<const PreparedSurface>(
-      prepareSurface(source_points, num_threads));
-  if (source->complaint.empty())
+  if (source.complaint.empty())
     scorer.addTargetPoints(
         evenPoints(target_points(Eigen::all, finiteColumns(target_points)),
-                   source->model,
+                   source.model,
                    max_points,
                    seed),
-        {source, &source->model});
+        source.model);
   return scorer;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "calibrated/score/surface_score.h"
+#include "calibrated/surface/prepared_surface.h"
 #include "geometry/twist.h"
 
 #include <cstdint>
@@ -96,18 +97,18 @@ evenPoints(const Eigen::Matrix3Xd& points,
  * has no usable surface, its points alone are compared with the target's.
  *
  * \param[in] source_points 3 x n, finite [m]
+ * \param[in] source surface of these; must outlive the scorer
  * \param[in] target_points 3 x m; those that are not finite are left out [m]
- * \param[in] target surface of these; must outlive the scorer
+ * \param[in] target surface of these, as well
  * \param[in] max_points of each cloud
- * \param[in] seed of their order
- * \param[in] num_threads 0: as OpenMP would */
+ * \param[in] seed of their order */
 SurfaceScorer
 scorerOf(const Eigen::Matrix3Xd& source_points,
+         const PreparedSurface& source,
          const Eigen::Matrix3Xd& target_points,
          const SurfaceModel& target,
          Eigen::Index max_points,
-         std::uint64_t seed,
-         int num_threads);
+         std::uint64_t seed);
 
 /** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
  * result from there) and estimate its covariance.

@@ -171,8 +171,9 @@ TEST(CalibratedEstimate, TheTargetsPointsMakeItSharper)
   Comparison comparison;
   for (int k = 0; k < num_cases; ++k) {
     const Case c(400 + static_cast<std::uint64_t>(k), 2000, 2000);
-    const SurfaceScorer both =
-        scorerOf(c.scorer->sourcePoints(), c.target, *c.model, 4000, 1, 1);
+    const Matrix3Xd& points = c.scorer->sourcePoints();
+    const PreparedSurface source = prepareSurface(points, 1);
+    const SurfaceScorer both = scorerOf(points, source, c.target, *c.model, 4000, 1);
     ASSERT_EQ(both.numPoints(), 4000);
     const CalibratedEstimate e = estimateCalibrated(both, *c.prior);
     const CalibratedEstimate of_source = estimateCalibrated(*c.scorer, *c.prior);
@@ -189,17 +190,18 @@ TEST(CalibratedEstimate, IsTheSameTheOtherWay)
 {
   for (std::uint64_t stream = 500; stream < 505; ++stream) {
     const Case c(stream, 2000, 2000);
-    const Matrix3Xd& source = c.scorer->sourcePoints();
-    const SurfaceModel source_model(source);
+    const Matrix3Xd& points = c.scorer->sourcePoints();
+    const PreparedSurface source = prepareSurface(points, 1);
+    const PreparedSurface target = prepareSurface(c.target, 1);
     const Isometry3d start = isometryOf(c.prior->mean());
     const Prior wide(poseOf(start.matrix()), Vector6d::Ones(), c.scorer->centroid());
     const CalibratedEstimate forth = estimateCalibrated(
-        scorerOf(source, c.target, *c.model, 4000, 1, 1), wide, {}, &start);
+        scorerOf(points, source, c.target, target.model, 4000, 1), wide, {}, &start);
     const Isometry3d back_start = start.inverse();
     const Prior wide_back(
         poseOf(back_start.matrix()), Vector6d::Ones(), c.target.rowwise().mean());
     const CalibratedEstimate back =
-        estimateCalibrated(scorerOf(c.target, source, source_model, 4000, 1, 1),
+        estimateCalibrated(scorerOf(c.target, target, points, source.model, 4000, 1),
                            wide_back,
                            {},
                            &back_start);

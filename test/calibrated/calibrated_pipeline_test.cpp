@@ -62,7 +62,7 @@ estimateFrom(const Scans& scans, const Options& options = calibratedOptions())
   return estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
 }
 
-TEST(Calibrated, APreparedTargetIsForManySourcesPresetsAndThreads)
+TEST(Calibrated, APreparedCloudIsForManySourcesPresetsAndThreads)
 {
   const Scans scans;
   const Scans other_scans{Scans::surface(93, 1400)};
@@ -78,7 +78,7 @@ TEST(Calibrated, APreparedTargetIsForManySourcesPresetsAndThreads)
       estimatePosterior(scans.source, scans.target, Vector6d::Zero(), exact).samples;
   ASSERT_GT(of_exact.rows(), 0);
 
-  const PreparedTarget target(scans.target);
+  const PreparedCloud target(scans.target);
   const auto drawsOf = [&](const Eigen::Matrix3Xd& source, const Options& options) {
     return estimatePosterior(source, target, Vector6d::Zero(), options).samples;
   };
@@ -89,10 +89,23 @@ TEST(Calibrated, APreparedTargetIsForManySourcesPresetsAndThreads)
   first.join();
   EXPECT_EQ(draws, expected);
   target.prepare(Preset::Exact);
-  const PreparedTarget copy = target;
+  const PreparedCloud copy = target;
   EXPECT_EQ(copy.points().data(), target.points().data());
   EXPECT_EQ(estimatePosterior(scans.source, copy, Vector6d::Zero(), exact).samples,
             of_exact);
+}
+
+TEST(Calibrated, ThePreparedSourceIsTheNextTarget)
+{
+  const Scans scans;
+  const Eigen::Matrix3Xd next = Scans::surface(93, 1400);
+  const Options options = calibratedOptions();
+  const PreparedCloud source(scans.source);
+  const auto drawsOf = [&](const PreparedCloud& from, const PreparedCloud& to) {
+    return estimatePosterior(from, to, Vector6d::Zero(), options).samples;
+  };
+  EXPECT_EQ(drawsOf(source, scans.target), estimateFrom(scans).samples);
+  EXPECT_EQ(drawsOf(next, source), drawsOf(next, scans.source));
 }
 
 TEST(Calibrated, FindsPoseNoiseAndSixObservedDirections)

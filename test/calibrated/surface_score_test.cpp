@@ -134,7 +134,7 @@ TEST(SurfaceScore, OfATargetPointIsTheGradientToo)
   const Vector3d centre = T_target_source * c.centre();
   const Matrix3Xd source_point = Vector3d(50.0, 0.0, 0.0);
   SurfaceScorer scorer(source_point, c.model);
-  scorer.addTargetPoints(c.source, {std::shared_ptr<void>(), &c.model});
+  scorer.addTargetPoints(c.source, c.model);
   PatchHints hints;
   SurfaceScores scores;
   scorer.evaluate(T_target_source, centre, c.tau, hints, scores);
@@ -175,7 +175,7 @@ TEST(SurfaceScore, FirstPointsAreHalfOfEachCloud)
                   target = test::randomPoints(random, 20);
   SurfaceScorer scorer(source, model);
   EXPECT_EQ(scorer.ofFirstOfBoth(10).sourcePoints(), source.leftCols(10));
-  scorer.addTargetPoints(target, {std::shared_ptr<void>(), &model});
+  scorer.addTargetPoints(target, model);
   const Isometry3d pose = isometryOf(random.normal6());
   const auto points = [&](const SurfaceScorer& of) { return of.pointsAt(pose); };
   Matrix3Xd expected(3, 10);

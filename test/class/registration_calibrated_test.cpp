@@ -155,7 +155,7 @@ TEST_F(CalibratedTest, CancellingEndsIcpAfterTheIteration)
   EXPECT_EQ(icp.getSamples().rows(), 0);
 }
 
-TEST_F(CalibratedTest, AnObjectThatKeepsItsTargetGivesWhatANewOneGives)
+TEST_F(CalibratedTest, AnObjectThatKeepsItsCloudsGivesWhatANewOneGives)
 {
   icp.align(output);
   const Cloud::Ptr other_source = bumpySurface<PointXYZ>(3, 1200);
@@ -179,6 +179,20 @@ TEST_F(CalibratedTest, AnObjectThatKeepsItsTargetGivesWhatANewOneGives)
     point.x += 0.01f;
   icp.setInputTarget(other_target);
   expectAsNew(other_source, other_target);
+  // The source becomes the target, as in odometry; the other way around; and a target
+  // with a point that is not finite, which was a source without it.
+  icp.setInputTarget(other_source);
+  icp.setInputSource(source);
+  expectAsNew(source, other_source);
+  icp.setInputTarget(source);
+  icp.setInputSource(other_source);
+  expectAsNew(other_source, source);
+  const Cloud::Ptr holed(new Cloud(*other_source));
+  holed->emplace_back(std::nanf(""), 0.f, 0.f);
+  holed->is_dense = false;
+  icp.setInputTarget(holed);
+  icp.setInputSource(source);
+  expectAsNew(source, holed);
 }
 
 } // namespace

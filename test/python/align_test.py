@@ -81,6 +81,8 @@ def test_a_target_serves_many_sources(mug, result):
     assert len(target) == len(mug[1])
     for _ in range(2):
         assert np.array_equal(bayesian_icp.align(source=mug[0], target=target).samples, result.samples)
+    assert np.array_equal(bayesian_icp.align(source=bayesian_icp.Target(mug[0]), target=target).samples,
+                          result.samples)
     exact = dict(source=mug[0], preset="exact")
     assert np.array_equal(bayesian_icp.align(target=target, **exact).samples,
                           bayesian_icp.align(target=mug[1], **exact).samples)

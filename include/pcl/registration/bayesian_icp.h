@@ -290,13 +290,14 @@ private:
   bool
   hasPlainCorrespondences() const;
 
-  /** \brief The target points that the search tree finds. */
+  /** \brief The finite target points that the search tree finds. */
   Eigen::Matrix3Xd
   searchedTargetPoints() const;
 
-  /** \brief Makes prepared_target_ that of searchedTargetPoints(). */
-  void
-  prepareTarget();
+  /** \brief One of the clouds of the last estimate if it has these \p points, or a new
+   * one. In odometry the target is the source before. */
+  bayesian_icp::PreparedCloud
+  prepared(Eigen::Matrix3Xd points) const;
 
   void
   reportStatus() const;
@@ -314,7 +315,8 @@ private:
   bool is_scale_stated_ = false;
   bayesian_icp::ProgressCallback progress_callback_;
   bayesian_icp::PosteriorEstimate estimate_;
-  bayesian_icp::PreparedTarget prepared_target_{Eigen::Matrix3Xd(3, 0)};
+  bayesian_icp::PreparedCloud prepared_source_{Eigen::Matrix3Xd(3, 0)};
+  bayesian_icp::PreparedCloud prepared_target_{Eigen::Matrix3Xd(3, 0)};
   bool use_mean_as_final_transformation_ = false;
 };
 

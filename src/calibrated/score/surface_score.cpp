@@ -168,10 +168,10 @@ SurfaceScorer::SurfaceScorer(const Eigen::Matrix3Xd& source_points,
 
 void
 SurfaceScorer::addTargetPoints(const Eigen::Matrix3Xd& target_points,
-                               std::shared_ptr<const SurfaceModel> source_model)
+                               const SurfaceModel& source_model)
 {
   target_points_ = target_points;
-  source_model_ = std::move(source_model);
+  source_model_ = &source_model;
 }
 
 SurfaceScorer
@@ -189,7 +189,7 @@ SurfaceScorer::ofFirstOfBoth(Eigen::Index num_points) const
   const Eigen::Index num_of_target = std::min(num_points / 2, target_points_.cols());
   SurfaceScorer first = ofFirst(num_points - num_of_target);
   if (num_of_target > 0)
-    first.addTargetPoints(target_points_.leftCols(num_of_target), source_model_);
+    first.addTargetPoints(target_points_.leftCols(num_of_target), *source_model_);
   return first;
 }
 

@@ -11,7 +11,6 @@
 #include <Eigen/Geometry>
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace bayesian_icp {
@@ -81,10 +80,11 @@ public:
   SurfaceScorer(const Eigen::Matrix3Xd& source_points, const SurfaceModel& model);
 
   /** \brief Adds \p target_points, 3 x m, finite, target frame [m], which are compared
-   * with the surface of the source. */
+   * with the surface of the source.
+   * \param[in] source_model must outlive this object */
   void
   addTargetPoints(const Eigen::Matrix3Xd& target_points,
-                  std::shared_ptr<const SurfaceModel> source_model);
+                  const SurfaceModel& source_model);
 
   /** \brief A scorer of the first points of the source, of all if there are fewer. Its
    * centroid is that of all points, so that twists are the same. */
@@ -172,7 +172,7 @@ private:
   Eigen::Vector3d centroid_;
   const SurfaceModel& model_;
   Eigen::Matrix3Xd target_points_;
-  std::shared_ptr<const SurfaceModel> source_model_;
+  const SurfaceModel* source_model_ = nullptr;
 };
 
 } // namespace bayesian_icp

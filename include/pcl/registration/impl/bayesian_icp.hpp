@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -170,7 +169,7 @@ bayesian_icp::PosteriorEstimate
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPreset(
     const PointCloudSourceConstPtr& source, const Vector6d& start)
 {
-  const auto points = bayesian_icp_detail::pointMatrix(*source);
+  auto points = bayesian_icp_detail::pointMatrix(*source);
   bayesian_icp::Options options = options_;
   if (options.preset == bayesian_icp::Preset::Calibrated) {
     if (is_scale_stated_) {
@@ -187,9 +186,11 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
                "searches of the user's own are for ICP alone with preset calibrated, "
                "which matches points to the target's surface.\n",
                getClassName().c_str());
-    prepareTarget();
+    const auto prepared_target = prepared(searchedTargetPoints());
+    prepared_source_ = prepared(std::move(points));
+    prepared_target_ = prepared_target;
     return (bayesian_icp::estimatePosterior(
-        points, prepared_target_, start, options, progress_callback_));
+        prepared_source_, prepared_target_, start, options, progress_callback_));
   }
   const bool is_exact = options.preset == bayesian_icp::Preset::Exact;
   double& gate =
@@ -242,27 +243,32 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::searchedTargetP
   const IndicesConstPtr selected =
       is_ready_tree ? tree_->getIndices()
                     : IndicesConstPtr(correspondence_estimation_->getIndicesTarget());
-  if (!selected || selected->empty())
+  Indices finite;
+  const auto addIfFinite = [&](index_t index) {
+    if (isXYZFinite(cloud[static_cast<std::size_t>(index)]))
+      finite.push_back(index);
+  };
+  if (selected && !selected->empty())
+    std::for_each(selected->begin(), selected->end(), addIfFinite);
+  else
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      addIfFinite(static_cast<index_t>(i));
+  if (finite.size() == cloud.size())
     return (pointMatrix(cloud));
   PointCloud<PointTarget> selection;
-  copyPointCloud(cloud, *selected, selection);
+  copyPointCloud(cloud, finite, selection);
   return (pointMatrix(selection));
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::prepareTarget()
+bayesian_icp::PreparedCloud
+BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::prepared(
+    Eigen::Matrix3Xd points) const
 {
-  Eigen::Matrix3Xd points = searchedTargetPoints();
-  const Eigen::Matrix3Xd& prepared = prepared_target_.points();
-  // To the last bit: points that are not finite are not equal to themselves.
-  const bool is_prepared =
-      points.cols() == prepared.cols() &&
-      std::memcmp(points.data(),
-                  prepared.data(),
-                  sizeof(double) * static_cast<std::size_t>(points.size())) == 0;
-  if (!is_prepared)
-    prepared_target_ = bayesian_icp::PreparedTarget(std::move(points));
+  for (const auto& cloud : {prepared_target_, prepared_source_})
+    if (points.cols() == cloud.points().cols() && points == cloud.points())
+      return (cloud);
+  return (bayesian_icp::PreparedCloud(std::move(points)));
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

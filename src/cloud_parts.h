@@ -1,5 +1,5 @@
 /** \file
- * \brief Internal: what is inside a PreparedTarget.
+ * \brief Internal: what is inside a PreparedCloud.
  */
 #pragma once
 
@@ -32,10 +32,9 @@ private:
   std::unique_ptr<const T> value_;
 };
 
-/** \brief The points of a target and what is made of them. */
-struct TargetParts {
-  explicit TargetParts(Eigen::Matrix3Xd target_points)
-  : points(std::move(target_points))
+/** \brief The points of a cloud and what is made of them. */
+struct CloudParts {
+  explicit CloudParts(Eigen::Matrix3Xd cloud_points) : points(std::move(cloud_points))
   {}
 
   /** \param[in] num_threads 0: as OpenMP would */

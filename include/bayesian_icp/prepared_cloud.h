@@ -1,5 +1,5 @@
 /** \file
- * \brief A target that is prepared once for many sources.
+ * \brief A cloud that is prepared once for many registrations.
  */
 #pragma once
 
@@ -11,24 +11,26 @@
 
 namespace bayesian_icp {
 
-struct TargetParts;
+struct CloudParts;
 
-/** \brief The points of a target, and what the presets make of them: the surface of
- * `calibrated`, the search tree of `paper` and `exact`.
+/** \brief The points of a cloud, and what the presets make of them: the surface that
+ * `calibrated` needs of target and source, and the search tree that `paper` and `exact`
+ * need of the target. In odometry, a scan is the source first, and then the target.
  *
  * Each of these is made when it is first needed, or by prepare(), and then kept. No
  * result depends on when, or by how many threads, it was made. The object never changes
  * otherwise: several threads may use it at once, and its copies share everything. */
-class BAYESIAN_ICP_EXPORT PreparedTarget {
+class BAYESIAN_ICP_EXPORT PreparedCloud {
 public:
-  /** \brief Not explicit: points are a target that nothing has been made of yet.
-   * \param[in] points 3 x n, target frame [m]; non-finite points are left out */
-  PreparedTarget(Eigen::Matrix3Xd points);
+  /** \brief Not explicit: points are a cloud that nothing has been made of yet.
+   * \param[in] points 3 x n, in the cloud's own frame [m]; of a target, non-finite
+   *            points are left out */
+  PreparedCloud(Eigen::Matrix3Xd points);
 
   /** \brief The same for an expression, such as points.cast<double>(). */
   template <typename Derived>
-  PreparedTarget(const Eigen::MatrixBase<Derived>& points)
-  : PreparedTarget(Eigen::Matrix3Xd(points))
+  PreparedCloud(const Eigen::MatrixBase<Derived>& points)
+  : PreparedCloud(Eigen::Matrix3Xd(points))
   {}
 
   /** \brief The points that were given, [m]. */
@@ -42,14 +44,14 @@ public:
   prepare(Preset preset, int num_threads = 0) const;
 
   /** \brief Internal. */
-  TargetParts&
+  CloudParts&
   parts() const
   {
     return *parts_;
   }
 
 private:
-  std::shared_ptr<TargetParts> parts_;
+  std::shared_ptr<CloudParts> parts_;
 };
 
 } // namespace bayesian_icp
