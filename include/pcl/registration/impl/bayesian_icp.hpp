@@ -243,17 +243,18 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::searchedTargetP
   const IndicesConstPtr selected =
       is_ready_tree ? tree_->getIndices()
                     : IndicesConstPtr(correspondence_estimation_->getIndicesTarget());
+  const bool is_whole = !selected || selected->empty();
   Indices finite;
   const auto addIfFinite = [&](index_t index) {
     if (isXYZFinite(cloud[static_cast<std::size_t>(index)]))
       finite.push_back(index);
   };
-  if (selected && !selected->empty())
-    std::for_each(selected->begin(), selected->end(), addIfFinite);
-  else
+  if (is_whole)
     for (std::size_t i = 0; i < cloud.size(); ++i)
       addIfFinite(static_cast<index_t>(i));
-  if (finite.size() == cloud.size())
+  else
+    std::for_each(selected->begin(), selected->end(), addIfFinite);
+  if (is_whole && finite.size() == cloud.size())
     return (pointMatrix(cloud));
   PointCloud<PointTarget> selection;
   copyPointCloud(cloud, finite, selection);
