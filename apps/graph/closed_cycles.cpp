@@ -77,7 +77,7 @@ public:
   {
     const auto row = static_cast<int>(errors_.size());
     errors_.push_back(error);
-    common_.emplace_back(CommonFactors::Zero());
+    common_.emplace_back(AlongCommon::Zero());
     for (const auto& [noise, factor] : terms) {
       if (noise.first == NoiseOf::Common) {
         common_.back().segment<6>(6 * noise.second) = factor.transpose() * direction;
@@ -108,24 +108,24 @@ public:
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(covariance);
     // The common noise would fill the covariance, so it is added by Woodbury's
     // identity.
-    Eigen::MatrixXd common(size(), CommonFactors::SizeAtCompileTime);
+    Eigen::MatrixXd common(size(), num_common);
     for (int row = 0; row < size(); ++row)
       common.row(row) = common_[static_cast<std::size_t>(row)];
     const Eigen::VectorXd weighted = solver.solve(errors);
-    const CommonFactors seen = common.transpose() * weighted;
+    const AlongCommon seen = common.transpose() * weighted;
     Eigen::MatrixXd rest = common.transpose() * solver.solve(common);
     rest.diagonal().array() += 1.0;
     return errors.dot(weighted) - seen.dot(rest.ldlt().solve(seen));
   }
 
 private:
-  /** Of the columns of the noise that all edges have in common. */
-  using CommonFactors = Eigen::Matrix<double, 36, 1>;
+  /** An error along one direction as a sum over what all edges have in common. */
+  using AlongCommon = Eigen::Matrix<double, num_common, 1>;
 
   std::vector<double> errors_;
   std::map<Noise, int> columns_;
   std::vector<Eigen::Triplet<double>> factors_;
-  std::vector<CommonFactors> common_;
+  std::vector<AlongCommon> common_;
 };
 
 CycleStatistics

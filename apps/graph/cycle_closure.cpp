@@ -117,10 +117,10 @@ addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms
   add({NoiseOf::Scan, edge.source}, of_scan * root);
   add({NoiseOf::Scan, edge.target},
       -of_scan * root * noiseToSource(edge.T_target_source));
-  const Vector6d of_all =
-      std::sqrt(edge.shared.common) * directionOf(edge.T_target_source);
+  const CommonFactors of_all =
+      commonFactors(root, edge.T_target_source, edge.shared.common);
   for (int column = 0; column < 6; ++column)
-    add({NoiseOf::Common, column}, of_all[column] * root);
+    add({NoiseOf::Common, column}, of_all.middleCols<6>(6 * column));
 }
 
 } // namespace
@@ -149,11 +149,9 @@ Way::append(const GraphEdge& edge)
   const Matrix6d carry = adjointOf(step.T.inverse());
   const Matrix6d of_step = step.carry * edge.covariance * step.carry.transpose();
   const Matrix6d root = step.carry * squareRootOf(edge.covariance);
-  common = (carry * common).eval();
-  const Vector6d of_all =
-      std::sqrt(edge.shared.common) * directionOf(edge.T_target_source);
-  for (int k = 0; k < 6; ++k)
-    common.middleCols<6>(6 * k) += of_all[k] * root;
+  common =
+      (carry * common + commonFactors(root, edge.T_target_source, edge.shared.common))
+          .eval();
   own = (carry * own * carry.transpose() + (1.0 - edge.shared.common) * of_step).eval();
   T_begin_end = T_begin_end * step.T;
   end = step.end;

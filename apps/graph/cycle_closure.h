@@ -35,7 +35,7 @@ struct Way {
   /** CovarianceConvention::RightSE3 of what is not common to all edges [m, rad]. */
   Matrix6d own = Matrix6d::Zero();
   /** Factors of the noise that is. */
-  Eigen::Matrix<double, 6, 36> common = Eigen::Matrix<double, 6, 36>::Zero();
+  CommonFactors common = CommonFactors::Zero();
 
   /** \brief Go on along an edge from the end; it may be taken backwards. Its error is
    * taken as independent of those before but for what all edges have in common: the

@@ -105,7 +105,7 @@ struct EdgeError {
 
   /** \param[in] target_noise 6 independent numbers with variance 1
    * \param[in] source_noise as well
-   * \param[in] common_noise 36 of all edges, column by column */
+   * \param[in] common_noise num_common of all edges, column by column */
   template <typename T>
   bool
   operator()(const T* target_pose,
@@ -217,7 +217,7 @@ public:
          RobustLoss loss)
   : loss_(loss)
   , num_poses_(poses.size())
-  , unknowns_(num_poses_ * size_of_scan + size_of_common)
+  , unknowns_(num_poses_ * size_of_scan + num_common)
   , problem_(borrowing())
   {
     for (std::size_t k = 0; k < num_poses_; ++k) {
@@ -225,7 +225,7 @@ public:
       problem_.AddParameterBlock(pose(k), 7, &twists_);
       addNoise(1.0, 6, noise(k));
     }
-    addNoise(considered_deviation, size_of_common, commonNoise());
+    addNoise(considered_deviation, num_common, commonNoise());
     problem_.SetParameterBlockConstant(pose(0));
     for (const GraphEdge& edge : edges)
       addEdge(edge);
@@ -260,8 +260,8 @@ private:
     const double *target, *source;
   };
 
-  /** Unknowns of one scan, and those that all edges have in common. */
-  static constexpr int size_of_scan = 7 + 6, size_of_common = 36;
+  /** Unknowns of one scan. */
+  static constexpr int size_of_scan = 7 + 6;
 
   double*
   pose(std::size_t scan)
@@ -302,7 +302,7 @@ private:
     const auto source = static_cast<std::size_t>(edge.source);
     edges_.push_back({error, pose(target), pose(source)});
     problem_.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6, 6, 36>(
+        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6, 6, num_common>(
             new EdgeError(error)),
         lossOf(loss_, edge.shared),
         pose(target),
@@ -316,7 +316,7 @@ private:
   static double
   squaredErrorOf(const PlacedEdge& edge)
   {
-    const std::array<double, size_of_common> no_noise{};
+    const std::array<double, num_common> no_noise{};
     Vector6d residual;
     edge.error(edge.target,
                edge.source,
@@ -352,7 +352,7 @@ private:
       Matrix6d& sum = result.poses[k].covariance;
       // Row by row; symmetric, so that the order is of no importance.
       covariance.GetCovarianceBlockInTangentSpace(block, block, sum.data());
-      Eigen::Matrix<double, 6, size_of_common, Eigen::RowMajor> motion;
+      Eigen::Matrix<double, 6, num_common, Eigen::RowMajor> motion;
       covariance.GetCovarianceBlockInTangentSpace(block, commonNoise(), motion.data());
       // How far the common noise moves the pose, by its unit.
       motion /= considered_deviation * considered_deviation;

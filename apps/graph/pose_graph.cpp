@@ -39,6 +39,16 @@ directionOf(const Eigen::Matrix4d& T)
   return length > 0.0 ? Vector6d(twist / length) : Vector6d(Vector6d::Unit(0));
 }
 
+CommonFactors
+commonFactors(const Matrix6d& root, const Eigen::Matrix4d& T, double common)
+{
+  const Vector6d parts = std::sqrt(common) * directionOf(T);
+  CommonFactors factors;
+  for (int column = 0; column < 6; ++column)
+    factors.middleCols<6>(6 * column) = parts[column] * root;
+  return factors;
+}
+
 std::vector<std::pair<int, int>>
 loopCandidates(const std::vector<GaussianPose>& poses, double radius)
 {

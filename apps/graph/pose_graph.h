@@ -62,6 +62,19 @@ noiseToSource(const Eigen::Matrix4d& T);
 Vector6d
 directionOf(const Eigen::Matrix4d& T);
 
+/** \brief How many numbers all edges have in common: G of GraphEdge::shared. */
+constexpr int num_common = 36;
+
+/** \brief An error as a sum over those, column by column. */
+using CommonFactors = Eigen::Matrix<double, 6, num_common>;
+
+/** \brief S^1/2 sqrt(common) G d, see GraphEdge::shared.
+ * \param[in] root S^1/2
+ * \param[in] T T_target_source
+ * \param[in] common share of the variance */
+CommonFactors
+commonFactors(const Matrix6d& root, const Eigen::Matrix4d& T, double common);
+
 /** \brief Where a trajectory comes back to where it was: for each pose the nearest
  * earlier one within \p radius, if in between the trajectory was more than twice the
  * radius away. Near neighbours in the sequence are no loops by that.

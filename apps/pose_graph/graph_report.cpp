@@ -207,11 +207,10 @@ graphReportHtml(const GraphCommand& command,
   const Section uncertainty = {
       "uncertainty",
       "How sure is that?",
-      html::paragraphHtml("Registrations of a scan share the noise of its points, and "
-                          "all along the same "
-                          "motion share what the sensor does wrong in each scan. Other "
-                          "errors are taken "
-                          "as independent.") +
+      html::paragraphHtml(
+          "Registrations of a scan share the noise of its points, and all along the "
+          "same motion share what the sensor does wrong in each scan. Other errors "
+          "are taken as independent.") +
           html::legendHtml({{path_colour, "optimized poses"},
                             {before_colour, "the chain of scans alone"}}),
       deviationCharts(numbers, "scan", path)};

@@ -11,8 +11,8 @@ namespace {
 
 /** Where the errors of the parts are, and the noises of registrations. */
 constexpr Eigen::Index of_target = 0, of_scan = 6, of_velocity = 12,
-                       noise_of_target = 18, noise_of_scan = 24, noise_of_all = 30;
-constexpr int num_noises = 48;
+                       noise_of_target = 18, noise_of_scan = 24;
+constexpr int num_noises = 6 + 6 + num_common;
 
 /** Times that an update is linearised. */
 constexpr int num_iterations = 5;
@@ -90,10 +90,8 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   H.middleCols<6>(noise_of_scan) = -std::sqrt(shared.scan) * root;
   H.middleCols<6>(noise_of_target) =
       std::sqrt(shared.scan) * root * noiseToSource(matrixOf(measured.mean));
-  const Vector6d of_all =
-      -std::sqrt(shared.common) * directionOf(matrixOf(measured.mean));
-  for (int k = 0; k < 6; ++k)
-    H.middleCols<6>(noise_of_all + 6 * k) = of_all[k] * root;
+  H.rightCols<num_common>() =
+      -commonFactors(root, matrixOf(measured.mean), shared.common);
   const Vector6d of_noise = H.middleCols<6>(noise_of_target) * target_noise_ +
                             H.middleCols<6>(noise_of_scan) * scan_noise_;
   Eigen::Matrix<double, num_errors, 6> gain;
@@ -108,7 +106,7 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
     if (iteration == 0)
       squared_innovation = (difference + of_noise).dot(S.solve(difference + of_noise));
     gain = S.solve(H * covariance_).transpose();
-    gain.bottomRows<36>().setZero();
+    gain.bottomRows<num_common>().setZero();
     correction = gain * (of_xi * xi - difference - of_noise);
   }
   target_ = target_ * expSE3(correction.segment<6>(of_target));

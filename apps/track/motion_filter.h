@@ -70,7 +70,7 @@ public:
   pose() const;
 
 private:
-  static constexpr int num_errors = 66;
+  static constexpr int num_errors = 30 + num_common;
   using Errors = Eigen::Matrix<double, num_errors, 1>;
   using State = Eigen::Matrix<double, num_errors, num_errors>;
 

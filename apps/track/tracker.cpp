@@ -57,7 +57,12 @@ Tracker::preparedScan(int scan)
 {
   auto found = prepared_.find(scan);
   if (found == prepared_.end())
-    found = prepared_.emplace(scan, PreparedCloud(pointsOf(scan))).first;
+    found = prepared_
+                .emplace(scan,
+                         io::readFinitePoints(
+                             request_.scans.at(static_cast<std::size_t>(scan)))
+                             .cast<double>())
+                .first;
   return found->second;
 }
 
@@ -66,9 +71,12 @@ Tracker::mapOfTarget()
 {
   Eigen::Matrix3Xd map(3, 0), part;
   for (const auto& [scan, T_target_scan] : track_.targetScans()) {
-    movePoints(
-        poseOf(T_target_scan), thinned(pointsOf(scan), request_.voxel_size), part);
-    points_.erase(scan);
+    const auto found = thinned_.find(scan);
+    movePoints(poseOf(T_target_scan),
+               found != thinned_.end()
+                   ? found->second
+                   : thinned(preparedScan(scan).points(), request_.voxel_size),
+               part);
     map.conservativeResize(3, map.cols() + part.cols());
     map.rightCols(part.cols()) = part;
   }
@@ -82,7 +90,7 @@ Tracker::prepareTarget()
     return;
   target_scan_ = track_.target();
   target_ = request_.voxel_size > 0.0 ? mapOfTarget() : preparedScan(target_scan_);
-  points_.clear();
+  thinned_.clear();
 }
 
 Registration
@@ -169,8 +177,8 @@ Tracker::registerNext(const ProgressCallback& progress)
   step.edge = result.edge;
   if (result.quality == Quality::Useless) {
     const bool is_last = track_.numFailures() + 1 >= max_failures;
-    step.kind =
-        is_last && points_.count(step.scan) > 0 ? StepKind::Split : StepKind::Predicted;
+    step.kind = is_last && prepared_.count(step.scan) > 0 ? StepKind::Split
+                                                          : StepKind::Predicted;
     step.is_velocity_doubted = false;
     step.edge = {track_.target(), track_.prediction(false)};
   }
@@ -181,24 +189,12 @@ Tracker::registerNext(const ProgressCallback& progress)
     if (!registerToMore(preparedScan(step.scan), progress, step))
       return std::nullopt;
   }
-  if (step.kind == StepKind::Predicted)
-    points_.erase(step.scan);
-  else if (request_.voxel_size > 0.0) // as the map will have it
-    points_[step.scan] = thinned(pointsOf(step.scan), request_.voxel_size);
+  if (step.kind != StepKind::Predicted && request_.voxel_size > 0.0)
+    thinned_[step.scan] =
+        thinned(preparedScan(step.scan).points(), request_.voxel_size);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   step.seconds = time.count();
   return step;
-}
-
-const Eigen::Matrix3Xd&
-Tracker::pointsOf(int scan)
-{
-  const auto found = points_.find(scan);
-  if (found != points_.end())
-    return found->second;
-  return points_[scan] =
-             io::readFinitePoints(request_.scans.at(static_cast<std::size_t>(scan)))
-                 .cast<double>();
 }
 
 } // namespace bayesian_icp::app

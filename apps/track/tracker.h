@@ -43,7 +43,7 @@ MotionModel
 motionModelOf(const TrackRequest& request);
 
 /** \brief Reads clouds, and registers each to the target of a Track. It keeps the
- * points of the target and of the scans that the next target will have. */
+ * target, the last scans, and the points that the next map will have. */
 class Tracker {
 public:
   /** \param[in] request,track must outlive this object */
@@ -59,9 +59,6 @@ public:
 
 private:
   /** The scan's finite points, read if they are not at hand. */
-  const Eigen::Matrix3Xd&
-  pointsOf(int scan);
-
   PreparedCloud
   preparedScan(int scan);
 
@@ -88,8 +85,8 @@ private:
 
   const TrackRequest& request_;
   const Track& track_;
-  /** Of scans that the next target will have [m], by their numbers. */
-  std::map<int, Eigen::Matrix3Xd> points_;
+  /** Points of scans that the next map will have [m], by their numbers. */
+  std::map<int, Eigen::Matrix3Xd> thinned_;
   /** The last scans, each from when it is first needed: the source of one registration
    * is the target of the next. */
   std::map<int, PreparedCloud> prepared_;
