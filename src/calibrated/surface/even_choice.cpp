@@ -58,9 +58,9 @@ public:
   void
   add(std::uint64_t cube, std::uint32_t point)
   {
-    // Fibonacci hashing, and the next free slot.
+    // Fibonacci hashing, whose high bits depend on all axes, and the next free slot.
     const std::size_t mask = slots_.size() - 1;
-    std::size_t place = (cube * golden_ratio >> 20) & mask;
+    std::size_t place = (cube * golden_ratio >> 34) & mask;
     while (slots_[place].cube != none && slots_[place].cube != cube)
       place = (place + 1) & mask;
     Slot& slot = slots_[place];

@@ -40,7 +40,10 @@ evenChoice(const Eigen::Matrix3Xf& points, Eigen::Index count, ChoiceStream stre
  * Dense parts become as sparse as the rest, and the distribution of the noise stays.
  * One point of each cube would change it where cubes are smaller than the noise: too
  * many points would be from the noise's tails, and surfaces through them would be
- * tilted. \param[in] points 3 x n, finite \param[in] count at least 1 */
+ * tilted.
+ *
+ * \param[in] points 3 x n, finite
+ * \param[in] count at least 1 */
 std::vector<Eigen::Index>
 evenlyThinned(const Eigen::Matrix3Xf& points, Eigen::Index count);
 
