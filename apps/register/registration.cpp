@@ -9,8 +9,8 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
-#include <algorithm>
 #include <chrono>
+#include <functional>
 
 namespace bayesian_icp::app {
 
@@ -41,47 +41,50 @@ chainsOf(const Icp& icp)
   return chains;
 }
 
-/** Passes on where ICP is. PCL calls back also as it is told to, before ICP has begun.
- */
+using Clock = std::chrono::steady_clock;
+
+/** Passes on where ICP is, and notes when its last iteration ended. PCL calls back also
+ * as it is told to, before ICP has begun.
+ * \param[in] icp_progress may be empty
+ * \param[out] last_iteration must outlive the alignment */
 void
-observeIcp(const IcpCallback& icp_progress, const Eigen::Matrix4d& guess, Icp& icp)
+observeIcp(const IcpCallback& icp_progress,
+           const Eigen::Matrix4d& guess,
+           Icp& icp,
+           Clock::time_point& last_iteration)
 {
-  if (!icp_progress)
-    return;
   std::function<Icp::UpdateVisualizerCallbackSignature> tell =
-      [&icp, icp_progress, guess, has_begun = false](const Cloud&,
-                                                     const pcl::Indices&,
-                                                     const Cloud&,
-                                                     const pcl::Indices&) mutable {
-        icp_progress(has_begun ? icp.getFinalTransformation().cast<double>().eval()
-                               : guess);
+      [&icp, &last_iteration, icp_progress, guess, has_begun = false](
+          const Cloud&,
+          const pcl::Indices&,
+          const Cloud&,
+          const pcl::Indices&) mutable {
+        if (icp_progress)
+          icp_progress(has_begun ? icp.getFinalTransformation().cast<double>().eval()
+                                 : guess);
+        last_iteration = Clock::now();
         has_begun = true;
       };
   icp.registerVisualizationCallback(tell);
 }
 
-/** Aligns, and measures ICP and sampling, which begins with the first step of a chain.
- */
+/** Aligns, and measures ICP, which is first, and the estimate. */
 void
 align(const Eigen::Matrix4d& guess,
       const ProgressCallback& progress,
+      const IcpCallback& icp_progress,
       Icp& icp,
       RegistrationResult& result)
 {
-  using Clock = std::chrono::steady_clock;
   using Seconds = std::chrono::duration<double>;
-  const auto start = Clock::now();
-  Clock::time_point first_step = Clock::time_point::max();
-  icp.setProgressCallback([&](const Progress& state) {
-    first_step = std::min(first_step, Clock::now());
-    return progress(state);
-  });
+  Clock::time_point last_iteration;
+  observeIcp(icp_progress, guess, icp, last_iteration);
+  icp.setProgressCallback(progress);
+  const auto start = last_iteration = Clock::now();
   Cloud moved_source;
   icp.align(moved_source, guess.cast<float>());
-  const auto end = Clock::now();
-  first_step = std::min(first_step, end);
-  result.icp_seconds = Seconds(first_step - start).count();
-  result.sampling_seconds = Seconds(end - first_step).count();
+  result.icp_seconds = Seconds(last_iteration - start).count();
+  result.sampling_seconds = Seconds(Clock::now() - last_iteration).count();
 }
 
 } // namespace
@@ -99,9 +102,8 @@ registerClouds(const Eigen::Matrix3Xf& source,
   configure(settings, icp);
   icp.setInputSource(cloudOf(source));
   icp.setInputTarget(cloudOf(target));
-  observeIcp(icp_progress, settings.guess, icp);
   RegistrationResult result;
-  align(settings.guess, progress, icp, result);
+  align(settings.guess, progress, icp_progress, icp, result);
   result.icp_has_converged = icp.hasConverged();
   result.icp_matrix = icp.getFinalTransformation().cast<double>();
   result.icp_fitness = icp.getFitnessScore();

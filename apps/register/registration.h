@@ -27,7 +27,9 @@ struct RegistrationResult {
   Eigen::Matrix4d final_matrix = Eigen::Matrix4d::Identity();
   /** Whether final_matrix is that of the posterior mean, not ICP's. */
   bool is_final_the_mean = false;
+  /** Wall time of ICP's iterations [s], ... */
   double icp_seconds = 0.0;
+  /** ... and of all else: the surfaces, the estimate and the draws [s]. */
   double sampling_seconds = 0.0;
 };
 
