@@ -10,7 +10,7 @@
  * pose change them is what this covariance does not see.
  *
  * J is half the sum of squared residuals, cov(z) = sigma^2 I, and x is a left twist
- * (v, w) about a centre, target frame [m, rad], as in calibration/twist.h; about the
+ * (v, w) about a centre, target frame [m, rad], as in geometry/twist.h; about the
  * origin it is CovarianceConvention::LeftSE3. Derivatives are exact, with the second
  * derivatives of the rotation.
  */

@@ -3,7 +3,7 @@
  * an independent measurement of the same noise.
  *
  * Coordinates are left twists (v, w) about a centre, target frame [m, rad], as in
- * calibration/twist.h; about the origin they are CovarianceConvention::LeftSE3.
+ * geometry/twist.h; about the origin they are CovarianceConvention::LeftSE3.
  */
 #pragma once
 
