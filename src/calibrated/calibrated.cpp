@@ -123,7 +123,8 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                                         target_points,
                                         target.model,
                                         options.calibrated.max_source_points,
-                                        options.chains.seed);
+                                        options.chains.seed,
+                                        options.chains.num_threads);
   const Prior prior = priorOf(options, initial_pose, source_points);
   return estimateAndDraw(scorer, prior, options, progress);
 }

@@ -435,16 +435,22 @@ scorerOf(const Matrix3Xd& source_points,
          const Matrix3Xd& target_points,
          const SurfaceModel& target,
          Index max_points,
-         std::uint64_t seed)
+         std::uint64_t seed,
+         int num_threads)
 {
-  SurfaceScorer scorer(evenPoints(source_points, target, max_points, seed), target);
+  Matrix3Xd of_source, of_target;
+  forEachPiece(2, num_threads, [&](std::ptrdiff_t cloud) {
+    if (cloud == 0)
+      of_source = evenPoints(source_points, target, max_points, seed);
+    else if (source.complaint.empty())
+      of_target = evenPoints(target_points(Eigen::all, finiteColumns(target_points)),
+                             source.model,
+                             max_points,
+                             seed);
+  });
+  SurfaceScorer scorer(of_source, target, num_threads);
   if (source.complaint.empty())
-    scorer.addTargetPoints(
-        evenPoints(target_points(Eigen::all, finiteColumns(target_points)),
-                   source.model,
-                   max_points,
-                   seed),
-        source.model);
+    scorer.addTargetPoints(of_target, source.model);
   return scorer;
 }
 

@@ -101,14 +101,17 @@ evenPoints(const Eigen::Matrix3Xd& points,
  * \param[in] target_points 3 x m; those that are not finite are left out [m]
  * \param[in] target surface of these, as well
  * \param[in] max_points of each cloud
- * \param[in] seed of their order */
+ * \param[in] seed of their order
+ * \param[in] num_threads of the choice and of the scorer; 0: as OpenMP would. No result
+ *            depends on it. */
 SurfaceScorer
 scorerOf(const Eigen::Matrix3Xd& source_points,
          const PreparedSurface& source,
          const Eigen::Matrix3Xd& target_points,
          const SurfaceModel& target,
          Eigen::Index max_points,
-         std::uint64_t seed);
+         std::uint64_t seed,
+         int num_threads = 1);
 
 /** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
  * result from there) and estimate its covariance.

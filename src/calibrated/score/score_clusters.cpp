@@ -127,22 +127,33 @@ private:
       addLeaf(begin, end);
       return;
     }
-    const std::size_t axis = widestAxis(begin, end);
-    const double part = 0.4 + 0.2 * random_.uniform();
-    const std::size_t middle =
-        begin +
-        std::max<std::size_t>(
-            1, static_cast<std::size_t>(part * static_cast<double>(end - begin)));
-    const auto places = places_.begin();
-    std::nth_element(places + static_cast<std::ptrdiff_t>(begin),
-                     places + static_cast<std::ptrdiff_t>(middle),
-                     places + static_cast<std::ptrdiff_t>(end),
-                     [axis](const Place& a, const Place& b) {
-                       const float x = a.coordinates[axis], y = b.coordinates[axis];
-                       return x < y || (x == y && a.point < b.point);
-                     });
+    const std::size_t middle = halve(begin, end, widestAxis(begin, end));
     split(begin, middle, size);
     split(middle, end, size);
+  }
+
+  /** Move what is on one side of about the middle of an axis to the front. Without
+   * branches that depend on a coordinate, which would take most of the time.
+   * \return where the other side begins; neither is empty */
+  std::size_t
+  halve(std::size_t begin, std::size_t end, std::size_t axis)
+  {
+    const std::size_t count = end - begin;
+    std::array<float, 64> sample;
+    for (std::size_t i = 0; i < sample.size(); ++i)
+      sample[i] = places_[begin + i * count / sample.size()].coordinates[axis];
+    const auto pivot =
+        sample.begin() + static_cast<std::ptrdiff_t>(double(sample.size()) *
+                                                     (0.4 + 0.2 * random_.uniform()));
+    std::nth_element(sample.begin(), pivot, sample.end());
+    std::size_t middle = begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Place place = places_[i];
+      places_[i] = places_[middle];
+      places_[middle] = place;
+      middle += place.coordinates[axis] < *pivot;
+    }
+    return middle > begin ? middle : begin + count / 2; // the smallest is not unique
   }
 
   void

@@ -1,6 +1,7 @@
 #include "calibrated/score/surface_score.h"
 
 #include "calibrated/median.h"
+#include "threads/for_each_piece.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,9 @@ constexpr double residual_cap = 5.0;
 
 /** Smallest residualScale(): below, the target's noise is overestimated. */
 constexpr double min_residual_scale = 0.3;
+
+/** Of a thread of evaluate(), at a time. */
+constexpr Eigen::Index points_per_piece = 256;
 
 /** The distance of one point to the surface of the other cloud. */
 struct Contact {
@@ -159,10 +163,12 @@ meanCappedResidual(const SurfaceScores& scores)
 }
 
 SurfaceScorer::SurfaceScorer(const Eigen::Matrix3Xd& source_points,
-                             const SurfaceModel& model)
+                             const SurfaceModel& model,
+                             int num_threads)
 : source_points_(source_points)
 , centroid_(source_points.rowwise().mean())
 , model_(model)
+, num_threads_(num_threads)
 , target_points_(3, 0)
 {}
 
@@ -178,7 +184,9 @@ SurfaceScorer
 SurfaceScorer::ofFirst(Eigen::Index num_points) const
 {
   SurfaceScorer first(
-      source_points_.leftCols(std::min(num_points, source_points_.cols())), model_);
+      source_points_.leftCols(std::min(num_points, source_points_.cols())),
+      model_,
+      num_threads_);
   first.centroid_ = centroid_;
   return first;
 }
@@ -213,23 +221,35 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
   clear(scores, numPoints());
   scores.num_source_points = source_points_.cols();
   const Placement placement(*this, T_target_source, centre);
-  Vector6d rates;
-  for (Eigen::Index i = 0; i < numPoints(); ++i) {
+  const auto evaluateAt = [&](Eigen::Index i) {
     const auto index = static_cast<std::size_t>(i);
+    Vector6d rates;
     const Contact contact = placement.contactOf(i, hints[index], rates);
     if (!contact.has_patch)
-      continue;
+      return;
     scores.has_patch[index] = 1;
     scores.residuals[i] = contact.residual;
     const double weight =
         tukeyWeight(contact.residual / tau / SurfaceScorer::tukey_constant);
     if (weight == 0.0)
-      continue;
+      return;
     scores.active[index] = 1;
-    ++scores.num_active;
-    scores.num_active_of_source += i < source_points_.cols();
     scores.scores.col(i) = weight * contact.residual * rates;
     scores.jacobians.col(i) = std::sqrt(weight) * rates;
+  };
+  const Eigen::Index num_pieces =
+      (numPoints() + points_per_piece - 1) / points_per_piece;
+  forEachPiece(num_pieces, num_threads_, [&](std::ptrdiff_t piece) {
+    const Eigen::Index begin = points_per_piece * piece;
+    const Eigen::Index end = std::min(begin + points_per_piece, numPoints());
+    for (Eigen::Index i = begin; i < end; ++i)
+      evaluateAt(i);
+  });
+  for (Eigen::Index i = 0; i < numPoints(); ++i) {
+    if (!scores.active[static_cast<std::size_t>(i)])
+      continue;
+    ++scores.num_active;
+    scores.num_active_of_source += i < source_points_.cols();
     scores.total += scores.scores.col(i);
     scores.information.selfadjointView<Eigen::Lower>().rankUpdate(
         scores.jacobians.col(i));

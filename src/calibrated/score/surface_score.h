@@ -76,8 +76,11 @@ public:
   static constexpr double max_in_plane = 0.6;
 
   /** \param[in] source_points 3 x n, finite, source frame [m]
-   * \param[in] model must outlive this object */
-  SurfaceScorer(const Eigen::Matrix3Xd& source_points, const SurfaceModel& model);
+   * \param[in] model must outlive this object
+   * \param[in] num_threads of evaluate(); 0: as OpenMP would */
+  SurfaceScorer(const Eigen::Matrix3Xd& source_points,
+                const SurfaceModel& model,
+                int num_threads = 1);
 
   /** \brief Adds \p target_points, 3 x m, finite, target frame [m], which are compared
    * with the surface of the source.
@@ -95,7 +98,7 @@ public:
   SurfaceScorer
   ofFirstOfBoth(Eigen::Index num_points) const;
 
-  /** \brief Evaluate all points.
+  /** \brief Evaluate all points: the same bits for every number of threads.
    * \param[in] T_target_source where
    * \param[in] tau scale of the residuals in Tukey's weight; infinite: least squares
    * \param[in] centre of the twists, target frame [m]
@@ -171,6 +174,7 @@ private:
   Eigen::Matrix3Xd source_points_;
   Eigen::Vector3d centroid_;
   const SurfaceModel& model_;
+  int num_threads_;
   Eigen::Matrix3Xd target_points_;
   const SurfaceModel* source_model_ = nullptr;
 };

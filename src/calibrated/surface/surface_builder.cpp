@@ -19,8 +19,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** Patches over which the noise is pooled. */
-constexpr std::size_t num_pooled = 12;
 /** How far a point may be off the surface that it takes over, in the donor's noise. */
 constexpr double max_takeover_residual = 2.5;
 /** Smallest sigma of a patch: in units of the median, and of the spacing for targets
@@ -111,38 +109,31 @@ SurfaceBuilder::noteNeighbors(const std::vector<std::uint32_t>& points,
                               NearestPatches& nearest) const
 {
   for (const std::uint32_t point : points) {
-    if (nearest.count == num_donors)
+    if (nearest.count == num_nearest)
       return;
     if (patch_of_[point] != KdTree::none)
       nearest.patches[nearest.count++] = patch_of_[point];
   }
 }
 
-/** Whether fewer neighbours are known than will be asked for. */
-bool
-SurfaceBuilder::lacksNeighbors(std::size_t patch) const
-{
-  const std::size_t wanted = isQuadric(patches_[patch]) ? num_pooled : num_donors;
-  return neighbors_[patch].count < std::min(wanted, patches_.size());
-}
-
 /** Searches where a neighbourhood had too few points with a patch. */
 void
 SurfaceBuilder::completeNeighbors()
 {
-  bool is_complete = true;
-  for (std::size_t j = 0; j < patches_.size() && is_complete; ++j)
-    is_complete = !lacksNeighbors(j);
-  if (is_complete)
+  const std::size_t wanted = std::min(num_nearest, patches_.size());
+  const auto hasEnough = [wanted](const NearestPatches& nearest) {
+    return nearest.count == wanted;
+  };
+  if (std::all_of(neighbors_.begin(), neighbors_.end(), hasEnough))
     return;
   Matrix3Xf centre_points(3, static_cast<Index>(columns_.size()));
   for (std::size_t j = 0; j < columns_.size(); ++j)
     centre_points.col(static_cast<Index>(j)) = points_.col(columns_[j]);
   const PointNeighbors centres(centre_points);
   const auto searchAt = [&](std::uint32_t patch, NeighborList& nearest) {
-    if (!lacksNeighbors(patch))
+    if (hasEnough(neighbors_[patch]))
       return;
-    centres.find(centre_points.col(patch), num_donors, nearest);
+    centres.find(centre_points.col(patch), num_nearest, nearest);
     neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
     std::copy(nearest.indices.begin(),
               nearest.indices.end(),
@@ -157,10 +148,9 @@ double
 SurfaceBuilder::pooledNoise(std::size_t patch) const
 {
   const NearestPatches& nearest = neighbors_[patch];
-  const std::size_t count = std::min<std::size_t>(nearest.count, num_pooled);
   double sum = 0.0;
   int used = 0;
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < nearest.count; ++k) {
     const SurfacePatch& neighbor = patches_[nearest.patches[k]];
     if (isQuadric(neighbor)) {
       sum += neighbor.sigma * neighbor.sigma;

@@ -54,12 +54,13 @@ public:
   spacing() const;
 
 private:
-  /** Neighbours among which a point at an edge looks for a patch to take over. */
-  static constexpr std::size_t num_donors = 32;
+  /** Patches over which the noise is pooled, and among which a point at an edge looks
+   * for one to take over. */
+  static constexpr std::size_t num_nearest = 12;
 
   /** The patches nearest to a patch; the first is the patch itself. */
   struct NearestPatches {
-    std::array<std::uint32_t, num_donors> patches;
+    std::array<std::uint32_t, num_nearest> patches;
     std::uint32_t count = 0;
   };
 
@@ -69,9 +70,6 @@ private:
 
   void
   completeNeighbors();
-
-  bool
-  lacksNeighbors(std::size_t patch) const;
 
   double
   pooledNoise(std::size_t patch) const;
