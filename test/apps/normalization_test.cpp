@@ -1,4 +1,4 @@
-// What a run of scaled clouds tells its callbacks. A power of two loses no digits, so a
+// What a run tells its callbacks, and of its time. A power of two loses no digits, so a
 // normalised run of clouds four times as large takes exactly the steps of the plain
 // run, four times as far apart.
 #include "register/registration.h"
@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
 #include <vector>
 
 using namespace bayesian_icp;
@@ -84,4 +86,30 @@ TEST(RegisterNormalized, TellsCallbacksInMetres)
     expected.topRightCorner<3, 1>() *= factor;
     EXPECT_EQ(scaled.icp[i], expected);
   }
+}
+
+TEST(Register, TimeOfIcpIsThatOfAllItsIterations)
+{
+  Settings settings;
+  settings.icp_iterations = 4;
+  settings.options.preset = Preset::Paper;
+  settings.options.paper.sgld.step_size = 1e-7;
+  settings.options.chains.num_draws = 20;
+  int num_calls = 0;
+  const Eigen::Matrix3Xf cloud = cloudOfUnitSize();
+  const std::chrono::milliseconds pause(20);
+  const RegistrationResult result = registerClouds(
+      cloud,
+      cloud.colwise() + Eigen::Vector3f(0.05F, 0.02F, 0.0F),
+      settings,
+      [](const Progress&) { return true; },
+      [&](const Eigen::Matrix4d&) {
+        ++num_calls;
+        std::this_thread::sleep_for(pause);
+      });
+  ASSERT_GE(num_calls, 3);
+  // The first call is before ICP has begun.
+  EXPECT_GE(result.icp_seconds,
+            std::chrono::duration<double>((num_calls - 1) * pause).count());
+  EXPECT_GT(result.sampling_seconds, 0.0);
 }
