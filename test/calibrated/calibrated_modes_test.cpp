@@ -1,6 +1,7 @@
 // Further modes of preset `calibrated`: a cube, whose sides look alike, scanned from
 // all sides.
 #include "calibrated/modes/calibrated_modes.h"
+#include "calibrated/modes/mode_weights.h"
 #include "calibrated/modes/robust_mode.h"
 
 #include <bayesian_icp/pipeline.h>
@@ -10,7 +11,9 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace bayesian_icp {
 namespace {
@@ -66,6 +69,26 @@ onMug(Random& random)
   if (random.index(20) > 0)
     return onCan(random);
   return {0.035 + 0.02 * random.uniform(), 0.0, 0.02 * (random.uniform() - 0.5)};
+}
+
+constexpr double step_run = 0.28, step_rise = 0.17;
+
+/** Six stairs between two walls, up to a wall. */
+Eigen::Vector3d
+onStairs(Random& random)
+{
+  const double across = random.uniform() - 0.5, along = random.uniform();
+  const auto step = static_cast<double>(random.index(6));
+  switch (random.index(4)) {
+  case 0:
+    return {step_run * (step + along), across, step_rise * step};
+  case 1:
+    return {step_run * step, across, step_rise * (step - along)};
+  case 2:
+    return {6.0 * step_run * along, across < 0.0 ? -0.5 : 0.5, across};
+  default:
+    return {6.0 * step_run, across, step_rise * (5.0 + 4.0 * along)};
+  }
 }
 
 struct Clouds {
@@ -181,9 +204,9 @@ TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
   ASSERT_TRUE(mayHaveSeveralModes(scorer, prior, first));
   const ModeSearch search = findModes(scorer, prior, first);
   ASSERT_GE(search.modes.size(), 3u);
-  // 16 starts of 300 points and at most 21 evaluations, half of the points 20 more
-  // times, and an estimate for each mode.
-  long num_queries = 16 * 300 * (21 + 10) + 300 - first.num_queries;
+  // 16 starts and 15 hops of 300 points and at most 21 evaluations, half of the points
+  // 20 more times, and an estimate for each mode.
+  long num_queries = (16 + 15) * 300 * (21 + 10) + 300 - first.num_queries;
   double least_distance = 1e9, last_weight = 1e9;
   for (const auto& mode : search.modes) {
     EXPECT_LE(mode.log_weight, last_weight);
@@ -258,6 +281,65 @@ TEST(CalibratedModes, AFirstEstimateThatWentAstrayHidesNone)
   const ModeSearch search = findModes(scorer, prior, astray);
   ASSERT_FALSE(search.modes.empty());
   EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+}
+
+TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
+{
+  const Clouds clouds = cloudsOf(onStairs, 0.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior(
+      Vector6d::Zero(), Vector6d::Constant(0.6).cwiseAbs2(), scorer.centroid());
+  const Eigen::Isometry3d slipped =
+      Eigen::Translation3d(step_run, 0.0, step_rise) * clouds.truth;
+  const CalibratedEstimate first =
+      estimateCalibrated(scorer, prior, EstimateOptions(), &slipped);
+  ASSERT_GT(distanceOfTruth(first, clouds.truth), 1000.0);
+  ModeSearchOptions only_hops;
+  only_hops.num_starts = 0;
+  const ModeSearch search = findModes(scorer, prior, first, only_hops);
+  EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+}
+
+constexpr double region_parts = 40.0;
+
+/** How much heavier a mode is than the same one where \p num_missing points do not meet
+ * the target. */
+double
+weightOfPoints(const CalibratedEstimate& estimate, const Prior& prior, int num_missing)
+{
+  std::vector<CalibratedMode> modes(2, {estimate, 0.0});
+  modes[1].estimate.cost += 1e-9;
+  for (auto& mode : modes) {
+    auto& scores = mode.estimate.scores;
+    scores.residuals.setZero();
+    std::fill(scores.has_patch.begin(), scores.has_patch.end(), true);
+  }
+  auto& has_patch = modes[1].estimate.scores.has_patch;
+  std::fill(has_patch.begin(), has_patch.begin() + num_missing, false);
+  weighModes(prior, 1.0 / region_parts, modes);
+  return modes[0].log_weight - modes[1].log_weight;
+}
+
+TEST(ModeWeights, RegionsThatMeetNoTargetCountAsFarAsTheyAreMany)
+{
+  const Clouds clouds = cloudsOf(onCube, 0.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior = priorWith(0.35, scorer.centroid());
+  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
+  // n points in regions of R have an energy of n e with a variance of n R e^2, of which
+  // n e - 4 R e counts.
+  const double region =
+      0.5 * static_cast<double>(estimate.scores.residuals.size()) / region_parts;
+  ASSERT_GT(region, estimate.kappa_inf);
+  const auto weightOf = [&](double num_regions) {
+    return weightOfPoints(estimate, prior, static_cast<int>(num_regions * region));
+  };
+  EXPECT_EQ(weightOf(2.0), 0.0);
+  EXPECT_EQ(weightOf(4.0), 0.0);
+  EXPECT_GT(weightOf(8.0), 0.0);
+  EXPECT_NEAR(weightOf(16.0) / weightOf(8.0), 3.0, 1e-9);
 }
 
 TEST(CalibratedModes, ThereIsOneAlsoOfCloudsThatDoNotMeet)

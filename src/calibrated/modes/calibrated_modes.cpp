@@ -34,6 +34,16 @@ constexpr double doubtful_cost = 2.0;
  * places of the truth than the prior's mean is. */
 constexpr double reach = 1.75;
 
+/** Above this standard deviation of a rotation [rad], a start hardly ever has both the
+ * right rotation and the right place, so hops follow. They have this number of pairs of
+ * opposite slides. The shortest and the longest, in deviations of the prior: */
+constexpr double lost_angle = 0.5;
+constexpr int num_slide_pairs = 6;
+constexpr double shortest_slide = 0.15, longest_slide = 1.5;
+/** What the sensor sees then depends on the mode. It changes by regions of this part of
+ * a cloud. */
+constexpr double region_of_cloud = 1.0 / 40.0;
+
 /** A start is brought near by point-to-point ICP on this part of the points, and then
  * sees this part of the source's root mean square radius. */
 constexpr double icp_part = 0.5, sight = 0.1;
@@ -115,6 +125,60 @@ poseAt(const Vector6d& deviation, const Prior& prior)
   return isometryOf(pose);
 }
 
+/** Whether the prior's rotation is very wide. */
+bool
+mayBeLost(const Prior& prior)
+{
+  return std::sqrt(prior.variance().tail<3>().maxCoeff()) > lost_angle;
+}
+
+/** Starts over the prior. */
+std::vector<Isometry3d>
+startsOver(const Prior& prior,
+           const std::array<bool, 6>& wide,
+           int num_starts,
+           Random& random)
+{
+  const Matrix6Xd deviations = startDeviations(wide, prior, num_starts, random);
+  std::vector<Isometry3d> starts;
+  for (const auto deviation : deviations.colwise())
+    starts.push_back(poseAt(deviation, prior));
+  return starts;
+}
+
+/** Starts where the target may look much as it does at \p pose: slides, since many
+ * places have steps, pillars or shelves, and half turns about the source's principal
+ * axes. */
+std::vector<Isometry3d>
+hopsFrom(const Isometry3d& pose,
+         const SurfaceScorer& scorer,
+         const Prior& prior,
+         Random& random)
+{
+  std::vector<Isometry3d> starts;
+  for (int i = 0; i < num_slide_pairs; ++i) {
+    Eigen::Vector3d slide;
+    for (double& coordinate : slide)
+      coordinate = random.normal();
+    const double step = (i + random.uniform()) / num_slide_pairs;
+    slide *=
+        shortest_slide * std::pow(longest_slide / shortest_slide, step) / slide.norm();
+    slide.array() *= prior.variance().head<3>().array().sqrt();
+    starts.push_back(Eigen::Translation3d(slide) * pose);
+    starts.push_back(Eigen::Translation3d(-slide) * pose);
+  }
+  const Eigen::Translation3d centroid(scorer.centroid());
+  const Eigen::Matrix3Xd arms = scorer.sourcePoints().colwise() - scorer.centroid();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(arms *
+                                                                 arms.transpose());
+  constexpr double pi = 3.14159265358979323846;
+  for (int k = 0; k < 3; ++k)
+    starts.push_back(pose * centroid *
+                     Eigen::AngleAxisd(pi, principal.eigenvectors().col(k)) *
+                     centroid.inverse());
+  return starts;
+}
+
 bool
 isKnown(const Isometry3d& pose,
         const std::vector<ProductCoordinates>& known,
@@ -157,12 +221,12 @@ areConnected(const SurfaceScorer& subset,
   return true;
 }
 
-/** Where starts end, least cost first. */
+/** Where starts end. */
 std::vector<RobustFit>
 followStarts(const SurfaceScorer& subset,
              const Prior& prior,
-             const std::array<bool, 6>& wide,
-             const ModeSearchOptions& options)
+             const std::vector<Isometry3d>& starts,
+             int num_threads)
 {
   const double noise = subset.model().medianSigma();
   const double radius = radiusOf(displacementMetric(subset, Isometry3d::Identity()));
@@ -175,19 +239,46 @@ followStarts(const SurfaceScorer& subset,
       noise;
   fit.max_steps = 20;
   fit.tolerance = 0.1 * noise;
-  Random random(options.seed, std::numeric_limits<std::uint64_t>::max() / 2);
-  const Matrix6Xd starts = startDeviations(wide, prior, options.num_starts, random);
-  std::vector<RobustFit> ends(static_cast<std::size_t>(starts.cols()));
-  forEachPiece(starts.cols(), options.estimate.num_threads, [&](std::ptrdiff_t i) {
-    const RobustFit icp =
-        fitPointToPoint(icp_points, prior, poseAt(starts.col(i), prior));
-    RobustFit& end = ends[static_cast<std::size_t>(i)];
+  std::vector<RobustFit> ends(starts.size());
+  const auto num_starts = static_cast<std::ptrdiff_t>(starts.size());
+  forEachPiece(num_starts, num_threads, [&](std::ptrdiff_t i) {
+    const auto start = static_cast<std::size_t>(i);
+    const RobustFit icp = fitPointToPoint(icp_points, prior, starts[start]);
+    RobustFit& end = ends[start];
     end = fitRobustly(subset, prior, icp.pose, fit);
     end.num_evaluations += static_cast<int>(std::ceil(icp_part * icp.num_evaluations));
   });
-  std::stable_sort(ends.begin(), ends.end(), [](const auto& a, const auto& b) {
-    return a.cost < b.cost;
-  });
+  return ends;
+}
+
+bool
+costsLess(const RobustFit& a, const RobustFit& b)
+{
+  return a.cost < b.cost;
+}
+
+/** Where starts over the prior end, and, if the source may be lost, hops from the best
+ * of these ends. Least cost first. */
+std::vector<RobustFit>
+endsOfStarts(const SurfaceScorer& subset,
+             const Prior& prior,
+             const std::array<bool, 6>& wide,
+             const RobustFit& first,
+             const ModeSearchOptions& options)
+{
+  const int num_threads = options.estimate.num_threads;
+  Random random(options.seed, std::numeric_limits<std::uint64_t>::max() / 2);
+  std::vector<RobustFit> ends = followStarts(
+      subset, prior, startsOver(prior, wide, options.num_starts, random), num_threads);
+  if (mayBeLost(prior)) {
+    const auto best = std::min_element(ends.begin(), ends.end(), costsLess);
+    const bool is_first = best == ends.end() || costsLess(first, *best);
+    const auto hops =
+        hopsFrom(is_first ? first.pose : best->pose, subset, prior, random);
+    const std::vector<RobustFit> more = followStarts(subset, prior, hops, num_threads);
+    ends.insert(ends.end(), more.begin(), more.end());
+  }
+  std::stable_sort(ends.begin(), ends.end(), costsLess);
   return ends;
 }
 
@@ -211,11 +302,11 @@ findModes(const SurfaceScorer& scorer,
 {
   const SurfaceScorer subset = scorer.ofFirst(options.num_points);
   const Index num_points = subset.sourcePoints().cols();
-  const std::vector<RobustFit> ends =
-      followStarts(subset, prior, wideCoordinates(scorer, prior), options);
   RobustFitOptions as_it_is;
   as_it_is.max_steps = 0;
   const RobustFit first_end = fitRobustly(subset, prior, first.mode, as_it_is);
+  const std::vector<RobustFit> ends =
+      endsOfStarts(subset, prior, wideCoordinates(scorer, prior), first_end, options);
   ModeSearch search;
   search.num_queries += num_points * first_end.num_evaluations;
   for (const RobustFit& end : ends)
@@ -245,7 +336,7 @@ findModes(const SurfaceScorer& scorer,
     known.emplace_back(estimate);
     search.modes.push_back({estimate, 0.0});
   }
-  weighModes(prior, search.modes);
+  weighModes(prior, mayBeLost(prior) ? region_of_cloud : 0.0, search.modes);
   return search;
 }
 

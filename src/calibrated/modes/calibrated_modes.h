@@ -13,7 +13,9 @@ namespace bayesian_icp {
 
 /** \brief How hard to look for modes. */
 struct ModeSearchOptions {
-  /** Starts, spread evenly over the wide coordinates of the prior. */
+  /** Starts, spread evenly over the wide coordinates of the prior. Where a rotation's
+   * deviation is above 0.5 rad, hops from the best end follow: slides and half turns.
+   */
   int num_starts = 16;
   /** Source points on which starts are followed. */
   int num_points = 300;
@@ -42,8 +44,8 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
 
 /** \brief Look for modes other than \p first, and leave \p first out if another pose
  * fits clearly better. Poses that differ by a motion that only the prior holds are one
- * mode. The search takes at most about 150 000 queries, plus one estimate for each
- * mode. */
+ * mode. The search takes at most about 150 000 queries, twice as many with hops,
+ * plus one estimate for each mode. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
           const Prior& prior,

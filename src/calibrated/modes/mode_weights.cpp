@@ -59,6 +59,25 @@ energiesOf(const SurfaceScores& scores, double tau)
   return energies;
 }
 
+/** Variance of the sum of the \p differences of two modes' energies, if each
+ * independent patch could as well have the opposite sign. Patches are of \p kappa
+ * points, and of \p region points that meet the target in one mode only. */
+double
+varianceOf(const VectorXd& differences,
+           const SurfaceScores& a,
+           const SurfaceScores& b,
+           double kappa,
+           double region)
+{
+  double variance = 0.0;
+  for (Index i = 0; i < differences.size(); ++i) {
+    const auto point = static_cast<std::size_t>(i);
+    const bool meets_both = a.has_patch[point] && b.has_patch[point];
+    variance += (meets_both ? kappa : region) * differences[i] * differences[i];
+  }
+  return variance;
+}
+
 /** log of the Gaussian's integral times the prior at its mean. */
 double
 logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
@@ -73,7 +92,9 @@ logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
 } // namespace
 
 void
-weighModes(const Prior& prior, std::vector<CalibratedMode>& modes)
+weighModes(const Prior& prior,
+           double region_of_cloud,
+           std::vector<CalibratedMode>& modes)
 {
   const auto least_cost =
       std::min_element(modes.begin(), modes.end(), [](const auto& a, const auto& b) {
@@ -87,17 +108,25 @@ weighModes(const Prior& prior, std::vector<CalibratedMode>& modes)
     weight += energyWeight(mode.estimate) / static_cast<double>(modes.size());
     energies.push_back(energiesOf(mode.estimate.scores, tau));
   }
-  const VectorXd best =
-      *std::min_element(energies.begin(),
-                        energies.end(),
-                        [](const auto& a, const auto& b) { return a.sum() < b.sum(); });
+  const auto best = static_cast<std::size_t>(
+      std::min_element(energies.begin(),
+                       energies.end(),
+                       [](const auto& a, const auto& b) { return a.sum() < b.sum(); }) -
+      energies.begin());
+  // There are points of both clouds.
+  const double region = std::max(
+      kappa, 0.5 * region_of_cloud * static_cast<double>(energies[best].size()));
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    const VectorXd difference = energies[m] - best;
-    const double sum = difference.sum();
+    const VectorXd differences = energies[m] - energies[best];
+    const double sum = differences.sum();
     double heeded = 0.0;
     if (sum > 0.0) {
-      // Independent patches; not clusters, which take what one place tells for noise.
-      const double variance = kappa * difference.squaredNorm();
+      // Not over clusters, which take what one place tells for noise.
+      const double variance = varianceOf(differences,
+                                         modes[m].estimate.scores,
+                                         modes[best].estimate.scores,
+                                         kappa,
+                                         region);
       heeded = std::max(0.0,
                         1.0 - unheeded_deviations * unheeded_deviations * variance /
                                   (sum * sum));

@@ -18,8 +18,13 @@ namespace bayesian_icp {
  * differences. (The variance over clusters of points would take for noise what a single
  * place shows, such as a mug's handle.) A mode whose weight is not finite, because its
  * clouds do not meet, gets the smallest possible weight.
- */
+ *
+ * \param[in] region_of_cloud part of a cloud that comes into view together, so that
+ *            points that meet the target in one of two modes only are one patch; 0
+ *            if they count like others */
 void
-weighModes(const Prior& prior, std::vector<CalibratedMode>& modes);
+weighModes(const Prior& prior,
+           double region_of_cloud,
+           std::vector<CalibratedMode>& modes);
 
 } // namespace bayesian_icp
