@@ -59,23 +59,41 @@ energiesOf(const SurfaceScores& scores, double tau)
   return energies;
 }
 
-/** Variance of the sum of the \p differences of two modes' energies, if each
- * independent patch could as well have the opposite sign. Patches are of \p kappa
- * points, and of \p region points that meet the target in one mode only. */
+/** The part of an energy that is above its own noise. */
 double
-varianceOf(const VectorXd& differences,
-           const SurfaceScores& a,
-           const SurfaceScores& b,
-           double kappa,
-           double region)
+heededPart(double energy, double variance)
 {
-  double variance = 0.0;
+  if (!(energy > 0.0))
+    return 0.0;
+  constexpr double squared_deviations = unheeded_deviations * unheeded_deviations;
+  return energy *
+         std::max(0.0, 1.0 - squared_deviations * variance / (energy * energy));
+}
+
+/** What counts of the sum of the \p differences of two modes' energies. Its noise is as
+ * if each independent patch could as well have the opposite sign. (The variance over
+ * clusters of points would take for noise what one place tells.) Patches are of
+ * \p kappa points. If \p region is not 0, points that meet the target in one mode only
+ * are heeded apart, and their patches are of \p region points. */
+double
+heededEnergy(const VectorXd& differences,
+             const SurfaceScores& a,
+             const SurfaceScores& b,
+             double kappa,
+             double region)
+{
+  struct Sums {
+    double energy = 0.0, squares = 0.0;
+  } seen, unseen;
   for (Index i = 0; i < differences.size(); ++i) {
     const auto point = static_cast<std::size_t>(i);
-    const bool meets_both = a.has_patch[point] && b.has_patch[point];
-    variance += (meets_both ? kappa : region) * differences[i] * differences[i];
+    const bool meets_one = a.has_patch[point] != b.has_patch[point];
+    Sums& sums = meets_one && region > 0.0 ? unseen : seen;
+    sums.energy += differences[i];
+    sums.squares += differences[i] * differences[i];
   }
-  return variance;
+  return heededPart(seen.energy, kappa * seen.squares) +
+         heededPart(unseen.energy, region * unseen.squares);
 }
 
 /** log of the Gaussian's integral times the prior at its mean. */
@@ -114,25 +132,15 @@ weighModes(const Prior& prior,
                        [](const auto& a, const auto& b) { return a.sum() < b.sum(); }) -
       energies.begin());
   // There are points of both clouds.
-  const double region = std::max(
-      kappa, 0.5 * region_of_cloud * static_cast<double>(energies[best].size()));
+  const double region =
+      0.5 * region_of_cloud * static_cast<double>(energies[best].size());
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    const VectorXd differences = energies[m] - energies[best];
-    const double sum = differences.sum();
-    double heeded = 0.0;
-    if (sum > 0.0) {
-      // Not over clusters, which take what one place tells for noise.
-      const double variance = varianceOf(differences,
-                                         modes[m].estimate.scores,
-                                         modes[best].estimate.scores,
-                                         kappa,
-                                         region);
-      heeded = std::max(0.0,
-                        1.0 - unheeded_deviations * unheeded_deviations * variance /
-                                  (sum * sum));
-    }
-    const double log_weight =
-        logVolumeOf(modes[m].estimate, prior) - weight * sum * heeded;
+    const double energy = heededEnergy(energies[m] - energies[best],
+                                       modes[m].estimate.scores,
+                                       modes[best].estimate.scores,
+                                       kappa,
+                                       region);
+    const double log_weight = logVolumeOf(modes[m].estimate, prior) - weight * energy;
     modes[m].log_weight =
         std::isfinite(log_weight) ? log_weight : std::numeric_limits<double>::lowest();
   }

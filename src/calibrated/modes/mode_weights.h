@@ -19,9 +19,9 @@ namespace bayesian_icp {
  * place shows, such as a mug's handle.) A mode whose weight is not finite, because its
  * clouds do not meet, gets the smallest possible weight.
  *
- * \param[in] region_of_cloud part of a cloud that comes into view together, so that
- *            points that meet the target in one of two modes only are one patch; 0
- *            if they count like others */
+ * \param[in] region_of_cloud if not 0, points that meet the target in one of two modes
+ *            only are heeded apart, as patches of this part of a cloud: they come into
+ *            view together */
 void
 weighModes(const Prior& prior,
            double region_of_cloud,
