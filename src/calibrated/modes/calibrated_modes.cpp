@@ -20,6 +20,8 @@ using Eigen::Isometry3d;
 
 namespace {
 
+constexpr double pi = 3.14159265358979323846;
+
 /** A prior is wide from these standard deviations on: [rad], and in parts of the
  * source's extent. */
 constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
@@ -95,7 +97,6 @@ startDeviations(const std::array<bool, 6>& wide,
                 int num_starts,
                 Random& random)
 {
-  constexpr double pi = 3.14159265358979323846;
   Matrix6Xd deviations(6, num_starts);
   for (int k = 0; k < 6; ++k) {
     const double sd = std::sqrt(prior.variance()[k]);
@@ -171,7 +172,6 @@ hopsFrom(const Isometry3d& pose,
   const Eigen::Matrix3Xd arms = scorer.sourcePoints().colwise() - scorer.centroid();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(arms *
                                                                  arms.transpose());
-  constexpr double pi = 3.14159265358979323846;
   for (int k = 0; k < 3; ++k)
     starts.push_back(pose * centroid *
                      Eigen::AngleAxisd(pi, principal.eigenvectors().col(k)) *

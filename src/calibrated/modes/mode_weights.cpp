@@ -70,9 +70,7 @@ heededPart(double energy, double variance)
          std::max(0.0, 1.0 - squared_deviations * variance / (energy * energy));
 }
 
-/** What counts of the sum of the \p differences of two modes' energies. Its noise is as
- * if each independent patch could as well have the opposite sign. (The variance over
- * clusters of points would take for noise what one place tells.) Patches are of
+/** What counts of the sum of the \p differences of two modes' energies. Patches are of
  * \p kappa points. If \p region is not 0, points that meet the target in one mode only
  * are heeded apart, and their patches are of \p region points. */
 double
