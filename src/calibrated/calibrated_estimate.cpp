@@ -236,9 +236,9 @@ atMode(const SurfaceScorer& scorer, const Prior& prior, const RobustFit& mode)
   e.mode = mode.pose;
   e.centre = e.mode * scorer.centroid();
   e.residual_scale = mode.residual_scale;
-  e.cost = mode.cost;
   PatchHints hints;
   scorer.evaluate(e.mode, e.centre, e.residual_scale, hints, e.scores);
+  e.cost = meanCappedResidual(e.scores);
   e.prior = twistPrior(prior, e.mode, e.centre);
   e.displacement_metric = displacementMetric(scorer, e.mode);
   return e;

@@ -304,9 +304,15 @@ TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
 constexpr double region_parts = 40.0;
 
 /** How much heavier a mode is than the same one where \p num_missing points do not meet
- * the target. */
+ * the target.
+ * \param[in] region_of_cloud of weighModes()
+ * \param[in] off_continuation of these points */
 double
-weightOfPoints(const CalibratedEstimate& estimate, const Prior& prior, int num_missing)
+weightOfPoints(const CalibratedEstimate& estimate,
+               const Prior& prior,
+               int num_missing,
+               double region_of_cloud,
+               double off_continuation)
 {
   std::vector<CalibratedMode> modes(2, {estimate, 0.0});
   modes[1].estimate.cost += 1e-9;
@@ -315,9 +321,10 @@ weightOfPoints(const CalibratedEstimate& estimate, const Prior& prior, int num_m
     scores.residuals.setZero();
     std::fill(scores.has_patch.begin(), scores.has_patch.end(), true);
   }
-  auto& has_patch = modes[1].estimate.scores.has_patch;
-  std::fill(has_patch.begin(), has_patch.begin() + num_missing, false);
-  weighModes(prior, 1.0 / region_parts, modes);
+  auto& scores = modes[1].estimate.scores;
+  std::fill(scores.has_patch.begin(), scores.has_patch.begin() + num_missing, false);
+  scores.off_continuation.head(num_missing).setConstant(off_continuation);
+  weighModes(prior, region_of_cloud, modes);
   return modes[0].log_weight - modes[1].log_weight;
 }
 
@@ -334,12 +341,32 @@ TEST(ModeWeights, RegionsThatMeetNoTargetCountAsFarAsTheyAreMany)
       0.5 * static_cast<double>(estimate.scores.residuals.size()) / region_parts;
   ASSERT_GT(region, estimate.kappa_inf);
   const auto weightOf = [&](double num_regions) {
-    return weightOfPoints(estimate, prior, static_cast<int>(num_regions * region));
+    return weightOfPoints(estimate,
+                          prior,
+                          static_cast<int>(num_regions * region),
+                          1.0 / region_parts,
+                          0.0);
   };
   EXPECT_EQ(weightOf(2.0), 0.0);
-  EXPECT_EQ(weightOf(4.0), 0.0);
+  EXPECT_NEAR(weightOf(4.0), 0.0, 1e-9);
   EXPECT_GT(weightOf(8.0), 0.0);
   EXPECT_NEAR(weightOf(16.0) / weightOf(8.0), 3.0, 1e-9);
+}
+
+TEST(ModeWeights, OverlapOnASurfaceThatGoesOnIsNoEvidence)
+{
+  const Clouds clouds = cloudsOf(onCube, 0.3);
+  const SurfaceModel model(clouds.target);
+  const SurfaceScorer scorer(clouds.source, model);
+  const Prior prior = priorWith(0.35, scorer.centroid());
+  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
+  const auto weightOf = [&](double off_continuation) {
+    return weightOfPoints(estimate, prior, 1000, 0.0, off_continuation);
+  };
+  EXPECT_EQ(weightOf(0.0), 0.0);
+  // n points of an energy e count n e - 4 kappa e.
+  EXPECT_GT(weightOf(1.0), 0.0);
+  EXPECT_NEAR(weightOf(0.5) / weightOf(1.0), 0.5, 1e-9);
 }
 
 TEST(CalibratedModes, ThereIsOneAlsoOfCloudsThatDoNotMeet)

@@ -104,6 +104,25 @@ TEST(SurfaceScore, ResidualsAreHeightsOverAKnownPlane)
   EXPECT_LT(num_active, num_with_patch);
 }
 
+TEST(SurfaceScore, PointsBeyondABorderAreOnTheContinuationOrOffIt)
+{
+  PlaneCase c;
+  // 3 m beyond the border, slopes that are uncertain by twice the noise over a patch's
+  // radius are off by less than 0.02 m.
+  const Matrix3Xd source = c.source;
+  const auto offOf = [&](double height) {
+    c.source = source;
+    c.source.col(7) += c.pose.linear().transpose() * Vector3d(0.0, 0.0, height);
+    return c.scoresAt(c.pose, c.tau).off_continuation;
+  };
+  const Eigen::VectorXd on = offOf(0.0), off = offOf(0.1);
+  EXPECT_LT(on[7], 0.01);
+  EXPECT_LT(on[33], 0.01);
+  EXPECT_EQ(off[7], 1.0);
+  EXPECT_EQ(off[33], on[33]);
+  EXPECT_EQ(on[8], 0.0); // has a patch
+}
+
 TEST(SurfaceScore, IsTheGradientOfTukeysEnergy)
 {
   const PlaneCase c;
@@ -334,6 +353,7 @@ TEST(SurfaceScore, IsZeroWithoutPatches)
     EXPECT_EQ(scores.information, Matrix6d::Zero());
     EXPECT_EQ(scores.num_active, 0);
     EXPECT_EQ(meanCappedResidual(scores), 5.0);
+    EXPECT_EQ(costOf(scores), 5.0);
     EXPECT_EQ(residualScale(scores), 1.0);
   }
 }
@@ -348,6 +368,12 @@ TEST(SurfaceScore, ScaleAndCostOfResiduals)
   // Magnitudes 0.1, 0.5, 1, 2, 7; the fourth point has no patch and costs 5.
   EXPECT_DOUBLE_EQ(residualScale(scores), 1.4826);
   EXPECT_DOUBLE_EQ(meanCappedResidual(scores), (1.0 + 2.0 + 0.5 + 5.0 + 5.0 + 0.1) / 6);
+  // Off the continuation it costs more than the mean of the others, on it as much.
+  scores.off_continuation.setZero(6);
+  scores.off_continuation[3] = 0.9;
+  EXPECT_DOUBLE_EQ(costOf(scores), (8.6 + 4.5) / 6);
+  scores.off_continuation[3] = 0.1;
+  EXPECT_DOUBLE_EQ(costOf(scores), (8.6 + 8.6 / 5) / 6);
   const Eigen::VectorXd capped = cappedResiduals(scores);
   EXPECT_TRUE(std::isnan(capped[3]));
   EXPECT_EQ(capped[1], 2.0);

@@ -44,18 +44,27 @@ energyWeight(const CalibratedEstimate& estimate)
   return count > 0 ? std::exp(-sum / count) : 1.0 / estimate.kappa_inf;
 }
 
-/** Tukey's energy of each point; one without a patch has the largest. */
+/** Tukey's energy of each point. One without a patch has the largest; but if
+ * \p continued, only as far as it is off the continuation of the surface, and at least
+ * the mean of the others. */
 VectorXd
-energiesOf(const SurfaceScores& scores, double tau)
+energiesOf(const SurfaceScores& scores, double tau, bool continued)
 {
   const double scale = SurfaceScorer::tukey_constant * tau;
+  const double largest = scale * scale / 6.0;
   VectorXd energies(scores.residuals.size());
-  for (Index i = 0; i < energies.size(); ++i) {
-    const double z = scores.has_patch[static_cast<std::size_t>(i)]
-                         ? std::min(1.0, std::abs(scores.residuals[i]) / scale)
-                         : 1.0;
-    energies[i] = scale * scale / 6.0 * (1.0 - std::pow(1.0 - z * z, 3));
-  }
+  double sum = 0.0;
+  int count = 0;
+  for (Index i = 0; i < energies.size(); ++i)
+    if (scores.has_patch[static_cast<std::size_t>(i)]) {
+      energies[i] = largest * tukeyEnergy(scores.residuals[i] / scale);
+      sum += energies[i];
+      ++count;
+    }
+  const double least = continued ? sum / std::max(1, count) : largest;
+  for (Index i = 0; i < energies.size(); ++i)
+    if (!scores.has_patch[static_cast<std::size_t>(i)])
+      energies[i] = std::max(least, largest * scores.off_continuation[i]);
   return energies;
 }
 
@@ -122,7 +131,7 @@ weighModes(const Prior& prior,
   std::vector<VectorXd> energies;
   for (const auto& mode : modes) {
     weight += energyWeight(mode.estimate) / static_cast<double>(modes.size());
-    energies.push_back(energiesOf(mode.estimate.scores, tau));
+    energies.push_back(energiesOf(mode.estimate.scores, tau, region_of_cloud == 0.0));
   }
   const auto best = static_cast<std::size_t>(
       std::min_element(energies.begin(),

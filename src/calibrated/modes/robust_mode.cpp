@@ -128,7 +128,7 @@ fitRobustly(const SurfaceScorer& scorer,
   scorer.evaluate(fit.pose, fit.pose * scorer.centroid(), no_weights, hints, linear);
   ++fit.num_evaluations;
   fit.residuals = cappedResiduals(linear);
-  fit.cost = meanCappedResidual(linear);
+  fit.cost = costOf(linear);
   fit.residual_scale = residualScale(linear);
   return fit;
 }

@@ -28,7 +28,7 @@ struct RobustFit {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   /** residualScale() there. */
   double residual_scale = 1.0;
-  /** cappedResiduals() there, and their mean as in meanCappedResidual(). */
+  /** cappedResiduals() and costOf() there. */
   Eigen::VectorXd residuals;
   double cost = 0.0;
   /** Evaluations of all points. */
@@ -50,7 +50,8 @@ fitRobustly(const SurfaceScorer& scorer,
  * (by two standard deviations of the difference). That more points have a patch only
  * says that the target was seen there: two views of a wall overlap most where the
  * sensor has not moved. If these points do not tell, all points are compared, and a
- * point without a patch counts as one that does not fit. */
+ * point without a patch counts as one that does not fit, unless it is on the surface
+ * that continues the target's. */
 double
 relativeCost(const RobustFit& a, const RobustFit& b);
 

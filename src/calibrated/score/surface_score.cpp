@@ -21,6 +21,13 @@ constexpr double residual_cap = 5.0;
 /** Smallest residualScale(): below, the target's noise is overestimated. */
 constexpr double min_residual_scale = 0.3;
 
+/** Beyond its border, a surface may bend: its slope is as uncertain as if one point of
+ * the patch's noise had told it. */
+constexpr double slope_error = 2.0;
+
+/** Fewer contacts, in parts of all points, do not tell where the surface goes on. */
+constexpr double min_contacts = 0.1;
+
 /** Of a thread of evaluate(), at a time. */
 constexpr Eigen::Index points_per_piece = 256;
 
@@ -31,7 +38,22 @@ struct Contact {
   double residual = 0.0;
   /** n / sigma. */
   Vector3d normal = Vector3d::Zero();
+  /** As in SurfaceScores. */
+  double off_continuation = 1.0;
 };
+
+/** Energy of a point off the plane that touches a patch at its origin.
+ * \param[in] in_plane its distance from there [m] */
+double
+energyOffPlane(const SurfacePatch& patch, const Vector3d& point, double in_plane)
+{
+  const auto& a = patch.quadric;
+  const Vector3d local = patch.axes.transpose() * (point - patch.origin);
+  const double distance = local.z() - a[0] - a[1] * local.x() - a[2] * local.y();
+  const double slopes = slope_error * in_plane / patch.radius;
+  const double sigma = patch.sigma * std::sqrt(1.0 + slopes * slopes);
+  return tukeyEnergy(distance / (SurfaceScorer::tukey_constant * sigma));
+}
 
 /** \param[in] point in the model's frame
  * \param[in,out] hint nearest patch of the last time, and of this one */
@@ -48,8 +70,10 @@ contactWith(const SurfaceModel& model, const Vector3d& point, std::uint32_t& hin
   if (!patch.isUsable())
     return contact;
   const SurfaceOffset offset = offsetFrom(patch, point);
-  if (offset.in_plane > SurfaceScorer::max_in_plane * patch.radius)
+  if (offset.in_plane > SurfaceScorer::max_in_plane * patch.radius) {
+    contact.off_continuation = energyOffPlane(patch, point, offset.in_plane);
     return contact;
+  }
   contact.has_patch = true;
   contact.residual = offset.distance / patch.sigma;
   contact.normal = offset.normal / patch.sigma;
@@ -62,6 +86,7 @@ clear(SurfaceScores& scores, Eigen::Index num_points)
   scores.residuals.setZero(num_points);
   scores.active.assign(static_cast<std::size_t>(num_points), 0);
   scores.has_patch.assign(static_cast<std::size_t>(num_points), 0);
+  scores.off_continuation.setZero(num_points);
   scores.scores.setZero(6, num_points);
   scores.jacobians.setZero(6, num_points);
   scores.total.setZero();
@@ -132,6 +157,13 @@ tukeyWeight(double z)
 }
 
 double
+tukeyEnergy(double z)
+{
+  const double rest = std::max(0.0, 1.0 - z * z);
+  return 1.0 - rest * rest * rest;
+}
+
+double
 residualScale(const SurfaceScores& scores)
 {
   std::vector<double> magnitudes;
@@ -160,6 +192,18 @@ meanCappedResidual(const SurfaceScores& scores)
 {
   const Eigen::VectorXd capped = cappedResiduals(scores);
   return capped.array().isNaN().select(residual_cap, capped).mean();
+}
+
+double
+costOf(const SurfaceScores& scores)
+{
+  const Eigen::VectorXd capped = cappedResiduals(scores);
+  const auto has_patch = !capped.array().isNaN();
+  const double mean = has_patch.select(capped, 0.0).sum() /
+                      std::max(1.0, static_cast<double>(has_patch.count()));
+  const auto beyond =
+      residual_cap * scores.off_continuation.head(capped.size()).array();
+  return has_patch.select(capped.array(), beyond.max(mean)).mean();
 }
 
 SurfaceScorer::SurfaceScorer(const Eigen::Matrix3Xd& source_points,
@@ -225,8 +269,10 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
     const auto index = static_cast<std::size_t>(i);
     Vector6d rates;
     const Contact contact = placement.contactOf(i, hints[index], rates);
-    if (!contact.has_patch)
+    if (!contact.has_patch) {
+      scores.off_continuation[i] = contact.off_continuation;
       return;
+    }
     scores.has_patch[index] = 1;
     scores.residuals[i] = contact.residual;
     const double weight =
@@ -245,6 +291,11 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
     for (Eigen::Index i = begin; i < end; ++i)
       evaluateAt(i);
   });
+  const auto num_contacts =
+      std::count(scores.has_patch.begin(), scores.has_patch.end(), true);
+  if (static_cast<double>(num_contacts) <
+      min_contacts * static_cast<double>(numPoints()))
+    scores.off_continuation.setOnes();
   for (Eigen::Index i = 0; i < numPoints(); ++i) {
     if (!scores.active[static_cast<std::size_t>(i)])
       continue;

@@ -29,6 +29,10 @@ struct SurfaceScores {
   Eigen::VectorXd residuals;
   /** Whether a point has a usable patch. */
   std::vector<char> has_patch;
+  /** How far a point without a patch is off the surface that continues the nearest one
+   * beyond its border: Tukey's energy in parts of its largest. 1 where the nearest
+   * patch is not usable, and of all points if less than a tenth have a patch. */
+  Eigen::VectorXd off_continuation;
   /** Whether it also has a (Tukey) weight above zero. */
   std::vector<char> active;
   /** psi(u) J^T n / sigma [1/m, 1/rad], zero if not active. */
@@ -50,6 +54,11 @@ struct SurfaceScores {
 double
 tukeyWeight(double z);
 
+/** \brief Tukey's energy 1 - (1 - z^2)^3 in parts of its largest, which it has from |z|
+ * = 1 on. */
+double
+tukeyEnergy(double z);
+
 /** \brief Robust scale 1.4826 median |u| of the residuals of points with a patch, at
  * least 0.3. */
 double
@@ -63,6 +72,11 @@ cappedResiduals(const SurfaceScores& scores);
  * 5. */
 double
 meanCappedResidual(const SurfaceScores& scores);
+
+/** \brief The same, but a source point on the continuation of the target's surface may
+ * cost less than 5, down to the mean of the points with a patch. */
+double
+costOf(const SurfaceScores& scores);
 
 /** \brief Evaluates scores: of source points against the target's surface, and of
  * target points against the source's, if there are any. Functions are const; threads

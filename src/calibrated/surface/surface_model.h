@@ -96,7 +96,7 @@ struct SurfaceModelOptions {
    */
   int num_neighbors = 30;
   /** Smallest ratio of radius to noise of a quadric. */
-  double min_radius_to_noise = 3.0;
+  double min_radius_to_noise = 3.75;
   /** Largest F statistic of a quartic against the quadric, where this misses its points
    * by more than a thousandth of the radius. */
   double max_misfit = 2.2;
