@@ -301,67 +301,59 @@ TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
   EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
 }
 
-constexpr double region_parts = 40.0;
-
-/** How much heavier a mode is than the same one where \p num_missing points do not meet
- * the target.
- * \param[in] region_of_cloud of weighModes()
- * \param[in] off_continuation of these points */
-double
-weightOfPoints(const CalibratedEstimate& estimate,
-               const Prior& prior,
-               int num_missing,
-               double region_of_cloud,
-               double off_continuation)
-{
-  std::vector<CalibratedMode> modes(2, {estimate, 0.0});
-  modes[1].estimate.cost += 1e-9;
-  for (auto& mode : modes) {
-    auto& scores = mode.estimate.scores;
-    scores.residuals.setZero();
-    std::fill(scores.has_patch.begin(), scores.has_patch.end(), true);
+class ModeWeights : public testing::Test {
+protected:
+  /** How much heavier a mode is than the same one where \p num_missing points do not
+   * meet the target.
+   * \param[in] region_of_cloud of weighModes()
+   * \param[in] off_continuation of these points */
+  double
+  weightOfPoints(int num_missing, double region_of_cloud, double off_continuation) const
+  {
+    std::vector<CalibratedMode> modes(2, {estimate_, 0.0});
+    modes[1].estimate.cost += 1e-9;
+    for (auto& mode : modes) {
+      auto& scores = mode.estimate.scores;
+      scores.residuals.setZero();
+      std::fill(scores.has_patch.begin(), scores.has_patch.end(), true);
+    }
+    auto& scores = modes[1].estimate.scores;
+    std::fill(scores.has_patch.begin(), scores.has_patch.begin() + num_missing, false);
+    scores.off_continuation.head(num_missing).setConstant(off_continuation);
+    weighModes(prior_, region_of_cloud, modes);
+    return modes[0].log_weight - modes[1].log_weight;
   }
-  auto& scores = modes[1].estimate.scores;
-  std::fill(scores.has_patch.begin(), scores.has_patch.begin() + num_missing, false);
-  scores.off_continuation.head(num_missing).setConstant(off_continuation);
-  weighModes(prior, region_of_cloud, modes);
-  return modes[0].log_weight - modes[1].log_weight;
-}
 
-TEST(ModeWeights, RegionsThatMeetNoTargetCountAsFarAsTheyAreMany)
+  const Clouds clouds_ = cloudsOf(onCube, 0.3);
+  const SurfaceModel model_{clouds_.target};
+  const SurfaceScorer scorer_{clouds_.source, model_};
+  const Prior prior_ = priorWith(0.35, scorer_.centroid());
+  const CalibratedEstimate estimate_ = estimateCalibrated(scorer_, prior_);
+};
+
+TEST_F(ModeWeights, RegionsThatMeetNoTargetCountAsFarAsTheyAreMany)
 {
-  const Clouds clouds = cloudsOf(onCube, 0.3);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  const Prior prior = priorWith(0.35, scorer.centroid());
-  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
   // n points in regions of R have an energy of n e with a variance of n R e^2, of which
   // n e - 4 R e counts.
+  constexpr double region_parts = 40.0;
   const double region =
-      0.5 * static_cast<double>(estimate.scores.residuals.size()) / region_parts;
-  ASSERT_GT(region, estimate.kappa_inf);
+      0.5 * static_cast<double>(estimate_.scores.residuals.size()) / region_parts;
+  ASSERT_GT(region, estimate_.kappa_inf);
   const auto weightOf = [&](double num_regions) {
-    return weightOfPoints(estimate,
-                          prior,
-                          static_cast<int>(num_regions * region),
-                          1.0 / region_parts,
-                          0.0);
+    return weightOfPoints(
+        static_cast<int>(num_regions * region), 1.0 / region_parts, 0.0);
   };
   EXPECT_EQ(weightOf(2.0), 0.0);
+  EXPECT_EQ(weightOf(3.99), 0.0);
   EXPECT_NEAR(weightOf(4.0), 0.0, 1e-9);
   EXPECT_GT(weightOf(8.0), 0.0);
   EXPECT_NEAR(weightOf(16.0) / weightOf(8.0), 3.0, 1e-9);
 }
 
-TEST(ModeWeights, OverlapOnASurfaceThatGoesOnIsNoEvidence)
+TEST_F(ModeWeights, OverlapOnASurfaceThatGoesOnIsNoEvidence)
 {
-  const Clouds clouds = cloudsOf(onCube, 0.3);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  const Prior prior = priorWith(0.35, scorer.centroid());
-  const CalibratedEstimate estimate = estimateCalibrated(scorer, prior);
   const auto weightOf = [&](double off_continuation) {
-    return weightOfPoints(estimate, prior, 1000, 0.0, off_continuation);
+    return weightOfPoints(1000, 0.0, off_continuation);
   };
   EXPECT_EQ(weightOf(0.0), 0.0);
   // n points of an energy e count n e - 4 kappa e.
