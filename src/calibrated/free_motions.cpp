@@ -65,15 +65,6 @@ turnDirection(int k,
 
 } // namespace
 
-Contacts
-contactsOf(const Eigen::VectorXd& capped_residuals)
-{
-  const auto has_patch = !capped_residuals.array().isNaN();
-  const auto count = static_cast<double>(has_patch.count());
-  return {count / static_cast<double>(capped_residuals.size()),
-          has_patch.select(capped_residuals.array(), 0.0).sum() / count};
-}
-
 Matrix6d
 holdOfFree(const CalibratedEstimate& estimate, double tolerance)
 {

@@ -7,17 +7,6 @@
 
 namespace bayesian_icp {
 
-/** \brief The points that have a patch at a pose. */
-struct Contacts {
-  /** Of all points. */
-  double share = 0.0;
-  /** Mean of their cappedResiduals(). */
-  double misfit = 0.0;
-};
-
-Contacts
-contactsOf(const Eigen::VectorXd& capped_residuals);
-
 /** \brief Precision that holds a pose along the free directions of an estimate, those
  * that keep nothing, to within \p tolerance [m]. */
 Matrix6d

@@ -187,6 +187,15 @@ cappedResiduals(const SurfaceScores& scores)
   return capped;
 }
 
+Contacts
+contactsOf(const Eigen::VectorXd& capped_residuals)
+{
+  const auto has_patch = !capped_residuals.array().isNaN();
+  const auto count = static_cast<double>(has_patch.count());
+  return {count / static_cast<double>(capped_residuals.size()),
+          has_patch.select(capped_residuals.array(), 0.0).sum() / count};
+}
+
 double
 meanCappedResidual(const SurfaceScores& scores)
 {
@@ -198,12 +207,11 @@ double
 costOf(const SurfaceScores& scores)
 {
   const Eigen::VectorXd capped = cappedResiduals(scores);
-  const auto has_patch = !capped.array().isNaN();
-  const double mean = has_patch.select(capped, 0.0).sum() /
-                      std::max(1.0, static_cast<double>(has_patch.count()));
+  const Contacts contacts = contactsOf(capped);
+  const double least = contacts.share > 0.0 ? contacts.misfit : 0.0;
   const auto beyond =
       residual_cap * scores.off_continuation.head(capped.size()).array();
-  return has_patch.select(capped.array(), beyond.max(mean)).mean();
+  return capped.array().isNaN().select(beyond.max(least), capped.array()).mean();
 }
 
 SurfaceScorer::SurfaceScorer(const Eigen::Matrix3Xd& source_points,

@@ -68,6 +68,17 @@ residualScale(const SurfaceScores& scores);
 Eigen::VectorXd
 cappedResiduals(const SurfaceScores& scores);
 
+/** \brief The points that have a patch at a pose. */
+struct Contacts {
+  /** Of all points. */
+  double share = 0.0;
+  /** Mean of their cappedResiduals(); NaN if there are none. */
+  double misfit = 0.0;
+};
+
+Contacts
+contactsOf(const Eigen::VectorXd& capped_residuals);
+
 /** \brief Mean of min(|u|, 5) of the source points. One without a usable patch counts
  * 5. */
 double
