@@ -20,7 +20,7 @@ main(int argc, char** argv)
   icp.setInputSource(source);
   icp.setInputTarget(target);
   pcl::PointCloud<pcl::PointXYZ> aligned;
-  icp.align(aligned); // the same result as IterativeClosestPoint; new are:
+  icp.align(aligned); // same result as IterativeClosestPoint, plus:
   std::cout << icp.getSummary().message << "\n"       // can you trust the posterior?
             << icp.getMean().transpose() << "\n"      // x y z [m], roll pitch yaw [rad]
             << icp.getCovariance() << "\n"            // 6x6, in the same order
