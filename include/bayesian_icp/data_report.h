@@ -1,6 +1,6 @@
 /** \file
- * \brief Preset `calibrated`: what the data say about the pose in each direction, and
- * the warnings about them.
+ * \brief Preset `calibrated`: how well the data determine the pose in each direction,
+ * and warnings.
  */
 #pragma once
 
@@ -17,7 +17,7 @@ namespace bayesian_icp {
 enum class Observability {
   /** The data determine it. */
   Observed,
-  /** The data determine it, but hardly above their noise, or less than the prior does.
+  /** The data determine it, but mostly within their noise, or less than the prior does.
    */
   Weak,
   /** The data do not determine it: the posterior is the prior. */
@@ -28,10 +28,10 @@ enum class Observability {
  * noise. */
 constexpr double min_observed_share_above_noise = 0.5;
 /** \brief A direction is Weak from this ratio of posterior to prior standard deviation
- * on: the data then say less about it than the prior does. */
+ * on: the data then contribute less information than the prior. */
 constexpr double max_observed_share_of_prior = 0.7071;
 /** \brief A direction is PriorOnly from this ratio of posterior to prior standard
- * deviation on, even if the data add a little. */
+ * deviation on, even if the data contribute a little. */
 constexpr double max_share_of_prior = 0.99;
 /** \brief Thresholds of the flags; docs/calibration_flags.md gives the reasons. */
 constexpr double max_basin_distance = 3.0;
@@ -49,8 +49,8 @@ toString(Observability observability);
 /** \brief One motion and how well it is known. The six motions of a report are
  * independent of each other, in the posterior and in the prior. */
 struct DataDirection {
-  /** Left twist (v, w) about DataReport::centre, target frame. Its scale is such that
-   * the root mean squared displacement of the source's points is one [1, rad/m]. */
+  /** Left twist (v, w) about DataReport::centre, target frame [1, rad/m]. It is scaled
+   * so that the root mean squared displacement of the source's points is one. */
   Vector6d twist = Vector6d::Zero();
   /** Posterior and prior standard deviation along the twist, as root mean squared
    * displacement of the source's points [m]. */
@@ -73,17 +73,17 @@ struct DataFlags {
   /** Less than min_active_fraction of the source points lie on the target's surface. */
   bool low_support = false;
   /** Fewer than min_effective_patches independent patches determine the pose, or fewer
-   * than 28 where residual_scale is above 3. Do not rely on the width. */
+   * than 28 if residual_scale is above 3. Do not rely on the width of the posterior. */
   bool few_patches = false;
   /** The surfaces disagree by more than the noise: residual_scale is above
    * max_residual_scale, or above max_residual_scale_if_free if the prior alone
    * determines a direction, which may hide the disagreement. Also raised if the
-   * surfaces agree better than the target's noise allows, as clouds without noise do:
-   * residual_scale is at its floor of 0.3. */
+   * surfaces agree better than the target's noise allows (residual_scale is at its
+   * floor of 0.3), as for clouds without noise. */
   bool misfit = false;
   /** The prior alone determines all six directions. */
   bool no_information = false;
-  /** The pose that the clouds ask for has a probability below min_prior_probability
+  /** The pose that the clouds determine has a probability below min_prior_probability
    * under the prior: one of the two is wrong. */
   bool prior_conflict = false;
 
@@ -102,31 +102,31 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   bool is_available = false;
   /** Standard deviation of a source point's distance to the target's surface [m]. */
   double noise_scale = std::numeric_limits<double>::quiet_NaN();
-  /** noise_scale in units of the target's own noise: 1 to 1.5 if all is well. */
+  /** noise_scale in units of the target's own noise. Normally 1 to 1.5. */
   double residual_scale = std::numeric_limits<double>::quiet_NaN();
   /** Number of independent patches of surface with the same information: 96 kappa_48 /
-   * kappa_inf. About 96 if neighbouring points are independent. */
+   * kappa_inf. It is about 96 if neighbouring points are independent. */
   double effective_patches = std::numeric_limits<double>::quiet_NaN();
   /** Share of the source points that lie on the target's surface, in [0, 1]. */
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
   /** kappa_inf: factor by which correlation between neighbouring points inflates the
    * covariance of the score. */
   double correlation_factor = std::numeric_limits<double>::quiet_NaN();
-  /** nu of Student's t distribution, which the draws have in the directions that the
-   * data determine. It is scaled to the covariance: in six such directions the 95 %
-   * region ends at a squared Mahalanobis distance of 5.4 F_0.95(6, nu) = 14.0 for nu =
-   * 20, not 12.6. */
+  /** nu of Student's t distribution, from which the draws are taken in the directions
+   * that the data determine. It is scaled to the covariance: in six such directions the
+   * 95 % region ends at a squared Mahalanobis distance of 5.4 F_0.95(6, nu) = 14.0 for
+   * nu = 20, not 12.6. */
   int degrees_of_freedom = 0;
-  /** Mahalanobis distance between the ends of the two starts, without the directions
-   * that are PriorOnly. Its covariance is the posterior's, widened by half the noise,
-   * because starts do not converge further. */
+  /** Mahalanobis distance between the ends of the two starts, without PriorOnly
+   * directions. Its covariance is the posterior's, widened by half the noise, because
+   * starts do not converge further. */
   double basin_distance = std::numeric_limits<double>::quiet_NaN();
   /** Mean capped residual at the worse of the two ends, divided by that at the better
    * one. */
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
   /** Probability that a pose drawn from the prior is further from the prior's mean than
-   * the posterior's mean is, without the directions that are PriorOnly. Uniform in
-   * [0, 1] if the poses are drawn from the prior. */
+   * the posterior's mean is, without PriorOnly directions. Uniform in [0, 1] if the
+   * poses are drawn from the prior. */
   double prior_probability = std::numeric_limits<double>::quiet_NaN();
   /** Centre of the twists: the moved source's centroid, target frame [m]. */
   Eigen::Vector3d centre =
@@ -146,8 +146,8 @@ flagsOf(const DataReport& report);
  * pitch of 0.250 m/rad".
  *
  * Opposite twists have the same description. A motion counts as a translation if it
- * moves all points nearly alike. The point given is the one of the axis nearest to the
- * centre.
+ * moves all points nearly alike. The given point is the point of the axis that is
+ * nearest to the centre.
  * \param[in] twist left, target frame, of unit rms displacement [1, rad/m]
  * \param[in] centre of the twist, target frame [m] */
 BAYESIAN_ICP_EXPORT std::string

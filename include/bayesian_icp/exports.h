@@ -3,10 +3,9 @@
  * robotics software: ROS 2, g2o, GTSAM, TUM trajectories, CSV.
  *
  * The pose is always the posterior mean T_target_source, because the covariance is
- * about the mean. It is the pose of the source frame as seen from the target frame, in
- * metres and radians. Texts consist of whole lines. Their numbers do not depend on the
- * locale and read back without loss. docs/exports.md compares the formats and has
- * examples.
+ * about the mean. It is the pose of the source frame in the target frame, in metres and
+ * radians. Texts consist of complete lines. Their numbers do not depend on the locale
+ * and read back without loss. docs/exports.md compares the formats and has examples.
  */
 #pragma once
 
@@ -20,7 +19,7 @@
 
 namespace bayesian_icp {
 
-/** \brief What is exported. It comes from a Summary, or from a file. */
+/** \brief The pose to be exported. It comes from a Summary, or from a file. */
 struct BAYESIAN_ICP_EXPORT PoseEstimate {
   Status status = Status::NotRun;
   /** Posterior mean T_target_source (x, y, z, roll, pitch, yaw) [m, rad]. */
@@ -41,27 +40,28 @@ struct BAYESIAN_ICP_EXPORT PoseEstimate {
 BAYESIAN_ICP_EXPORT bool
 readStatus(const std::string& name, Status& status);
 
-/** \brief What the formats need besides the pose. */
+/** \brief Settings of the formats besides the pose. */
 struct ExportOptions {
   /** Names of the frames: one or more characters of A-Z a-z 0-9 _ - . / */
   std::string target_frame = "target";
   std::string source_frame = "source";
   /** Time since the epoch, from 0 to below 2^31 s [ns]. */
   std::int64_t timestamp_ns = 0;
-  /** Vertices of the pose graph; different, and not negative. */
+  /** Vertices of the pose graph: different from each other, and not negative. */
   int target_vertex = 0;
   int source_vertex = 1;
-  /** Also export a posterior that has not mixed, has several modes, lost chains or was
-   * cancelled, if its numbers are finite. */
+  /** Also export a posterior with status NotMixed, SeveralModes, Diverged or Cancelled,
+   * if its numbers are finite. */
   bool accept_unreliable = false;
 
-  /** \brief Describe what is wrong with the first bad field, with its name. Empty if
-   * all fields are valid. */
+  /** \brief Describe the first invalid field, with its name. Empty if all fields are
+   * valid. */
   BAYESIAN_ICP_EXPORT std::string
   validate() const;
 };
 
-/** \brief Why \p estimate cannot be exported, as part of a sentence. Empty if it can.
+/** \brief The reason why \p estimate cannot be exported, as part of a sentence. Empty
+ * if it can be exported.
  *
  * The status has to be Ok or Doubtful (see ExportOptions::accept_unreliable). Mean and
  * covariance have to be finite. If \p needs_information, the covariance also has to be
@@ -72,8 +72,8 @@ complaintAboutExport(const PoseEstimate& estimate,
                      bool accept_unreliable = false);
 
 /** \brief Inverse of a covariance.
- * \throws std::invalid_argument if the covariance is not finite, or so close to
- * singular that the inverse would have fewer than about five correct digits */
+ * \throws std::invalid_argument if the covariance is not finite, or if the inverse
+ * would have fewer than about five correct digits */
 BAYESIAN_ICP_EXPORT Matrix6d
 informationOf(const Matrix6d& covariance);
 

@@ -1,11 +1,11 @@
 /** \file
- * \brief What the clouds alone say about the pose: a posterior without its prior. Use
- * it in filters and pose graphs that already contain the knowledge of the prior.
+ * \brief The information of the clouds alone: a posterior without its prior. Use it in
+ * filters and pose graphs that already contain the information of the prior.
  *
  * Mean and covariance of a posterior contain its prior. If the prior was made from
  * odometry, and the posterior is fused with that odometry again, the odometry counts
- * twice. The result is then too sure where the clouds say little.
- * docs/pose_graph_and_filter.md says what to use when.
+ * twice. The result is then too certain along motions that the clouds hardly determine.
+ * docs/pose_graph_and_filter.md describes when to use which.
  */
 #pragma once
 
@@ -15,24 +15,24 @@
 
 namespace bayesian_icp {
 
-/** \brief Ratio of posterior to prior standard deviation above which draws cannot tell
- * a direction from one that the clouds do not see. Reason: for min_ess draws whose
- * variance is 1 in all six directions, the smallest variance is (1 - sqrt(6 / 400))^2
- * = 0.77 +- 0.03. The square of this constant is four times that uncertainty below it.
- */
+/** \brief Ratio of posterior to prior standard deviation above which a direction counts
+ * as unmeasured, because draws cannot distinguish it from one that the clouds do not
+ * determine. For min_ess draws whose variance is 1 in all six directions, the smallest
+ * variance is (1 - sqrt(6 / 400))^2 = 0.77 +- 0.03. The square of this constant is four
+ * times that uncertainty below it. */
 constexpr double max_measured_share_of_prior = 0.8;
 
-/** \brief Standard deviation of directions that the clouds do not see, in units of the
- * prior's. Their information is then a ten-thousandth of the prior's. */
+/** \brief Standard deviation of unmeasured directions, in units of the prior's. Their
+ * information is then a ten-thousandth of the prior's. */
 constexpr double unmeasured_deviation = 100.0;
 
 /** \brief A posterior as a measurement that is independent of its prior. */
 struct BAYESIAN_ICP_EXPORT PoseMeasurement {
-  /** Mean and covariances of the clouds' likelihood, as a Gaussian. In directions that
-   * the clouds do not see, the mean is the posterior's, and the standard deviation is
+  /** Mean and covariances of the clouds' likelihood, as a Gaussian. In unmeasured
+   * directions, the mean is the posterior's, and the standard deviation is
    * unmeasured_deviation times the prior's, so that the covariance can be inverted. */
   PoseEstimate estimate;
-  /** Number of directions that the clouds do not see, 0 to 6. */
+  /** Number of unmeasured directions, which the clouds do not determine, 0 to 6. */
   int num_unmeasured = 0;
 };
 
@@ -40,8 +40,8 @@ struct BAYESIAN_ICP_EXPORT PoseMeasurement {
  * of the prior are subtracted from those of the posterior, linearised at the posterior
  * mean.
  *
- * Fused with the prior again, the result is the posterior. It is right if the posterior
- * is nearly Gaussian.
+ * Fusing the result with the prior again gives the posterior. The result is accurate if
+ * the posterior is nearly Gaussian.
  * \param[in] posterior mean and covariances
  * \param[in] prior with which \p posterior was sampled
  * \return NaN if \p posterior has no finite mean and covariance */

@@ -13,18 +13,19 @@ namespace bayesian_icp {
 
 struct CloudParts;
 
-/** \brief The points of a cloud, and what the presets make of them: the surface that
- * `calibrated` needs of target and source, and the search tree that `paper` and `exact`
- * need of the target. In odometry, a scan is the source first, and then the target.
+/** \brief The points of a cloud, and what the presets derive from them: the surfaces of
+ * target and source for `calibrated`, and the search tree of the target for `paper` and
+ * `exact`. In odometry, a scan is the source first, and then the target.
  *
  * Each of these is made when it is first needed, or by prepare(), and then kept. No
- * result depends on when, or by how many threads, it was made. The object never changes
- * otherwise: several threads may use it at once, and its copies share everything. */
+ * result depends on when, or by how many threads, it was made. Otherwise the object
+ * never changes: several threads may use it at once, and its copies share everything.
+ */
 class BAYESIAN_ICP_EXPORT PreparedCloud {
 public:
-  /** \brief Not explicit: points are a cloud that nothing has been made of yet.
-   * \param[in] points 3 x n, in the cloud's own frame [m]; of a target, non-finite
-   *            points are left out */
+  /** \brief Not explicit, so that points can be passed as a cloud.
+   * \param[in] points 3 x n, in the cloud's own frame [m]; non-finite points of a
+   *            target are left out */
   PreparedCloud(Eigen::Matrix3Xd points);
 
   /** \brief The same for an expression, such as points.cast<double>(). */
@@ -37,7 +38,7 @@ public:
   const Eigen::Matrix3Xd&
   points() const;
 
-  /** \brief Make what \p preset needs, so that the first estimate need not.
+  /** \brief Prepare what \p preset needs, so that the first estimate does not have to.
    * \param[in] preset that will be used
    * \param[in] num_threads OpenMP threads, 0 is automatic */
   void

@@ -14,11 +14,11 @@ namespace bayesian_icp {
 enum class PriorFrame {
   /** The origin of the source frame, as in the paper. */
   Origin,
-  /** The centroid of the source points. This suits objects away from the sensor,
-   * because a rotation about the origin would move such an object far. */
+  /** The centroid of the source points. This suits objects away from the sensor: a
+   * rotation about the origin moves such an object far. */
   SourceCentroid,
-  /** Origin; for preset `calibrated` SourceCentroid if the cloud is far from the origin
-   * for its size: see priorFrameOf(). */
+  /** Origin. For preset `calibrated`, SourceCentroid if the cloud is far from the
+   * origin for its size: see priorFrameOf(). */
   Automatic
 };
 

@@ -3,10 +3,10 @@
  * any type with the fields of geometry_msgs/PoseWithCovarianceStamped or
  * nav_msgs/Odometry. docs/exports.md has an example.
  *
- * Conventions, as those of rosYaml(): the pose is the posterior mean T_target_source,
- * that of the source frame as seen from the target frame [m]; frame_id is the target's.
- * The covariance is CovarianceConvention::R3xSO3, row by row: translation along the
- * target's axes [m], then rotation about these fixed axes [rad].
+ * The conventions are those of rosYaml(). The pose is the posterior mean
+ * T_target_source, the pose of the source frame in the target frame [m]; frame_id is
+ * the target's. The covariance is CovarianceConvention::R3xSO3, row by row: translation
+ * along the target's axes [m], then rotation about these fixed axes [rad].
  */
 #pragma once
 
@@ -49,7 +49,7 @@ fillHeader(const ExportOptions& options, Header& header)
   header.frame_id = options.target_frame;
 }
 
-/** \throws std::invalid_argument with what is wrong */
+/** \throws std::invalid_argument with the reason */
 inline void
 require(const PoseEstimate& estimate, const ExportOptions& options)
 {
@@ -63,7 +63,7 @@ require(const PoseEstimate& estimate, const ExportOptions& options)
 
 } // namespace ros_messages_detail
 
-/** \brief Fill a geometry_msgs/Pose, or whatever has its fields.
+/** \brief Fill a geometry_msgs/Pose, or a type with its fields.
  * \param[in] pose T_target_source (x, y, z, roll, pitch, yaw) [m, rad]
  * \param[out] message its quaternion has w >= 0 */
 template <typename Pose>
@@ -83,10 +83,10 @@ fillPose(const Vector6d& pose, Pose& message)
   message.orientation.w = rotation.w();
 }
 
-/** \brief Fill a geometry_msgs/PoseWithCovariance, or whatever has its fields.
- * \param[in] estimate what is sent, if complaintAboutExport() has none
+/** \brief Fill a geometry_msgs/PoseWithCovariance, or a type with its fields.
+ * \param[in] estimate to be sent
  * \param[in] options accept_unreliable
- * \param[out] message as it was if this throws
+ * \param[out] message unchanged if this throws
  * \throws std::invalid_argument with complaintAboutExport() or options.validate() */
 template <typename PoseWithCovariance>
 void
@@ -101,7 +101,7 @@ fillPoseWithCovariance(const PoseEstimate& estimate,
     message.covariance[static_cast<std::size_t>(i)] = covariance(i / 6, i % 6);
 }
 
-/** \brief Fill a geometry_msgs/PoseWithCovarianceStamped, or whatever has its fields:
+/** \brief Fill a geometry_msgs/PoseWithCovarianceStamped, or a type with its fields:
  * stamp and frame_id from \p options, pose and covariance.
  * \throws std::invalid_argument as fillPoseWithCovariance(); nothing is filled then */
 template <typename PoseWithCovarianceStamped>
@@ -114,9 +114,9 @@ fillPoseWithCovarianceStamped(const PoseEstimate& estimate,
   ros_messages_detail::fillHeader(options, message.header);
 }
 
-/** \brief Fill the pose of a nav_msgs/Odometry, or of whatever has its fields: stamp,
+/** \brief Fill the pose of a nav_msgs/Odometry, or of a type with its fields: stamp,
  * frame_id (the target), child_frame_id (the source), pose and covariance. The twist is
- * left as it is: a registration says nothing about velocities.
+ * left unchanged, because a registration does not determine velocities.
  * \throws std::invalid_argument as fillPoseWithCovariance(); nothing is filled then */
 template <typename Odometry>
 void

@@ -18,20 +18,20 @@ namespace bayesian_icp {
 enum class Status {
   /** Nothing has been estimated yet. */
   NotRun,
-  /** Every R-hat <= 1.01 and every bulk and tail ESS >= 400. Of Stein particles: their
+  /** Every R-hat <= 1.01 and every bulk and tail ESS >= 400. For Stein particles: their
    * discrepancy is at most max_stein_discrepancy. */
   Ok,
-  /** As Ok, but with a warning: see Summary::data (preset `calibrated`), or the kernel
-   * leaves out nearly all points (`exact`). The draws are good draws from a posterior
-   * that may be wrong. */
+  /** As Ok, but with a warning: a flag in Summary::data (preset `calibrated`), or the
+   * kernel leaves out nearly all points (`exact`). The draws are good draws from a
+   * posterior that may be wrong. */
   Doubtful,
-  /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them is undefined. Of
-   * Stein particles: their discrepancy is too large. Mean and covariance describe the
-   * draws, but they may not describe the posterior. */
+  /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them is undefined.
+   * For Stein particles: their discrepancy is too large. Mean and covariance describe
+   * the draws, but may not describe the posterior. */
   NotMixed,
-  /** The chains are in modes between which they do not travel: see Summary::modes. Mean
-   * and covariance of all draws mix the modes in proportion to their draws. With
-   * preset `exact` that is the proportion of their chains, not of their weights. */
+  /** The chains are in modes between which they do not move: see Summary::modes. Mean
+   * and covariance of all draws mix the modes in proportion to their draws. With preset
+   * `exact`, this is the proportion of their chains, not of their weights. */
   SeveralModes,
   /** At least one chain ran away, became non-finite, or jumped by more than half a turn
    * in most of its steps (white noise on the circle). Samples, mean and covariance
@@ -58,31 +58,30 @@ toString(Status status);
 BAYESIAN_ICP_EXPORT bool
 hasUsableMean(Status status);
 
-/** \brief Chains count as mixed up to this R-hat, and from this bulk and tail effective
- * sample size on (Vehtari et al. 2021). */
+/** \brief Chains count as mixed with R-hat up to this value, and with bulk and tail
+ * effective sample sizes of at least min_ess (Vehtari et al. 2021). */
 constexpr double max_rhat = 1.01;
 constexpr double min_ess = 400.0;
 
 /** \brief Largest kernelised Stein discrepancy (sampler/stein.h) at which Stein
- * particles count as converged: what min_ess exact draws of a Gaussian exceed in 5 % of
- * cases. For n draws, n times its square is distributed as chi^2(6) + 2 chi^2(21): the
- * error of the mean and the errors of the 21 elements of the covariance. Its 95 %
- * quantile is 72.0. */
+ * particles count as converged. It is the value that min_ess exact draws of a Gaussian
+ * exceed in 5 % of cases. For n draws, n times its square is distributed as chi^2(6) +
+ * 2 chi^2(21): the error of the mean and the errors of the 21 elements of the
+ * covariance. The 95 % quantile of this sum is 72.0. */
 constexpr double max_stein_discrepancy = 0.424;
 
 /** \brief Marginal posterior of one pose coordinate, in metres or radians. Undefined
  * numbers are NaN. Quantiles of an angle are unwrapped about its mean, so they are in
  * order even if the interval crosses +-pi. */
 struct CoordinateSummary {
-  /** Mean of this coordinate alone: an element of coordinateMeans(), not of
-   * Summary::mean. */
+  /** Mean of this coordinate alone, from coordinateMeans(), not from Summary::mean. */
   double mean = std::numeric_limits<double>::quiet_NaN();
   /** Standard deviation about that mean; an angle is wrapped about it. */
   double standard_deviation = std::numeric_limits<double>::quiet_NaN();
   double quantile_2_5 = std::numeric_limits<double>::quiet_NaN();
   double median = std::numeric_limits<double>::quiet_NaN();
   double quantile_97_5 = std::numeric_limits<double>::quiet_NaN();
-  /** Stein particles have neither this nor the three below. */
+  /** NaN for Stein particles, like the three below. */
   double rhat = std::numeric_limits<double>::quiet_NaN();
   double bulk_ess = std::numeric_limits<double>::quiet_NaN();
   double tail_ess = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,6 @@
 /** \file
- * \brief Drop-in replacement for pcl::IterativeClosestPoint that also says how sure it
- * is.
+ * \brief Drop-in replacement for pcl::IterativeClosestPoint that also estimates the
+ * uncertainty of the pose.
  */
 #pragma once
 
@@ -12,33 +12,36 @@ namespace pcl {
 
 /** \brief Iterative closest point with the posterior of its transformation.
  *
- * align() first runs pcl::IterativeClosestPoint: final transformation, output,
- * convergence and correspondences are its own to the last bit, though a tree of this
- * library finds the pairs, unless the user installs a search tree. Then it samples the
- * posterior of the source-to-target pose from the same guess, by preconditioned SGLD
- * over mini-batches of the source (Maken, Ramos, Ott: Estimating Motion Uncertainty
- * with Bayesian ICP, ICRA 2020). By default, Preset::Calibrated, it finds the scale
- * from the clouds, and getSummary().data says how well they hold the pose in each
- * direction. It measures distances to the surface of the target points that the object
- * searches (all, those of the indices set on its estimation, or those of a ready tree);
- * rejectors, reciprocity, an own estimation and the maximum correspondence distance are
- * for ICP alone then, as each source point is judged in units of the noise.
+ * align() first runs pcl::IterativeClosestPoint. Final transformation, output,
+ * convergence and correspondences are those of that class to the last bit, although
+ * this library's tree finds the pairs (unless the user installs a search tree). align()
+ * then samples the posterior of the source-to-target pose with preconditioned Langevin
+ * chains over mini-batches of the source (Maken, Ramos, Ott: Estimating Motion
+ * Uncertainty with Bayesian ICP, ICRA 2020).
  *
- * With setPreset(Preset::Exact) draws are right for the stated measurement sigma,
- * effective points, gate and prior; setPreset(Preset::Paper) is the paper's Algorithm
- * 1, literally. Both take the correspondence estimation, rejectors, search tree and
- * maximum correspondence distance that the object was given.
+ * The default, Preset::Calibrated, estimates the scale from the clouds.
+ * getSummary().data states how well they determine the pose in each direction.
+ * Distances are measured to the surface of the target points that the object searches:
+ * all points, those of the indices set on its estimation, or those of a ready tree.
+ * Rejectors, reciprocity, the user's own estimation and the maximum correspondence
+ * distance then apply to ICP only, because the posterior weights each point by its
+ * distance in units of the noise.
+ *
+ * With Preset::Exact, draws are correct for the stated measurement sigma, effective
+ * points, gate and prior. Preset::Paper is the paper's Algorithm 1, literally. Both use
+ * the correspondence estimation, rejectors, search tree and maximum correspondence
+ * distance of the object. They apply rejectors and the user's own correspondence
+ * estimation to each mini-batch.
  *
  * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
- * transformation, guess included; translation in the target frame, R = Rz(yaw)
- * Ry(pitch) Rx(roll). Whether the posterior can be trusted is getSummary().status;
- * hasConverged() keeps ICP's meaning and says nothing about it.
+ * transformation, guess included. The translation is in the target frame, and R =
+ * Rz(yaw) Ry(pitch) Rx(roll). getSummary().status states whether the posterior can be
+ * trusted. hasConverged() keeps ICP's meaning and does not.
  *
- * Other than pcl::IterativeClosestPoint of PCL 1.13, source points that are not finite
- * (or further out than 1e18 m) are skipped and kept in the output, and indices are
- * honoured in the estimate (the output is the whole cloud, as in PCL). With presets
- * `exact` and `paper` the sampler applies rejectors and a user's own correspondence
- * estimation to each mini-batch. One object is for one thread at a time, as in PCL.
+ * Unlike pcl::IterativeClosestPoint of PCL 1.13, this class skips source points that
+ * are not finite (or further out than 1e18 m) and keeps them in the output. The
+ * estimate uses only the given indices (the output is the whole cloud, as in PCL). As
+ * in PCL, use one object from one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration
@@ -62,14 +65,14 @@ public:
   using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
   using PointIndicesPtr = typename Base::PointIndicesPtr;
   using PointIndicesConstPtr = typename Base::PointIndicesConstPtr;
-  /** Draws, one per row: x y z roll pitch yaw [m, rad]. */
+  /** Each row is one draw: x y z roll pitch yaw [m, rad]. */
   using Samples = bayesian_icp::PoseMatrix;
   using Vector6d = bayesian_icp::Vector6d;
   using Matrix6d = bayesian_icp::Matrix6d;
 
   BayesianIterativeClosestPoint();
 
-  /** \name Posterior of the last align(); empty or NaN before it and where it failed.
+  /** \name Posterior of the last align(). Empty or NaN before it, and if it failed.
    * \{ */
 
   /** \brief Draws of all chains that did not diverge, chain after chain. */
@@ -79,7 +82,7 @@ public:
     return (estimate_.samples);
   }
 
-  /** \brief Draws of chain \p index, diverged or not; empty if there is no such chain.
+  /** \brief Draws of chain \p index, diverged or not. Empty if there is no such chain.
    */
   Samples
   getChain(std::size_t index) const
@@ -88,8 +91,8 @@ public:
                                             : Samples(0, 6));
   }
 
-  /** \brief Whether chain \p index ran away or became non-finite; its draws are not
-   * among getSamples(). False if there is no such chain. */
+  /** \brief Whether chain \p index ran away or became non-finite. getSamples() leaves
+   * out the draws of such a chain. False if there is no such chain. */
   bool
   hasChainDiverged(std::size_t index) const
   {
@@ -110,8 +113,8 @@ public:
     return (bayesian_icp::matrixOf(estimate_.summary.mean).template cast<Scalar>());
   }
 
-  /** \brief Covariance of the draws about getMean(), by default of the parameters
-   * (x, y, z, roll, pitch, yaw) [m, rad]. */
+  /** \brief Covariance of the draws about getMean(). The default convention is that of
+   * the parameters (x, y, z, roll, pitch, yaw) [m, rad]. */
   Matrix6d
   getCovariance(bayesian_icp::CovarianceConvention convention =
                     bayesian_icp::CovarianceConvention::Parameters) const
@@ -127,11 +130,12 @@ public:
   }
   /** \} */
 
-  /** \name Options of the posterior; see bayesian_icp::Options for units and ranges. A
-   * value out of range is reported by align() as Status::InvalidOptions.
+  /** \name Options of the posterior
+   * See bayesian_icp::Options for units and ranges. If a value is out of range, align()
+   * reports Status::InvalidOptions.
    * \{ */
 
-  /** \brief All options at once, also those that have no setter here. */
+  /** \brief Set all options, including those without a setter here. */
   void
   setOptions(const bayesian_icp::Options& options)
   {
@@ -147,7 +151,7 @@ public:
     return (options_);
   }
 
-  /** \brief Which posterior is sampled. Each preset has options of its own: see
+  /** \brief Select which posterior is sampled. Each preset has options of its own: see
    * bayesian_icp::Options. */
   void
   setPreset(bayesian_icp::Preset preset)
@@ -161,15 +165,15 @@ public:
     options_.chains.num_chains = num_chains;
   }
 
-  /** \brief Draws kept in total over all chains. */
+  /** \brief Set the total number of draws kept, over all chains. */
   void
   setNumberOfSamples(int num_draws)
   {
     options_.chains.num_draws = num_draws;
   }
 
-  /** \brief Prior mean pose [m, rad] and variances [m^2, rad^2], in the order of the
-   * pose. Without it the mean is the guess and each variance 0.125. */
+  /** \brief Set the prior's mean pose [m, rad] and variances [m^2, rad^2], in the order
+   * of the pose. By default the mean is the guess and each variance is 0.125. */
   void
   setPrior(const Vector6d& mean, const Vector6d& variance)
   {
@@ -177,17 +181,17 @@ public:
     options_.prior.variance = variance;
   }
 
-  /** \brief The point whose translation the prior speaks of. Automatic is the origin,
-   * and for preset `calibrated` the source's centroid if the cloud is far from the
-   * origin for its size: see bayesian_icp::priorFrameOf(). */
+  /** \brief Set the point whose translation the prior describes. Automatic means the
+   * origin. With preset `calibrated` it means the source's centroid if the cloud is far
+   * from the origin for its size: see bayesian_icp::priorFrameOf(). */
   void
   setPriorFrame(bayesian_icp::PriorFrame frame)
   {
     options_.prior.frame = frame;
   }
 
-  /** \brief N of eq. (5), of presets `paper` and `exact`. With preset `calibrated`,
-   * which finds its scale itself, align() then reports Status::InvalidOptions. */
+  /** \brief Set N of eq. (5), for presets `paper` and `exact`. Preset `calibrated`
+   * estimates its scale itself: align() then reports Status::InvalidOptions. */
   void
   setEffectivePoints(double effective_points)
   {
@@ -196,8 +200,8 @@ public:
     is_scale_stated_ = true;
   }
 
-  /** \brief sigma, standard deviation of a point-to-point distance [m]; for the same
-   * presets as setEffectivePoints(). */
+  /** \brief Set sigma, the standard deviation of a point-to-point distance [m], for the
+   * same presets as setEffectivePoints(). */
   void
   setMeasurementSigma(double sigma)
   {
@@ -212,27 +216,29 @@ public:
     options_.chains.seed = seed;
   }
 
-  /** \brief Threads of ICP and of the posterior; 0, the default, is as many as OpenMP
-   * uses. No result depends on it. ICP with a correspondence estimation of the user's
-   * own has the threads of that; with PCL 1.15 and later they are set, too, if it is
-   * installed at the time of the call. */
+  /** \brief Set the number of threads of ICP and of the posterior. 0, the default,
+   * means OpenMP's number of threads. No result depends on it. If the user installs a
+   * correspondence estimation, ICP uses the threads of that estimation. With PCL 1.15
+   * and later this function also sets those, if the estimation is installed before the
+   * call. */
   void
   setNumberOfThreads(unsigned int nr_threads = 0);
 
-  /** \brief Told of every step of the chains, and with zeros of every iteration of ICP;
-   * returns false to cancel. */
+  /** \brief Set a function that is called after every step of the chains and, with
+   * zeros, in every iteration of ICP. It returns false to cancel. */
   void
   setProgressCallback(const bayesian_icp::ProgressCallback& callback)
   {
     progress_callback_ = callback;
   }
 
-  /** \brief Make the posterior mean the final transformation (and move the output cloud
-   * by it) where the status is Ok, Doubtful or NotMixed. ICP does not run then: there
-   * are no correspondences, and hasConverged() says that there is such a mean. With
-   * any other status ICP runs as without this setting, unless the callback has
-   * cancelled. A transformation estimation set by the user is given the last word: what
-   * it makes of the mean. The posterior does not depend on this setting. */
+  /** \brief Use the posterior mean as the final transformation (and move the output
+   * cloud by it) if the status is Ok, Doubtful or NotMixed.
+   *
+   * ICP does not run then: there are no correspondences, and hasConverged() is true.
+   * With any other status except Cancelled, ICP runs as without this setting. If the
+   * user has set a transformation estimation, the final transformation is what it makes
+   * of the mean. The posterior does not depend on this setting. */
   void
   setUseMeanAsFinalTransformation(bool use_mean)
   {
@@ -286,7 +292,7 @@ private:
   bayesian_icp::PosteriorEstimate
   estimateByPreset(const PointCloudSourceConstPtr& source, const Vector6d& start);
 
-  /** \brief Whether pairs are those of the nearest points, no more and no fewer. */
+  /** \brief Whether the pairs are exactly those of the nearest points. */
   bool
   hasPlainCorrespondences() const;
 
@@ -294,16 +300,16 @@ private:
   Eigen::Matrix3Xd
   searchedTargetPoints() const;
 
-  /** \brief One of the clouds of the last estimate if it has these \p points, or a new
-   * one. In odometry the target is the source before. */
+  /** \brief The cloud of the last estimate that has these \p points, or a new one. In
+   * odometry, the target is the previous source. */
   bayesian_icp::PreparedCloud
   prepared(Eigen::Matrix3Xd points) const;
 
   void
   reportStatus() const;
 
-  /** \brief This library's tree over the whole target where presets `exact` and `paper`
-   * may search in it, null where they have to ask what the user has installed. */
+  /** \brief This library's tree over the whole target if presets `exact` and `paper`
+   * may search it; null if they must use what the user has installed. */
   std::shared_ptr<const bayesian_icp::KdTree>
   targetTree() const;
 
@@ -311,7 +317,7 @@ private:
   moveToMean(const PointCloudSource& source);
 
   bayesian_icp::Options options_;
-  /** Whether a setter has changed the scale that options_ was given with. */
+  /** Whether a setter has changed the scale since setOptions(). */
   bool is_scale_stated_ = false;
   bayesian_icp::ProgressCallback progress_callback_;
   bayesian_icp::PosteriorEstimate estimate_;

@@ -13,23 +13,22 @@ namespace pcl {
  * source (SGD-ICP; Maken, Ramos, Ott: Speeding up Iterative Closest Point Using
  * Stochastic Gradient Descent, ICRA 2019).
  *
- * A registration with the interface of pcl::IterativeClosestPoint. Each step takes the
- * pairs of a mini-batch from the correspondence estimation, rejectors, search tree and
- * maximum correspondence distance that the object was given. There is no closed-form
- * step; a transformation estimation of the user's own is asked once, at the end, for
- * the nearest motion that it allows. The Euclidean fitness epsilon has no effect.
+ * The class has the interface of pcl::IterativeClosestPoint. In each step, the
+ * correspondence estimation, rejectors, search tree and maximum correspondence distance
+ * of the object determine the pairs of a mini-batch. There is no closed-form step. If
+ * the user has set a transformation estimation, it is called once, at the end, for the
+ * nearest motion that it allows. The Euclidean fitness epsilon has no effect.
  *
- * setMaximumIterations() counts steps. setTransformationEpsilon() [m^2] and
- * setTransformationRotationEpsilon() (a cosine) are, as in PCL, a squared distance and
- * the cosine of an angle: the descent has converged when, for as many steps in a row as
- * the options say, the translation and the sum of the changes of roll, pitch and yaw
- * are within them. As with PCL's ICP, hasConverged() is also true where the iterations
- * ran out, unless convergence_criteria_ says otherwise; getResult() tells the two
- * apart.
+ * setMaximumIterations() counts steps. As in PCL, setTransformationEpsilon() [m^2] is a
+ * squared distance and setTransformationRotationEpsilon() the cosine of an angle. The
+ * descent has converged when the translation and the sum of the changes of roll, pitch
+ * and yaw stay within these limits for the number of consecutive steps given in the
+ * options. As with PCL's ICP, hasConverged() is also true if the iterations ran out,
+ * unless convergence_criteria_ states otherwise; getResult() distinguishes the two.
  *
- * Non-finite points, indices and correspondences_ (those of the whole source at the
- * final transformation) are as in pcl::BayesianIterativeClosestPoint. The same seed
- * gives the same result. One object is for one thread at a time.
+ * Non-finite points and indices are treated as in pcl::BayesianIterativeClosestPoint.
+ * correspondences_ are those of the whole source at the final transformation. The same
+ * seed gives the same result. Use one object from one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations; the descent is in double
  * \ingroup registration
@@ -49,16 +48,16 @@ public:
   using Options = bayesian_icp::StochasticGradientIcpOptions;
   using Result = bayesian_icp::StochasticGradientIcpResult;
 
-  /** \brief With the defaults of Options, the number of iterations and the epsilons
-   * among them. */
+  /** \brief Start with the defaults of Options, including the number of iterations and
+   * the epsilons. */
   StochasticGradientDescentIterativeClosestPoint();
 
-  /** \brief All options at once; its iterations and epsilons are put into PCL's
-   * settings of these names. Options out of range are reported by align(). */
+  /** \brief Set all options. The iterations and epsilons are copied to the settings of
+   * PCL's class. align() reports options out of range. */
   void
   setOptions(const Options& options);
 
-  /** \brief The options with the present settings of PCL's in place of its own. */
+  /** \brief The options, with the iterations and epsilons of PCL's class. */
   Options
   getOptions() const;
 
@@ -68,14 +67,14 @@ public:
     options_.optimizer = optimizer;
   }
 
-  /** \brief NaN: the optimiser's own. */
+  /** \brief Set the step size. NaN means the default of the optimiser. */
   void
   setStepSize(double step_size)
   {
     options_.step_size = step_size;
   }
 
-  /** \brief Source points per step. */
+  /** \brief Set the number of source points per step. */
   void
   setMiniBatchSize(int batch_size)
   {
@@ -88,14 +87,15 @@ public:
     options_.seed = seed;
   }
 
-  /** \brief Told of every step; returns false to stop there. */
+  /** \brief Set a function that is called after every step. It returns false to stop.
+   */
   void
   setProgressCallback(const bayesian_icp::StochasticGradientIcpProgress& callback)
   {
     progress_callback_ = callback;
   }
 
-  /** \brief Pose, steps and reason of the end of the last align(). */
+  /** \brief Pose, number of steps and reason for the end of the last align(). */
   const Result&
   getResult() const
   {
@@ -148,7 +148,7 @@ private:
   void
   giveTargetToPlugins();
 
-  /** \return whether Scalar can hold the pose; nothing is done if not */
+  /** \return whether Scalar can hold the pose; if not, nothing is done */
   bool
   takeStep(const Search& search,
            const PointCloudSource& source,
