@@ -75,7 +75,7 @@ struct ChainOptions {
   /** Number of independent chains, positive. */
   int num_chains = 4;
   /** Total number of draws kept over all chains, at least one per chain. The first
-   * chains keep the remainder. */
+   * chains keep one more if the number is not divisible by the number of chains. */
   int num_draws = 2000;
   /** Seed of all random numbers; chain i uses stream i of this seed. */
   std::uint64_t seed = 1;

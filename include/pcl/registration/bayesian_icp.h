@@ -36,7 +36,7 @@ namespace pcl {
  * Poses are (x, y, z, roll, pitch, yaw) [m, rad] of the complete source-to-target
  * transformation, guess included. The translation is in the target frame, and R =
  * Rz(yaw) Ry(pitch) Rx(roll). getSummary().status states whether the posterior can be
- * trusted. hasConverged() keeps ICP's meaning and does not.
+ * trusted; hasConverged() does not, it keeps ICP's meaning.
  *
  * Unlike pcl::IterativeClosestPoint of PCL 1.13, this class skips source points that
  * are not finite (or further out than 1e18 m) and keeps them in the output. The
