@@ -11,11 +11,11 @@
 
 namespace bayesian_icp {
 
-/** \brief Gives the surface of a cloud, which it may have to make first. */
+/** \brief Returns the surface of a cloud, which it may have to make first. */
 using SurfaceGiver = std::function<const PreparedSurface&()>;
 
-/** \brief As estimatePosterior(), for preset `calibrated`. Surfaces are not asked for
- * where the other arguments are wrong.
+/** \brief estimatePosterior() of preset `calibrated`. Surfaces are not requested if
+ * another argument is invalid.
  * \param[in] source_surface of \p source_points
  * \param[in] target_surface of \p target_points */
 PosteriorEstimate

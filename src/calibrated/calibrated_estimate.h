@@ -1,5 +1,6 @@
 /** \file
- * \brief The calibrated Gaussian: mode, score covariance, curvature, and what follows.
+ * \brief The calibrated Gaussian: mode, score covariance, curvature, and the posterior
+ * that follows from them.
  */
 #pragma once
 
@@ -11,8 +12,8 @@
 
 namespace bayesian_icp {
 
-/** \brief What the data say about the pose at one mode. Twists are about centre, in the
- * target frame [m, rad]. Formulas: docs/calibration.md. */
+/** \brief Information of the data about the pose at one mode. Twists are about centre,
+ * in the target frame [m, rad]. docs/calibration.md has the formulas. */
 struct CalibratedEstimate {
   /** Mode of the robust surface likelihood times the prior. */
   Eigen::Isometry3d mode = Eigen::Isometry3d::Identity();
@@ -24,15 +25,16 @@ struct CalibratedEstimate {
   SurfaceScores scores;
   /** J: covariance of the total score. */
   Matrix6d score_covariance = Matrix6d::Zero();
-  /** H: curvature of the total score with correspondences searched again, symmetric. */
+  /** H: curvature of the total score with new correspondences, symmetric. */
   Matrix6d curvature = Matrix6d::Zero();
-  /** The source's mean squared displacement of a twist is xi^T D xi [m^2]. */
+  /** D: the mean squared displacement of the source's points by a twist xi is xi^T D xi
+   * [m^2]. */
   Matrix6d displacement_metric = Matrix6d::Identity();
-  /** V: columns are the twists along which the curvature was measured, of unit root
-   * mean squared displacement. */
+  /** V: columns are the twists along which the curvature was measured, scaled to unit
+   * root mean squared displacement. */
   Matrix6d directions = Matrix6d::Identity();
-  /** Share of the information along each direction that is above its noise, in [0, 1];
-   * 0: the direction is held by the prior only. */
+  /** Share of the information along each direction that is above its noise, in [0, 1].
+   * 0 means that the prior alone holds the direction. */
   Vector6d keep = Vector6d::Zero();
   /** T = V diag(sqrt(keep)) V^-1. */
   Matrix6d transfer = Matrix6d::Zero();
@@ -45,62 +47,63 @@ struct CalibratedEstimate {
   Vector6d mean = Vector6d::Zero();
   /** nu: degrees of freedom. Along the directions that the data hold, the posterior is
    * Student's t with the covariance above, because the information is itself an
-   * estimate. At least 3, or 0 for a Gaussian. */
+   * estimate. nu is at least 3, or 0 for a Gaussian. */
   int degrees_of_freedom = 0;
   /** Ratio of the score's covariance to that of independent points: for clusters of
-   * about 1/48 of the source, and extrapolated to clusters that are independent. */
+   * about 1/48 of the points, and extrapolated to clusters that are independent. */
   double kappa_48 = 1.0;
   double kappa_inf = 1.0;
   /** meanCappedResidual() at the mode. */
   double cost = 0.0;
-  /** Twist from the mode to where the other start ended; zero if both ended in one
-   * place. */
+  /** Twist from the better end of the two starts to the worse one; zero if both ended
+   * in one place. */
   Vector6d other_end = Vector6d::Zero();
-  /** meanCappedResidual() where the worse start ended over that where the better one
-   * ended; at least 1. */
+  /** relativeCost() of the worse end of the two starts, in units of the better one; at
+   * least 1. */
   double other_cost_ratio = 1.0;
   /** Nearest-neighbour queries used. */
   long num_queries = 0;
 };
 
-/** \brief How many points and rounds the estimate uses. */
+/** \brief Numbers of points and rounds of the estimate. */
 struct EstimateOptions {
-  /** Source points on which the starts are followed. */
+  /** Number of source points on which the starts are followed. */
   int num_mode_points = 500;
-  /** Source points with which the ends of the starts are compared, and points of both
-   * clouds with which the curvature is measured. The score and its covariance are those
-   * of all points. */
+  /** Number of source points with which the ends of the starts are compared, and number
+   * of points of both clouds with which the curvature is measured. The score and its
+   * covariance use all points. */
   int num_curvature_points = 2000;
-  /** Rounds of curvature. */
+  /** Rounds of measuring the curvature. */
   int num_rounds = 3;
   /** 0: as OpenMP would. No result depends on it. */
   int num_threads = 1;
 };
 
-/** \brief The points of a cloud that the estimate uses. They cover the cloud evenly:
- * near the sensor most points repeat each other, but the far points hold rotations. So
- * do the first EstimateOptions::num_curvature_points by themselves.
+/** \brief The points of a cloud that the estimate uses. They cover the cloud evenly,
+ * because near the sensor most points repeat each other, and far points hold rotations.
+ * The first EstimateOptions::num_curvature_points cover it evenly by themselves.
  *
  * \param[in] points 3 x n, finite [m]
  * \param[in] model of the other cloud
- * \param[in] max_points how many, at most. More than num_curvature_points are no more
- *            than 40 % of the points and 0.4 per patch.
- * \param[in] seed of their order. The order of the first is random, so that the search
- *            of the mode, which uses the first of these, gets a random choice. */
+ * \param[in] max_points maximum number. More than num_curvature_points are at most 40 %
+ *            of the points and 0.4 per patch.
+ * \param[in] seed of their order. The order is random, so that the search for the mode,
+ *            which uses the first points, gets a random choice. */
 Eigen::Matrix3Xd
 evenPoints(const Eigen::Matrix3Xd& points,
            const SurfaceModel& model,
            Eigen::Index max_points,
            std::uint64_t seed);
 
-/** \brief evenPoints() of each cloud against the surface of the other. Where the source
- * has no usable surface, its points alone are compared with the target's.
+/** \brief Scorer of evenPoints() of each cloud against the surface of the other. If the
+ * source has no usable surface, only source points are compared, with the target's
+ * surface.
  *
  * \param[in] source_points 3 x n, finite [m]
  * \param[in] source surface of these; must outlive the scorer
- * \param[in] target_points 3 x m; those that are not finite are left out [m]
- * \param[in] target surface of these, as well
- * \param[in] max_points of each cloud
+ * \param[in] target_points 3 x m [m]; points that are not finite are left out
+ * \param[in] target surface of these; must outlive the scorer
+ * \param[in] max_points maximum number of points of each cloud
  * \param[in] seed of their order
  * \param[in] num_threads of the choice and of the scorer; 0: as OpenMP would. No result
  *            depends on it. */
@@ -113,12 +116,12 @@ scorerOf(const Eigen::Matrix3Xd& source_points,
          std::uint64_t seed,
          int num_threads = 1);
 
-/** \brief Find the mode from two starts (the prior's mean, and the point-to-point ICP
- * result from there) and estimate its covariance.
+/** \brief Find the mode from two starts (the prior's mean, and the result of
+ * point-to-point ICP from there) and estimate the posterior covariance.
  * \param[in] scorer of both clouds
  * \param[in] prior whose mean is the first start
- * \param[in] options how many points and rounds
- * \param[in] start of a single start in place of the two; may be null */
+ * \param[in] options numbers of points and rounds
+ * \param[in] start single start in place of the two; may be null */
 CalibratedEstimate
 estimateCalibrated(const SurfaceScorer& scorer,
                    const Prior& prior,

@@ -1,5 +1,5 @@
 /** \file
- * \brief From the calibrated estimate to the report for users.
+ * \brief Makes the report for users from the calibrated estimate.
  */
 #pragma once
 
@@ -12,7 +12,7 @@ namespace bayesian_icp {
 /** \brief The report of \p estimate; directions are ordered by their posterior standard
  * deviation.
  * \param[in] estimate to report
- * \param[in] target that the estimate is of */
+ * \param[in] target surface of the target of the estimate */
 DataReport
 dataReportOf(const CalibratedEstimate& estimate, const SurfaceModel& target);
 

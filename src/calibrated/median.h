@@ -9,7 +9,8 @@
 
 namespace bayesian_icp {
 
-/** \brief The upper one of the two middle numbers if their count is even; 0 of none. */
+/** \brief The median; the upper of the two middle numbers if their count is even, and 0
+ * if there are none. */
 inline double
 medianOf(std::vector<double> values)
 {

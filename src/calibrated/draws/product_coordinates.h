@@ -15,13 +15,13 @@ namespace bayesian_icp {
  * The likelihood depends on b only. It stays the same however far a wide prior lets a
  * go, for instance about an axis of symmetry or along an edge. Whole turns of V0 a are
  * dropped, because the prior's angles are periodic, and a turn of a screw would shift
- * b. To second order in b the likelihood's energy is 1/2 (b - b^)^T Lambda_b (b - b^).
- * The prior is exact everywhere. */
+ * b. To second order in b, the energy of the likelihood is 1/2 (b - b^)^T Lambda_b (b -
+ * b^). The prior is exact everywhere. */
 class ProductCoordinates {
 public:
   explicit ProductCoordinates(const CalibratedEstimate& estimate);
 
-  /** \brief Number of directions held by the prior only, the length of a. */
+  /** \brief Number of directions that the prior alone holds: the length of a. */
   int
   numPriorOnly() const
   {
@@ -31,12 +31,12 @@ public:
   Eigen::Isometry3d
   pose(const Vector6d& z) const;
 
-  /** \brief The part (0, b) of \p pose: what is left after the prior-only motion that
+  /** \brief The part (0, b) of \p pose: what remains after the prior-only motion that
    * brings it nearest to the mode. */
   Vector6d
   heldPart(const Eigen::Isometry3d& pose) const;
 
-  /** \brief The twist T VK b from the mode: where scores are evaluated for z. */
+  /** \brief The twist T VK b from the mode, at which scores are evaluated for z. */
   Vector6d
   scoredTwist(const Vector6d& z) const;
 
@@ -44,15 +44,17 @@ public:
   Eigen::Isometry3d
   scoredPose(const Vector6d& z) const;
 
-  /** \brief VK^T T^T H J^-1, from total scores to gradients of the likelihood's energy
-   * with respect to z. It weighs scores such that their spread is right. */
+  /** \brief VK^T T^T H J^-1. It maps total scores to gradients of the likelihood's
+   * energy with respect to z, and weights them such that the draws have the right
+   * spread. */
   const Matrix6d&
   scoreWeights() const
   {
     return score_weights_;
   }
 
-  /** \brief Lambda_b (z - (0, b^)): gradient of the likelihood if it were Gaussian. */
+  /** \brief Lambda_b (z - (0, b^)): gradient of the likelihood's energy if it were
+   * Gaussian. */
   Vector6d
   linearGradient(const Vector6d& z) const;
 
@@ -92,11 +94,11 @@ private:
   /** Twists from the mode of (a, 0) and (0, b). */
   Matrix6d prior_only_, held_;
   int num_prior_only_ = 0;
-  /** From a rotation vector to the twist V0 a with that rotation that the prior likes
-   * best. */
+  /** Maps a rotation vector to the twist V0 a with this rotation that is most probable
+   * under the prior. */
   Eigen::Matrix<double, 6, 3> unwinding_ = Eigen::Matrix<double, 6, 3>::Zero();
   Matrix6d score_weights_ = Matrix6d::Zero();
-  /** Lambda_b, and zero where a is concerned. */
+  /** Lambda_b, and zeros in the rows and columns of a. */
   Matrix6d information_ = Matrix6d::Zero();
   /** (0, b^). */
   Vector6d best_fit_ = Vector6d::Zero();

@@ -27,29 +27,29 @@ public:
     return coordinates_;
   }
 
-  /** \brief Number of points that have a weight at the mode. Batches are drawn from
-   * these. */
+  /** \brief Number of points with a weight at the mode. Batches are drawn from these.
+   */
   std::size_t
   numTerms() const
   {
     return active_.size();
   }
 
-  /** \brief Follow the shape of the data only in part: the difference between the
-   * likelihood's gradient and that of a Gaussian is multiplied by \p gain. */
+  /** \brief Let draws follow the shape of the data only in part: the difference between
+   * the likelihood's gradient and that of a Gaussian is multiplied by \p gain. */
   void
   setShapeGain(const Matrix6d& gain)
   {
     shape_gain_ = gain;
   }
 
-  /** \brief The gradient. Its likelihood part is kept near that of a Gaussian
+  /** \brief The gradient. A guard keeps its likelihood part near that of a Gaussian
    * likelihood, so that a chain always comes back. */
   SplitGradient
   gradient(const Vector6d& z, std::size_t batch_size, Random& random) override;
 
-  /** \brief Covariance of a term's gradient as in StochasticEnergy, n = numTerms(),
-   * from single points at draws of the calibrated Gaussian. */
+  /** \brief Covariance of a term's gradient as in StochasticEnergy, with n =
+   * numTerms(), estimated from single points at draws of the calibrated Gaussian. */
   Matrix6d
   termCovariance(int num_positions, int num_points, Random& random);
 

@@ -1,6 +1,6 @@
 /** \file
- * \brief Further modes of the calibrated posterior, where the prior is wide or the
- * first one fits badly.
+ * \brief Search for further modes of the calibrated posterior where the prior is wide
+ * or the first mode fits badly.
  */
 #pragma once
 
@@ -11,55 +11,55 @@
 
 namespace bayesian_icp {
 
-/** \brief How hard to look for modes. */
+/** \brief Effort of the search for modes. */
 struct ModeSearchOptions {
-  /** Starts, spread evenly over the wide coordinates of the prior. Where a rotation's
-   * deviation is above 0.5 rad, hops from the best end follow: slides and half turns.
-   */
+  /** Number of starts, spread evenly over the wide coordinates of the prior. Where a
+   * rotation's deviation is above 0.5 rad, hops from the best end follow: slides and
+   * half turns. */
   int num_starts = 16;
-  /** Source points on which starts are followed. */
+  /** Number of source points on which starts are followed. */
   int num_points = 300;
   int max_modes = 8;
   std::uint64_t seed = 1;
-  /** For each mode that is found. */
+  /** Options for the estimate of each mode that is found. */
   EstimateOptions estimate;
 };
 
-/** \brief Modes, and what they cost. */
+/** \brief Modes, and the cost of finding them. */
 struct ModeSearch {
-  /** At least one; heaviest first. A difference in fit counts only as far as it is
+  /** At least one mode, heaviest first. A difference in fit counts only as far as it is
    * above its own noise. */
   std::vector<CalibratedMode> modes;
   /** Nearest-neighbour queries beyond those of the first estimate. */
   long num_queries = 0;
 };
 
-/** \brief Whether there may be other modes. Either the prior is wide: a standard
- * deviation is above 0.2 rad, or above a quarter of the diagonal of the source's
- * bounding box. Or many points do not fit at \p first. */
+/** \brief Whether there may be other modes: the prior is wide, or many points do not
+ * fit at \p first. A prior is wide if a standard deviation is above 0.2 rad, or above a
+ * quarter of the diagonal of the source's bounding box. */
 bool
 mayHaveSeveralModes(const SurfaceScorer& scorer,
                     const Prior& prior,
                     const CalibratedEstimate& first);
 
-/** \brief Look for modes other than \p first, and leave \p first out if another pose
- * fits clearly better. Poses that differ by a motion that only the prior holds are one
- * mode. The search takes at most about 150 000 queries, twice as many with hops,
- * plus one estimate for each mode. */
+/** \brief Search for modes other than \p first, and drop \p first if another pose fits
+ * clearly better. Poses that differ by a motion that only the prior holds are one mode.
+ * The search takes at most about 150 000 queries, twice as many with hops, plus one
+ * estimate for each mode. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
           const Prior& prior,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options = ModeSearchOptions());
 
-/** \brief The modes that hold at least two per cent of the posterior. Weights are good
- * to a factor of a few, so lighter modes cannot be told from none.
+/** \brief The modes that hold at least two per cent of the posterior. Weights are
+ * accurate to a factor of a few, so lighter modes cannot be distinguished from none.
  * \param[in] modes heaviest first */
 std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes);
 
-/** \brief The estimate, and the other significantModes() where mayHaveSeveralModes();
- * heaviest first. */
+/** \brief The first estimate or, if mayHaveSeveralModes(), the significantModes() of
+ * the search; heaviest first. */
 std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,
                 const Prior& prior,

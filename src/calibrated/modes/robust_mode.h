@@ -1,6 +1,6 @@
 /** \file
- * \brief The mode of robust surface likelihood times prior, by re-weighted least
- * squares.
+ * \brief Search for the mode of robust surface likelihood times prior by re-weighted
+ * least squares.
  */
 #pragma once
 
@@ -9,35 +9,36 @@
 
 namespace bayesian_icp {
 
-/** \brief How a mode is approached. */
+/** \brief Options of a fit. */
 struct RobustFitOptions {
-  /** Scale tau of Tukey's weight at the start, in units of the target's noise. It is
-   * reduced to the scale of the residuals. 0 starts at that scale. */
+  /** Scale tau of Tukey's weight at the start, in units of the target's noise. It falls
+   * to the scale of the residuals. 0 starts at that scale. */
   double start_scale = 0.0;
-  /** Most steps; each one searches all correspondences again. */
+  /** Maximum number of steps. Each step searches all correspondences again. */
   int max_steps = 25;
-  /** Root mean squared displacement of the source at which it has converged [m]. */
+  /** The fit has converged if a step moves the source by less than this root mean
+   * squared displacement [m]. */
   double tolerance = 0.0;
-  /** Precision with which the start holds the pose, in a twist about the source's
+  /** Precision that holds the pose at the start, for twists about the moved source's
    * centroid, translation [m] first. */
   Matrix6d hold = Matrix6d::Zero();
 };
 
-/** \brief Where a fit ended. */
+/** \brief Result of a fit. */
 struct RobustFit {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  /** residualScale() there. */
+  /** residualScale() at the end. */
   double residual_scale = 1.0;
-  /** cappedResiduals() and costOf() there. */
+  /** cappedResiduals() and costOf() at the end. */
   Eigen::VectorXd residuals;
   double cost = 0.0;
-  /** Evaluations of all points. */
+  /** Number of evaluations of all points. */
   int num_evaluations = 0;
 };
 
-/** \brief Iteratively re-weighted least squares of the distances to the surface, from
- * \p start, annealed. Points have a fifth of their weight against the prior, because
- * they are correlated. */
+/** \brief Fit by iteratively re-weighted least squares of the distances to the surface,
+ * with annealing, from \p start. Points have a fifth of their weight against the prior,
+ * because they are correlated. */
 RobustFit
 fitRobustly(const SurfaceScorer& scorer,
             const Prior& prior,
@@ -46,22 +47,23 @@ fitRobustly(const SurfaceScorer& scorer,
 
 /** \brief Cost of \p a in units of the cost of \p b, two fits of the same points.
  *
- * Only the points that have a patch at both are compared, if these tell the fits apart
- * (by two standard deviations of the difference). That more points have a patch only
- * says that the target was seen there: two views of a wall overlap most where the
- * sensor has not moved. If these points do not tell, all points are compared, and a
- * point without a patch counts as one that does not fit, unless it is on the surface
- * that continues the target's. */
+ * Only the points that have a patch at both are compared, if these distinguish the fits
+ * by two standard deviations of the difference. More points with a patch only show that
+ * the target was seen there: two views of a wall overlap most where the sensor has not
+ * moved. If the common points do not distinguish the fits, all points are compared, and
+ * a point without a patch counts as one that does not fit, unless it is on the
+ * continuation of the target's surface. */
 double
 relativeCost(const RobustFit& a, const RobustFit& b);
 
 /** \brief Whether \p a costs more than \p b on all points, and at least (1 + \p margin)
- * times as much by relativeCost(): that \p b meets less of the target must not make it
- * the better one. */
+ * times as much by relativeCost(). Both are needed: \p b must not be the better one
+ * because it meets less of the target. */
 bool
 isClearlyWorse(const RobustFit& a, const RobustFit& b, double margin);
 
-/** \brief Point-to-point ICP on the model's points from \p start, with a weak prior. */
+/** \brief Point-to-point ICP from \p start to the points of the model, where the prior
+ * has little weight. */
 RobustFit
 fitPointToPoint(const SurfaceScorer& scorer,
                 const Prior& prior,

@@ -9,22 +9,22 @@ namespace bayesian_icp {
 
 /** \brief How points are grouped. */
 struct ClusterOptions {
-  /** Number of clusters, about. */
+  /** Approximate number of clusters. */
   int num_clusters = 48;
   /** Random partitions over which the result is averaged. */
   int num_partitions = 8;
   /** Stream of the random partitions. */
   std::uint64_t stream = 0;
-  /** Clusters are shells about the origin of the source's frame. */
+  /** Whether clusters are shells about the origin of the source's frame. */
   bool are_shells = false;
 };
 
-/** \brief Scores of points and where the points are. */
+/** \brief Scores and positions of points. */
 struct PointScores {
   /** One active point per column [1/m, 1/rad]. */
   Matrix6Xd scores;
-  /** One column for each point, whose outer product is the point's Gauss-Newton
-   * information; empty if the pose was not fitted to these scores. */
+  /** One column per point. Its outer product is the Gauss-Newton information of the
+   * point. Empty if the pose was not fitted to these scores. */
   Matrix6Xd jacobians;
   /** Source frame [m]. */
   Eigen::Matrix3Xd positions;
@@ -34,18 +34,18 @@ struct PointScores {
 PointScores
 activeScores(const SurfaceScores& scores, const Eigen::Matrix3Xd& source_points);
 
-/** \brief Covariance of the total score if clusters of neighbouring points are
- * independent of each other: the sum of outer products of the clusters' total scores.
+/** \brief Covariance of the total score under the assumption that clusters of
+ * neighbouring points are independent of each other: the sum of outer products of the
+ * clusters' total scores.
  *
  * Clusters are the leaves of randomised kd-splits, or shells, with about equal numbers
- * of points.
- * Scores at a fitted pose are too small. Therefore the score of cluster b, whose
- * Gauss-Newton information is H_b, is multiplied by (I - H_b H_w^-1)^-1/2, the whitened
- * form of CR2 (Bell and McCaffrey 2002). Without jacobians, the sum over L clusters is
- * multiplied by L / (L - 1).
+ * of points. Scores at a fitted pose are too small. Therefore the score of cluster b,
+ * whose Gauss-Newton information is H_b, is multiplied by (I - H_b H_w^-1)^-1/2, the
+ * whitened form of CR2 (Bell and McCaffrey 2002). Without jacobians, the sum over L
+ * clusters is multiplied by L / (L - 1).
  * \param[in] points their scores and positions
  * \param[in] working_information H_w: information of points and prior in the fit
- * \param[in] options number of clusters, and partitions to average over */
+ * \param[in] options number of clusters, and of partitions to average over */
 Matrix6d
 clusteredCovariance(const PointScores& points,
                     const Matrix6d& working_information,
@@ -54,24 +54,24 @@ clusteredCovariance(const PointScores& points,
 /** \brief Covariance J of the total score at a fitted pose. */
 struct ScoreCovariance {
   Matrix6d covariance = Matrix6d::Zero();
-  /** Ratio to that of independent points, for about 48 clusters ... */
+  /** Ratio of the covariance of about 48 clusters to that of independent points. */
   double kappa_48 = 1.0;
-  /** The same, extrapolated to clusters so large that they are independent; at least
-   * 1. */
+  /** The same ratio, extrapolated to clusters so large that they are independent; at
+   * least 1. */
   double kappa_inf = 1.0;
-  /** The same of J: kappa_inf, or that of shells if it is clearly larger. */
+  /** The ratio that J has: kappa_inf, or that of shells if it is clearly larger. */
   double kappa = 1.0;
 };
 
 /** \brief Estimate J.
  *
- * Half of it has the shape of the covariance of 48 clusters, half that of independent
- * points. Both are scaled by kappa: that of independent clusters, or that of shells if
- * it is clearly larger. The factor nu / (nu - 13) allows for the number nu = n / kappa
- * of independent points from which J is estimated.
+ * Half of J has the shape of the covariance of 48 clusters, half that of independent
+ * points. Both are scaled by ScoreCovariance::kappa. The factor nu / (nu - 13) corrects
+ * for the finite number nu = n / kappa of independent points from which J is estimated.
  *
  * \param[in] points their scores and positions
- * \param[in] fit_precision tau^2 P, precision of the prior in units of the scores */
+ * \param[in] fit_precision tau^2 P, the precision of the prior in units of the scores
+ */
 ScoreCovariance
 scoreCovariance(const PointScores& points,
                 const Matrix6d& fit_precision,

@@ -1,6 +1,6 @@
 /** \file
- * \brief What every point of the two clouds says about the pose: robust scores of its
- * distance to the other cloud's surface.
+ * \brief Scores of all points of the two clouds: gradients of the robust energy of
+ * their distances to the other cloud's surface.
  */
 #pragma once
 
@@ -15,47 +15,49 @@
 
 namespace bayesian_icp {
 
-/** \brief Six numbers for each point, one point per column. */
+/** \brief Six numbers per point, one point per column. */
 using Matrix6Xd = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-/** \brief Nearest patch of each point at the last evaluation; speeds up the next
- * one and never changes it. One object per thread. */
+/** \brief Nearest patch of each point at the last evaluation. Hints speed up the next
+ * evaluation and never change its result. One object per thread. */
 using PatchHints = std::vector<std::uint32_t>;
 
-/** \brief Scores of all points at one pose, in twists about a centre: first those of
- * the source's points, then those of the target's. */
+/** \brief Scores of all points at one pose, in twists about a centre: first the
+ * source's points, then the target's. */
 struct SurfaceScores {
   /** Residual u = distance / sigma of each point; 0 where there is no patch. */
   Eigen::VectorXd residuals;
   /** Whether a point has a usable patch. */
   std::vector<char> has_patch;
-  /** How far a point without a patch is off the surface that continues the nearest one
-   * beyond its border: Tukey's energy in parts of its largest. 1 where the nearest
-   * patch is not usable, and of all points if less than a tenth have a patch. */
+  /** How far a point without a patch is off the continuation of the nearest patch
+   * beyond its border: Tukey's energy as a fraction of its maximum. 1 where the nearest
+   * patch is not usable, and for all points if less than a tenth of them have a patch.
+   */
   Eigen::VectorXd off_continuation;
-  /** Whether it also has a (Tukey) weight above zero. */
+  /** Whether a point has a patch and a Tukey weight above zero. */
   std::vector<char> active;
   /** psi(u) J^T n / sigma [1/m, 1/rad], zero if not active. */
   Matrix6Xd scores;
-  /** sqrt(w) J^T n / sigma: its outer product is the Gauss-Newton information. */
+  /** sqrt(w) J^T n / sigma. Its outer product is the Gauss-Newton information of the
+   * point. */
   Matrix6Xd jacobians;
   /** Sum of the scores: gradient of the robust energy. */
   Vector6d total;
   /** Sum of the Gauss-Newton informations. */
   Matrix6d information;
   int num_active;
-  /** Active points of the source, and all of its points. */
+  /** Number of active source points, and of all source points. */
   int num_active_of_source = 0;
   Eigen::Index num_source_points = 0;
 };
 
-/** \brief Tukey's weight (1 - z^2)^2, zero beyond |z| = 1; z is the residual over
- * SurfaceScorer::tukey_constant times its scale. */
+/** \brief Tukey's weight (1 - z^2)^2, zero beyond |z| = 1. z is the residual divided by
+ * SurfaceScorer::tukey_constant and the scale. */
 double
 tukeyWeight(double z);
 
-/** \brief Tukey's energy 1 - (1 - z^2)^3 in parts of its largest, which it has from |z|
- * = 1 on. */
+/** \brief Tukey's energy 1 - (1 - z^2)^3 as a fraction of its maximum, which it reaches
+ * at |z| = 1. */
 double
 tukeyEnergy(double z);
 
@@ -64,13 +66,13 @@ tukeyEnergy(double z);
 double
 residualScale(const SurfaceScores& scores);
 
-/** \brief min(|u|, 5) of each source point; NaN of one without a usable patch. */
+/** \brief min(|u|, 5) of each source point; NaN if it has no usable patch. */
 Eigen::VectorXd
 cappedResiduals(const SurfaceScores& scores);
 
-/** \brief The points that have a patch at a pose. */
+/** \brief Statistics of the points that have a patch at a pose. */
 struct Contacts {
-  /** Of all points. */
+  /** Their share of all points. */
   double share = 0.0;
   /** Mean of their cappedResiduals(); NaN if there are none. */
   double misfit = 0.0;
@@ -79,25 +81,26 @@ struct Contacts {
 Contacts
 contactsOf(const Eigen::VectorXd& capped_residuals);
 
-/** \brief Mean of min(|u|, 5) of the source points. One without a usable patch counts
- * 5. */
+/** \brief Mean of min(|u|, 5) over the source points. A point without a usable patch
+ * counts 5. */
 double
 meanCappedResidual(const SurfaceScores& scores);
 
-/** \brief The same, but a source point on the continuation of the target's surface may
- * cost less than 5, down to the mean of the points with a patch. */
+/** \brief Like meanCappedResidual(), but a source point on the continuation of the
+ * target's surface may count less than 5, down to the mean of the points with a patch.
+ */
 double
 costOf(const SurfaceScores& scores);
 
-/** \brief Evaluates scores: of source points against the target's surface, and of
- * target points against the source's, if there are any. Functions are const; threads
- * may share an object. */
+/** \brief Evaluates scores of source points against the target's surface, and of target
+ * points against the source's, if target points were added. Threads may share an
+ * object, whose functions for evaluation are const. */
 class SurfaceScorer {
 public:
   /** Tukey's constant: 95 % efficiency on Gaussian residuals. */
   static constexpr double tukey_constant = 4.685;
-  /** A point has no patch if it is further from the nearest one than this part of its
-   * radius (see SurfaceOffset::in_plane). */
+  /** A point has no patch if its in-plane distance from the nearest patch
+   * (SurfaceOffset::in_plane) is above this fraction of the patch's radius. */
   static constexpr double max_in_plane = 0.6;
 
   /** \param[in] source_points 3 x n, finite, source frame [m]
@@ -107,27 +110,27 @@ public:
                 const SurfaceModel& model,
                 int num_threads = 1);
 
-  /** \brief Adds \p target_points, 3 x m, finite, target frame [m], which are compared
-   * with the surface of the source.
+  /** \brief Add \p target_points (3 x m, finite, target frame [m]) to be compared with
+   * the surface of the source.
    * \param[in] source_model must outlive this object */
   void
   addTargetPoints(const Eigen::Matrix3Xd& target_points,
                   const SurfaceModel& source_model);
 
-  /** \brief A scorer of the first points of the source, of all if there are fewer. Its
-   * centroid is that of all points, so that twists are the same. */
+  /** \brief A scorer of the first \p num_points source points, or of all if there are
+   * fewer. It keeps the centroid of all points, so that twists are the same. */
   SurfaceScorer
   ofFirst(Eigen::Index num_points) const;
 
-  /** \brief The same of the first points of both clouds, half of them of each. */
+  /** \brief A scorer of the first points of both clouds, half of them from each. */
   SurfaceScorer
   ofFirstOfBoth(Eigen::Index num_points) const;
 
-  /** \brief Evaluate all points: the same bits for every number of threads.
+  /** \brief Evaluate all points, with the same bits for every number of threads.
    * \param[in] T_target_source where
    * \param[in] tau scale of the residuals in Tukey's weight; infinite: least squares
    * \param[in] centre of the twists, target frame [m]
-   * \param[in,out] hints empty, or of an earlier call on this object
+   * \param[in,out] hints empty, or from an earlier call on this object
    * \param[out] scores of all points */
   void
   evaluate(const Eigen::Isometry3d& T_target_source,
@@ -152,7 +155,7 @@ public:
              PatchHints& hints,
              Vector6d& total) const;
 
-  /** \brief Of both clouds. */
+  /** \brief Number of points of both clouds. */
   Eigen::Index
   numPoints() const
   {
@@ -163,9 +166,9 @@ public:
   Eigen::Matrix3Xd
   pointsAt(const Eigen::Isometry3d& T_target_source) const;
 
-  /** \brief A patch of the surface with which a point is compared.
+  /** \brief A patch of the surface that a point is compared with.
    * \param[in] point in the order of SurfaceScores
-   * \param[in] patch from its hint */
+   * \param[in] patch index from the hint of the point */
   const SurfacePatch&
   patchOf(Eigen::Index point, std::uint32_t patch) const
   {

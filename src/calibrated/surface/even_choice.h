@@ -15,32 +15,31 @@ namespace bayesian_icp {
 void
 shuffle(std::vector<Eigen::Index>& columns, Random& random);
 
-/** \brief What points are chosen for: to get a patch, or to be compared with the
- * patches of the other cloud. The random choice depends on the points' numbers: with
- * one stream for both, the same rays of a standing sensor would be chosen from its two
- * scans. */
+/** \brief Purpose of a choice: points that get a patch, or points that are compared
+ * with the patches of the other cloud. The random choice depends on the indices of the
+ * points. With one stream for both purposes, the same rays would be chosen from two
+ * scans of a sensor that stands still. */
 enum class ChoiceStream { Patches, Points };
 
 /** \brief Columns of points that cover a cloud evenly, ascending: a random point of
- * each cube of a grid. The cubes are so large that nearly \p count of them hold points.
- * The grid is tilted: if cubes were parallel to a wall, they would cut off more of the
- * noise's tail on one side of it.
- * Choices of one stream for several counts have many points in common. All columns if
- * there are no more than \p count.
+ * each cube of a grid. The size of the cubes is such that nearly \p count of them hold
+ * points. The grid is tilted, because cubes parallel to a wall would cut off more of
+ * the noise's tail on one side of it. Choices of one stream for several counts have
+ * many points in common. Returns all columns if there are no more than \p count.
  * \param[in] points 3 x n, finite
- * \param[in] count most columns, at least 1
+ * \param[in] count maximum number of columns, at least 1
  * \param[in] stream of the random choice */
 std::vector<Eigen::Index>
 evenChoice(const Eigen::Matrix3Xf& points, Eigen::Index count, ChoiceStream stream);
 
 /** \brief Columns of about \p count points, ascending. Each point is taken with a
  * probability that is inversely proportional to the number of points around it, but at
- * most 1. All columns if there are no more than \p count.
+ * most 1. Returns all columns if there are no more than \p count.
  *
- * Dense parts become as sparse as the rest, and the distribution of the noise stays.
- * One point of each cube would change it where cubes are smaller than the noise: too
- * many points would be from the noise's tails, and surfaces through them would be
- * tilted.
+ * Dense parts become as sparse as the rest, and the distribution of the noise does not
+ * change. Choosing one point of each cube would change it where cubes are smaller than
+ * the noise: too many points would come from the tails of the noise, and surfaces
+ * through them would be tilted.
  *
  * \param[in] points 3 x n, finite
  * \param[in] count at least 1 */

@@ -1,5 +1,5 @@
 /** \file
- * \brief One patch of surface from the points around it.
+ * \brief Fit of one patch of surface to the points around it.
  */
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace bayesian_icp {
 
-/** \brief One point per row: loops over points are vectorised. */
+/** \brief One point per row, so that loops over points are vectorised. */
 using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 /** \brief Buffers of one thread. */
@@ -24,14 +24,14 @@ struct PatchFitWorkspace {
   PointRows ball, neighbors;
 };
 
-/** \brief Least-squares quadric of the neighbourhood of \p point, or its plane if no
- * quadric fits. The neighbourhood grows while it is not much wider than its noise, or
- * while it is as narrow as a scan line.
+/** \brief Fit a quadric to the neighbourhood of \p point by least squares, or a plane
+ * if no quadric fits. The neighbourhood grows while it is not much wider than its
+ * noise, or while it is as narrow as a scan line.
  *
- * \param[in] max_radius of a neighbourhood [m]; a wider one is not a patch
- * \param[in,out] workspace of earlier points of the same cloud, or new
+ * \param[in] max_radius largest radius of a neighbourhood [m]; a wider one has no patch
+ * \param[in,out] workspace from earlier points of the same cloud, or new
  * \param[out] spacing distance to the nearest other point [m]
- * \return the patch; its sigma is that of this neighbourhood alone */
+ * \return the patch, whose sigma comes from this neighbourhood alone */
 SurfacePatch
 fitPatch(const PointNeighbors& cloud,
          const Eigen::Vector3f& point,

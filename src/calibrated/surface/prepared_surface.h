@@ -1,5 +1,6 @@
 /** \file
- * \brief What preset `calibrated` makes of a target: its surface, or why it has none.
+ * \brief The surface of a target for preset `calibrated`, or the reason why it has
+ * none.
  */
 #pragma once
 
@@ -11,17 +12,18 @@
 
 namespace bayesian_icp {
 
-/** \brief A target to whose surface distances are measured. */
+/** \brief A target and its surface. */
 struct PreparedSurface {
   SurfaceModel model;
-  /** Why distances to the surface mean nothing; empty if they do. */
+  /** Why distances to the surface are meaningless; empty if they are valid. */
   std::string complaint;
-  /** The status that goes with the complaint. */
+  /** Status that belongs to the complaint. */
   Status status = Status::NotRun;
 };
 
-/** \brief The surface of a target. Each of its finite points counts once: merged clouds
- * often have points twice, whose spacing and noise of zero say nothing about a surface.
+/** \brief Make the surface of a target. Each of its finite points counts once: merged
+ * clouds often repeat points, and the zero spacing and noise of repeated points would
+ * be wrong.
  * \param[in] points 3 x n, target frame [m]
  * \param[in] num_threads 0: as OpenMP would */
 PreparedSurface

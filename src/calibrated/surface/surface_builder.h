@@ -12,13 +12,13 @@
 
 namespace bayesian_icp {
 
-/** \brief Fits a patch to every chosen point of a target, and corrects the patches by
- * their neighbours. Call each stage once, in the order below. All stages are parallel
- * and give the same bits for every number of threads. */
+/** \brief Fits a patch to every chosen point of a target, and corrects patches with the
+ * help of their neighbours. Call each stage once, in the order below. All stages are
+ * parallel and give the same bits for every number of threads. */
 class SurfaceBuilder {
 public:
   /** \param[in] points 3 x n, finite, relative to the model's origin [m]
-   * \param[in] options of the patches; must, as \p points, outlive this object
+   * \param[in] options of the patches; like \p points, must outlive this object
    * \param[in] num_threads 0: as OpenMP would */
   SurfaceBuilder(const Eigen::Matrix3Xf& points,
                  const SurfaceModelOptions& options,
@@ -27,15 +27,16 @@ public:
   void
   fitPatches();
 
-  /** \brief Noise of every quadric from those around it. */
+  /** \brief Pool the noise of every quadric over the quadrics around it. */
   void
   poolNoise();
 
-  /** \brief Points without a quadric take over the neighbour's on which they lie. */
+  /** \brief Let each point without a quadric take over the quadric of a neighbour on
+   * which it lies. */
   void
   takeOver();
 
-  /** \brief The patches' points, on their surface. */
+  /** \brief The points of the patches, projected to their surfaces. */
   Eigen::Matrix3Xf
   projectedPoints() const;
 
@@ -49,16 +50,16 @@ public:
     return median_sigma_;
   }
 
-  /** \brief Median distance of a point to its nearest other one [m]. */
+  /** \brief Median distance of a point to its nearest neighbour [m]. */
   double
   spacing() const;
 
 private:
-  /** Patches over which the noise is pooled, and among which a point at an edge looks
-   * for one to take over. */
+  /** Number of patches over which noise is pooled, and among which a point without a
+   * quadric looks for one to take over. */
   static constexpr std::size_t num_nearest = 12;
 
-  /** The patches nearest to a patch; the first is the patch itself. */
+  /** The nearest patches of a patch; the first is the patch itself. */
   struct NearestPatches {
     std::array<std::uint32_t, num_nearest> patches;
     std::uint32_t count = 0;

@@ -1,5 +1,5 @@
 /** \file
- * \brief The target as a surface: patches that cover it evenly, each with its noise.
+ * \brief A cloud as a surface: patches that cover it evenly, each with its noise.
  */
 #pragma once
 
@@ -14,11 +14,11 @@
 
 namespace bayesian_icp {
 
-/** \brief What is known of the surface around a point. */
+/** \brief Shape of the surface around a point. */
 enum class PatchKind {
-  /** Nothing: too few points, a line, or a tangle. */
+  /** No surface: too few points, a line, or a tangle. */
   None,
-  /** A plane, and how rough it is: no quadric fits, or the point is at an edge. */
+  /** A plane and its roughness: no quadric fits, or the point is at an edge. */
   Plane,
   /** A quadric to within the noise. */
   Quadric
@@ -33,21 +33,21 @@ struct SurfacePatch {
   Eigen::Matrix3d axes;
   /** a0 ... a5 [m, 1, 1, 1/m, 1/m, 1/m]. */
   std::array<double, 6> quadric;
-  /** The target point that the patch stands for [m]; the origin, unless the patch was
-   * taken over from a neighbour. */
+  /** The cloud point that the patch represents [m]. It is the origin, unless the
+   * quadric was taken over from a neighbour. */
   Eigen::Vector3d centre;
-  /** Radius of the neighbourhood that was fitted, in the plane of x and y [m]. */
+  /** In-plane (x, y) radius of the neighbourhood that was fitted [m]. */
   double radius;
-  /** Standard deviation of target points across the surface [m]: of a quadric their
-   * noise, pooled over neighbouring quadrics; of a plane its own roughness, and what
-   * its slope may be off where its points follow a curve. */
+  /** Standard deviation of the points across the surface [m]. For a quadric it is their
+   * noise, pooled over neighbouring quadrics. For a plane it is its own roughness and,
+   * where its points follow a curve, the possible error of its slope. */
   double sigma;
   PatchKind kind;
-  /** A plane whose points follow one curve, as those of a scan line do: they say little
-   * of its slope across the curve. */
+  /** Whether the points of a plane follow one curve, like those of a scan line. They
+   * hardly determine the slope across the curve. */
   bool follows_curve = false;
 
-  /** \brief Whether distances to it mean something. */
+  /** \brief Whether distances to the patch are meaningful. */
   bool
   isUsable() const
   {
@@ -55,19 +55,19 @@ struct SurfacePatch {
   }
 };
 
-/** \brief Where a point is with respect to a patch. */
+/** \brief Position of a point with respect to a patch. */
 struct SurfaceOffset {
-  /** Signed, across the surface, to first order in the surface's slope [m]. */
+  /** Signed distance across the surface, to first order in its slope [m]. */
   double distance;
-  /** Distance in the plane of x and y from the patch's origin or from its centre,
-   * whichever is further [m]. The quadric is known about its origin, and the target has
-   * points about its centre. */
+  /** In-plane distance from the patch's origin or from its centre, whichever is larger
+   * [m]. The quadric is known around its origin, and the cloud has points around its
+   * centre. */
   double in_plane;
   /** Unit normal of the surface under the point. */
   Eigen::Vector3d normal;
 };
 
-/** \brief \p point relative to \p patch, both in the frame of the model [m]. */
+/** \brief Offset of \p point from \p patch, both in the frame of the model [m]. */
 inline SurfaceOffset
 offsetFrom(const SurfacePatch& patch, const Eigen::Vector3d& point)
 {
@@ -90,44 +90,44 @@ offsetFrom(const SurfacePatch& patch, const Eigen::Vector3d& point)
   return offset;
 }
 
-/** \brief How patches are fitted. The defaults are those of docs/calibration.md. */
+/** \brief Options for fitting patches. docs/calibration.md explains the defaults. */
 struct SurfaceModelOptions {
-  /** Points of a neighbourhood; doubled where the noise or a scan line makes it thin.
-   */
+  /** Number of points of a neighbourhood. It is doubled where the neighbourhood is
+   * hardly wider than its noise, or is a scan line. */
   int num_neighbors = 30;
-  /** Smallest ratio of radius to noise of a quadric. */
+  /** Smallest ratio of a quadric's radius to its noise. */
   double min_radius_to_noise = 3.75;
-  /** Largest F statistic of a quartic against the quadric, where this misses its points
-   * by more than a thousandth of the radius. */
+  /** Largest F statistic of a quartic against the quadric. It is tested where the
+   * quadric misses its points by more than a thousandth of the radius. */
   double max_misfit = 2.2;
   /** Largest distance of the neighbours' centroid from the point, in radii. A point
    * with a larger one is at an edge and has no quadric. */
   double max_centroid_offset = 0.28;
-  /** A point without a quadric takes over a neighbour's within this in-plane distance,
-   * in radii of the neighbour; 0 for never. */
+  /** A point without a quadric takes over that of a neighbour within this in-plane
+   * distance, in radii of the neighbour; 0 for never. */
   double takeover_radius = 0.5;
-  /** Largest number of patches. In a larger target, this number of points get a patch;
-   * they cover the target evenly. Neighbourhoods are taken from four times as many
-   * points, so that patches overlap in the same way at any density of the target. */
+  /** Largest number of patches. In a larger target, this many points, which cover the
+   * target evenly, get a patch. Neighbourhoods come from four times as many points, so
+   * that patches overlap in the same way at any density of the target. */
   int max_patches = 20000;
 };
 
-/** \brief Patches that cover a target cloud evenly and the tree to find them.
+/** \brief Patches that cover a cloud evenly, and a tree to find them.
  *
- * Coordinates inside are relative to origin(), so that scans far from the origin of
- * their frame (UTM) lose nothing. Building is parallel and gives the same bits for
+ * Internal coordinates are relative to origin(), so that scans far from the origin of
+ * their frame (UTM) lose no precision. Building is parallel and gives the same bits for
  * every number of threads. */
 class SurfaceModel {
 public:
-  /** \param[in] target_points 3 x n [m]; points that are not finite, or that repeat
-   * another one, are left out
+  /** \param[in] target_points 3 x n [m]; points that are not finite or that repeat
+   * another point are left out
    * \param[in] options of the patches
    * \param[in] num_threads 0: as OpenMP would */
   explicit SurfaceModel(const Eigen::Matrix3Xd& target_points,
                         const SurfaceModelOptions& options = SurfaceModelOptions(),
                         int num_threads = 0);
 
-  /** \brief The same of some \p columns of the points, all of them finite. */
+  /** \brief The surface of some \p columns of the points, all of them finite. */
   SurfaceModel(const Eigen::Matrix3Xd& target_points,
                const std::vector<Eigen::Index>& columns,
                const SurfaceModelOptions& options,
@@ -146,24 +146,24 @@ public:
     return patches_;
   }
 
-  /** \brief Over the points of patches(), projected to them, in this order and in the
-   * model's frame. */
+  /** \brief Tree of the points of patches(), projected to the patches, in the same
+   * order and in the model's frame. */
   const KdTree&
   tree() const
   {
     return tree_;
   }
 
-  /** \brief Median noise of the quadrics, or of all patches if there is none [m]; 0
-   * without points. */
+  /** \brief Median noise of the quadrics, or of all patches if fewer than a twentieth
+   * are quadrics [m]; 0 without points. */
   double
   medianSigma() const
   {
     return median_sigma_;
   }
 
-  /** \brief Median distance of a patch's point to the nearest other point among those
-   * that neighbourhoods are taken from [m]. */
+  /** \brief Median distance of a patch's point to its nearest neighbour, among the
+   * points that neighbourhoods are taken from [m]. */
   double
   spacing() const
   {
