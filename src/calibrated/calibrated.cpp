@@ -14,7 +14,7 @@ namespace bayesian_icp {
 
 namespace {
 
-/** What is wrong with the arguments; the status is NotRun if nothing is. */
+/** Check the arguments. The status is NotRun if they are valid. */
 PosteriorEstimate
 checkInput(const Eigen::Matrix3Xd& source_points,
            const Vector6d& initial_pose,
@@ -31,14 +31,14 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   return checked;
 }
 
-/** Reports progress of unknown length. Returns whether the user cancels. */
+/** Report progress of unknown length. Returns whether the user cancels. */
 bool
 isCancelled(const ProgressCallback& progress)
 {
   return progress && !progress({0, 0, 0, 0});
 }
 
-/** Why there is nothing to draw from; empty if there is. */
+/** Why there is no density to draw from; empty if there is one. */
 std::string
 complaintAbout(const CalibratedEstimate& estimate)
 {
@@ -54,7 +54,8 @@ complaintAbout(const CalibratedEstimate& estimate)
   return std::string();
 }
 
-/** The motions that the prior alone holds, for the message; empty if there are none. */
+/** Text about the motions that the prior alone holds, for the message; empty if there
+ * are none. */
 std::string
 whatThePriorHolds(const std::vector<DataDirection>& directions)
 {

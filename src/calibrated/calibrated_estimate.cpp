@@ -25,69 +25,74 @@ using Eigen::Matrix3Xd;
 
 namespace {
 
-/** Stream of the random order of source points; those of chains count from 0. */
+/** Random stream of the order of points; the streams of chains count from 0. */
 constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
 
-/** More than num_curvature_points are at most this part of the cloud, because a choice
- * of nearly all points is as uneven as they are, and this number per patch: more would
- * repeat the noise of the patches, of which J sees only what differs between them. */
+/** More than num_curvature_points are at most this fraction of the cloud, because a
+ * choice of nearly all points is as uneven as the cloud, and at most this number per
+ * patch of the other cloud: more would repeat the noise of the patches, and J does not
+ * see noise that patches share. */
 constexpr double max_part_used = 0.4;
 
-/** Starts and the mode have converged at this part of the target's noise. */
+/** Starts and the mode have converged if a step is below this fraction of the target's
+ * noise. */
 constexpr double start_tolerance = 0.03;
 constexpr double mode_tolerance = 0.01;
 constexpr int max_mode_steps = 8;
 
-/** Distance of a point-to-point result from the mode, about, in units of the distance
- * of the prior's mean. */
+/** Approximate distance of a point-to-point result from the mode, in units of the
+ * distance of the prior's mean. */
 constexpr double icp_to_prior_scale = 0.25;
 
-/** Weight of points against the prior in the Gaussian with which the first secants are
- * planned: neighbouring points repeat each other. */
+/** Weight of points against the prior in the Gaussian that plans the first secants:
+ * neighbouring points repeat each other. */
 constexpr double points_to_prior = 0.2;
 
-/** SecantPlan::min_displacement in the target's noise. */
+/** SecantPlan::min_displacement in units of the target's noise. */
 constexpr double min_step_to_noise = 0.5;
 
-/** Directions with less information, in units of the prior's, are held by the prior
- * only: it would be the noise that is left of a free motion, with a direction that is
- * not turned to follow the surface. */
+/** The prior alone holds directions with less information than this, in units of the
+ * prior's. Such information would be the remaining noise of a free motion, whose
+ * direction would not be turned to follow the surface. */
 constexpr double smallest_information_share = 0.2;
 
-/** Along a free motion the score is as unknown as the axis is. Its variance grows with
- * the square of the motion, up to this number of squared steps: then new patches are
- * met. */
+/** Along a free motion the score is as unknown as the axis. Its variance grows with the
+ * square of the motion, up to this number of squared steps, where points meet new
+ * patches. */
 constexpr double max_unheld_steps = 1.0;
 
-/** The information is uncertain: J comes from 12 to 96 clusters, H from noisy
- * secants. Chosen on simulated scans, docs/lab/calibration.md. */
+/** The information is uncertain, because J comes from 12 to 96 clusters, and H from
+ * noisy secants. Chosen on simulated scans, docs/lab/calibration.md. */
 constexpr int information_degrees_of_freedom = 20;
 
 /** Where the data leave a motion to the prior, the mode moves to the posterior mean if
- * that is further away than this many prior standard deviations, at most so many times.
- * It stays where it is if less than half of the active points would stay active. */
+ * the mean is further away than min_distance_of_mean prior standard deviations, at most
+ * max_moves times. It does not move if less than min_support_after_move of the active
+ * points would stay active. */
 constexpr double min_distance_of_mean = 0.5, min_support_after_move = 0.5;
 constexpr int max_moves = 2;
 
-/** Further away than this part of the source's root mean square radius, the points may
- * meet another side of the body, or its end. The mode moves there only if the fit may
- * have slid to where the views overlap most: the mean is so many prior standard
- * deviations away, at most this part of the points has a patch at the mode, and where
- * the fit from the mean ends, points miss their patches by at most so many times as
- * much as at the mode. */
+/** Further away than max_distance_to_radius of the source's root mean square radius,
+ * the points may meet another side of the body, or its end. The mode moves there only
+ * if the fit may have slid to where the views overlap most. Then the mean is more than
+ * min_distance_of_far_mean prior standard deviations away, and less than
+ * max_overlap_before_far_move of the points have a patch at the mode. Where the fit
+ * from the mean ends, points must miss their patches by less than
+ * max_misfit_after_far_move times as much as at the mode. */
 constexpr double max_distance_to_radius = 0.6;
 constexpr double min_distance_of_far_mean = 1.5;
 constexpr double max_overlap_before_far_move = 0.9, max_misfit_after_far_move = 1.15;
 
-/** Two ends of starts, and which is the mode. */
+/** Ends of the two starts. The better one leads to the mode. */
 struct Ends {
   RobustFit best;
   RobustFit other;
   long num_queries = 0;
 };
 
-/** Scale at which a start sees all of the target that the prior allows. It is at most
- * the source's root mean square radius, because a small body would only see a blur. */
+/** Initial tau, at which a start sees all of the target that the prior allows. It is at
+ * most the source's root mean square radius, because a small body would only see a
+ * blur. */
 double
 startScale(const Prior& prior, const SurfaceScorer& scorer)
 {
@@ -143,8 +148,8 @@ fitOnAllPoints(const SurfaceScorer& scorer,
   return fitRobustly(scorer, prior, start, fit);
 }
 
-/** Follow the ends on more points. What is one place, to within the target's noise, is
- * followed once. */
+/** Follow the ends on more points. Ends that are one place, to within the target's
+ * noise, are followed once. */
 void
 followEnds(const SurfaceScorer& scorer, const Prior& prior, Ends& ends)
 {
@@ -187,8 +192,8 @@ firstCovariance(const CalibratedEstimate& estimate, double noise)
   return principal.axes * variances.asDiagonal() * principal.axes.transpose();
 }
 
-/** J plus the noise of secants, as far as the data do not hold their directions: where
- * the pose is unknown, the score is unknown, too. */
+/** J plus the noise of the secants whose directions the data do not hold: where the
+ * pose is unknown, the score is unknown, too. */
 Matrix6d
 withUnheldNoise(const Matrix6d& score_covariance,
                 const Secants& secants,
@@ -204,7 +209,8 @@ withUnheldNoise(const Matrix6d& score_covariance,
   return J;
 }
 
-/** The secants of the last round, and what their noise leaves of the information. */
+/** The secants of the last round, and the information that remains after their debit.
+ */
 struct Curvature {
   Secants secants;
   DebitedInformation debited;
@@ -212,7 +218,7 @@ struct Curvature {
   int num_evaluations = 0;
 };
 
-/** Set what follows from J, from the curvature and from the directions. */
+/** Set everything that follows from J, the curvature and the directions. */
 void
 finish(CalibratedEstimate& e)
 {
@@ -228,7 +234,7 @@ finish(CalibratedEstimate& e)
   e.mean = -e.covariance * (weights * e.scores.total + e.prior.gradient);
 }
 
-/** The mode with all that is evaluated at it. */
+/** The estimate with everything that is evaluated at the mode. */
 CalibratedEstimate
 atMode(const SurfaceScorer& scorer, const Prior& prior, const RobustFit& mode)
 {
@@ -244,7 +250,7 @@ atMode(const SurfaceScorer& scorer, const Prior& prior, const RobustFit& mode)
   return e;
 }
 
-/** Set covariance and score_covariance by what the secants leave of the information. */
+/** Debit the noise of the secants, and set covariance and score_covariance. */
 DebitedInformation
 debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
 {
@@ -260,7 +266,7 @@ debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
   return debited;
 }
 
-/** J of the points of an estimate. */
+/** J of the points of \p scorer at an estimate's mode. */
 ScoreCovariance
 scoreCovarianceAt(const CalibratedEstimate& e,
                   const SurfaceScorer& scorer,
@@ -271,7 +277,7 @@ scoreCovarianceAt(const CalibratedEstimate& e,
                          num_threads);
 }
 
-/** Rounds of secants, each along the axes that the round before has found. */
+/** Measure rounds of secants, each along the axes found by the round before. */
 Curvature
 measureCurvature(const SurfaceScorer& scorer,
                  const Matrix6d& J,
@@ -336,14 +342,14 @@ estimateAt(const SurfaceScorer& scorer,
   return e;
 }
 
-/** Of the mean from the mode, in prior standard deviations. */
+/** Distance of the mean from the mode in prior standard deviations. */
 double
 priorDistanceOfMean(const CalibratedEstimate& e)
 {
   return std::sqrt(e.mean.dot(e.prior.precision * e.mean));
 }
 
-/** Whether the body is as wide as the way to the mean. */
+/** Whether the mean is so near that points meet the same side of the body. */
 bool
 isMeanWithinReach(const CalibratedEstimate& e)
 {
@@ -351,8 +357,8 @@ isMeanWithinReach(const CalibratedEstimate& e)
          max_distance_to_radius * radiusOf(e.displacement_metric);
 }
 
-/** Whether the mode has to move to the mean: along the way the surface may bend, and
- * another mode may be near. */
+/** Whether the mode has to move to the mean, because the surface may bend on the way
+ * and another mode may be near. */
 bool
 isFarFromMean(const CalibratedEstimate& e)
 {
@@ -364,9 +370,9 @@ isFarFromMean(const CalibratedEstimate& e)
           contactsOf(cappedResiduals(e.scores)).share < max_overlap_before_far_move);
 }
 
-/** The estimate about the mode nearest to the mean; in the \p last move, about that of
- * the held directions at the mean, because the fit slides back along a motion that is
- * held falsely, and the others are wrong there. \return whether it has moved */
+/** Move the estimate to the mode nearest to the mean. In the \p last move the free
+ * directions stay at the mean, because the fit slides back along a motion that is held
+ * falsely, and the other motions are wrong there. \return whether it has moved */
 bool
 moveToMean(const SurfaceScorer& scorer,
            const Prior& prior,

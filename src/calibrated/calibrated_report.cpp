@@ -9,11 +9,11 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Clusters of the score for kappa_inf = kappa_48: independent patches, at least. */
+/** Number of independent patches for kappa_inf = kappa_48. */
 constexpr double num_smallest_clusters = 96.0;
 
-/** Starts converge to a fraction of the noise only: ends within this part of it,
- * as root mean squared displacement, are one place. */
+/** Starts converge only to a fraction of the noise. Ends within this fraction of it, as
+ * root mean squared displacement, are one place. */
 constexpr double start_to_noise = 0.5;
 
 using Axes = Eigen::Matrix<double, 6, Eigen::Dynamic>;
@@ -27,7 +27,7 @@ shareOfPrior(const CalibratedEstimate& estimate, const Vector6d& twist)
 }
 
 /** Motions that are independent of each other both in the posterior and in the prior.
- * Those come first about which the data say most in comparison with the prior. */
+ * The motions come first that the data determine best in comparison with the prior. */
 Matrix6d
 independentAxes(const CalibratedEstimate& estimate)
 {
@@ -129,8 +129,8 @@ squaredLengthBeyond(const Axes& free, const Vector6d& twist, const Matrix6d& met
   return squared < 0.0 ? 0.0 : squared;
 }
 
-/** Mahalanobis distance of the two ends: they may differ by a part of the noise, and
- * freely along what is held by the prior only. */
+/** Mahalanobis distance of the two ends. They may differ by a fraction of the noise,
+ * and freely along motions that the prior alone holds. */
 double
 basinDistance(const CalibratedEstimate& estimate, const DataReport& report)
 {

@@ -14,23 +14,23 @@ using Eigen::Isometry3d;
 
 namespace {
 
-/** Scale of Tukey's weight in units of the target's noise: as far off the surface as a
- * tilted direction may lead. */
+/** Initial scale of Tukey's weight in units of the target's noise: a tilted direction
+ * may lead as far off the surface. */
 constexpr double start_scale = 10.0;
 constexpr int max_steps = 10;
 
-/** In units of the target's noise: how exactly a fit stays where it is along the free
- * directions, and when it has converged. */
+/** In units of the target's noise: how exactly a fit keeps its place along the free
+ * directions, and the step at which it has converged. */
 constexpr double hold_tolerance = 0.01, fit_tolerance = 0.03;
 
-/** Points miss their patches at an end by at most this many times as much as at the
- * mode. Otherwise the way is shortened by this factor, down to this many times the
- * target's noise: on a shorter way the noise of its ends would turn it. */
+/** At an end, points miss their patches by at most max_misfit times as much as at the
+ * mode. Otherwise the length is multiplied by shortening, down to shortest times the
+ * target's noise: on a shorter way the noise of the ends would turn the direction. */
 constexpr double max_misfit = 1.2, shortening = 1.0 / 3.0, shortest = 3.0;
 
-/** Let direction \p k lead from one end to the other of two fits, which start \p length
- * to both sides of the mode. \return whether both ends fit; if not, nothing has changed
- */
+/** Let direction \p k lead from one end to the other of two fits, which start at \p
+ * length to both sides of the mode. \return whether both ends fit; if not, the
+ * direction does not change */
 bool
 turnDirection(int k,
               double length,

@@ -19,50 +19,55 @@ using Eigen::Isometry3d;
 
 namespace {
 
-/** Length of a step in posterior, and at most in prior, standard deviations. */
+/** Length of a step in posterior standard deviations, and its limit in prior standard
+ * deviations. */
 constexpr double step_to_posterior_sd = 3.0;
 constexpr double max_step_to_prior_sd = 1.5;
 
-/** [rad], and displacement in parts of the source's root mean square radius. */
+/** Limits of a step: angle [rad], and displacement as a fraction of the source's root
+ * mean square radius. */
 constexpr double max_step_angle = 0.3, max_step_to_radius = 0.6;
 
-/** A step whose secant is below its noise is shortened by this factor, at most
+/** A step whose secant is not clear is multiplied by this factor, at most
  * max_shortenings times. */
 constexpr double step_shortening = 0.25;
 constexpr int max_shortenings = 3;
-/** Steps shorter than this part of the least displacement are not tried. */
+/** Steps shorter than this fraction of the least displacement are not tried. */
 constexpr double min_shortened = 0.2;
 
-/** A step is not measured again if it would change by less than this factor, and turn
- * by less than this cosine where posterior standard deviations are one. */
+/** A step is not measured again if its length would change by less than this factor,
+ * and the cosine of its turn would be above this, in units in which posterior standard
+ * deviations are one. */
 constexpr double max_change_of_length = 1.5;
 constexpr double min_cosine_of_turn = 0.95;
 
 /** A secant is clear if the square of its restoring part is above this multiple of its
- * variance, twice the 99.9 % quantile of chi-square. Noise of other directions says
- * nothing about whether this one is held. */
+ * variance, twice the 99.9 % quantile of chi-square. The noise along other directions
+ * does not matter for whether this one is held. */
 constexpr double min_clear_ratio = 21.6;
 
-/** Change that steps make to the residuals of the points that hold a direction, in
- * units of their scale. Noise differs by orders of magnitude between the parts of a
- * scene, so no length suits all directions. */
+/** Limits of the change that steps make to the residuals of the points that hold a
+ * direction, in units of their scale. Noise differs by orders of magnitude between the
+ * parts of a scene, so no length suits all directions. */
 constexpr double least_change = 0.7, most_change = 2.0;
 
-/** Squared cosine between the motion and the normal of the points that hold a
- * direction: nothing is trusted up to the first, everything from the second on.
- * Measured: 0.28 to 0.95 along true directions, 0 to 0.16 along free ones. */
+/** Mean squared cosine between the motion and the normal of the points that hold a
+ * direction. Up to grazing nothing is trusted, from facing on everything. Measured:
+ * 0.28 to 0.95 along true directions, 0 to 0.16 along free ones. */
 constexpr double grazing = 0.03, facing = 0.12;
 
-/** Below max_doubted_facing, the score is measured where these points have moved by
- * part_of_patch of their patches' radius. Nothing is trusted if its square is below
- * min_squared_ratio variances, everything from three times that on. */
+/** Below max_doubted_facing, the score is measured at the step that moves these points
+ * by part_of_patch of their patches' radius. Nothing is trusted if the square of its
+ * restoring part is below min_squared_ratio variances, everything from three times that
+ * on. */
 constexpr double max_doubted_facing = 0.3, part_of_patch = 0.3;
 constexpr double min_squared_ratio = 20.0;
 
-/** There, too, nothing is trusted that the first number of points face, everything from
- * the second number on. Both are smaller where fewer curves hold the motion than this
- * share of the information. Planes across a crease that a few rings cross lean along
- * it: up to 7.4 such points hold a motion along a tunnel falsely. */
+/** Below max_doubted_facing, the number of points that face the motion matters, too.
+ * Nothing is trusted up to few_facing such points, everything from many_facing on. Both
+ * limits are smaller where curves hold less than many_curves of the information. Planes
+ * lean along a crease that a few rings cross: up to 7.4 such points hold a motion along
+ * a tunnel falsely. */
 constexpr double few_facing = 7.5, many_facing = 10.0;
 constexpr double many_curves = 0.15;
 
@@ -79,14 +84,13 @@ struct Secant {
 /** The points that hold a direction, each with the weight of its Gauss-Newton
  * information along a step. */
 struct Holders {
-  /** Length of the step, in parts of it, at which their residuals have changed by tau.
-   */
+  /** Fraction of the step at which their residuals have changed by tau. */
   double unit_change = std::numeric_limits<double>::infinity();
-  /** ... and at which they have moved by the radius of their patches. */
+  /** Fraction of the step at which they have moved by the radius of their patches. */
   double next_patch = std::numeric_limits<double>::infinity();
   /** Mean squared cosine between their motion and their normal. */
   double facing = 1.0;
-  /** Effective number of them, (sum of weights)^2 / (sum of squared weights). */
+  /** Their effective number, (sum of weights)^2 / (sum of squared weights). */
   double count = 0.0;
   /** Share of the weights on patches whose points follow a curve. */
   double on_curves = 0.0;
@@ -181,7 +185,7 @@ private:
     return tukeyWeight(u / (SurfaceScorer::tukey_constant * tau_)) * u;
   }
 
-  /** The part of the points' differences that the correspondences of the mode do not
+  /** The part of the points' differences that the correspondences at the mode do not
    * predict. */
   PointScores
   unpredictedScores(const Vector6d& step) const
@@ -255,7 +259,8 @@ lengthOf(const Vector6d& axis,
                              most_change * unit_change));
 }
 
-/** Whether one secant suffices for two steps, because they are alike up to sign.
+/** Whether one secant suffices for two steps because they are nearly the same, up to
+ * sign.
  * \param[in] information inverse covariance: a little of a long step along a tight
  * direction matters, a little of a short one along a loose direction does not */
 bool
@@ -298,7 +303,7 @@ curvatureOf(const Secants& secants)
   return inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
 }
 
-/** Where \p value is on the way from \p from, 0, to \p to, 1. */
+/** 0 up to \p from, 1 from \p to on, and linear in between. */
 double
 ramp(double value, double from, double to)
 {
@@ -323,7 +328,7 @@ trustIn(SecantMaker& maker, const Vector6d& step, int direction)
   return trust * ramp(ratio, min_squared_ratio, 3.0 * min_squared_ratio);
 }
 
-/** Measures direction \p k anew, unless its step is nearly that of \p previous. */
+/** Measure direction \p k again, unless its step is nearly that of \p previous. */
 void
 measureDirection(int k,
                  const PrincipalAxes& principal,

@@ -8,13 +8,13 @@ namespace bayesian_icp {
 
 namespace {
 
-/** From this multiple of the noise threshold on, only the noise's mean is debited from
- * the information. */
+/** From this multiple of the noise threshold on, only the mean of the noise is debited
+ * from the information. */
 constexpr double full_to_threshold = 3.0;
 
-/** Information to debit for a secant's noise of mean information \p noise. Nothing is
- * left of an information below the threshold. Far above it, the noise's mean is
- * debited. A line from the one to the other is in between. */
+/** Information to debit for the noise of a secant, whose mean information is \p noise.
+ * Below the threshold nothing of the information remains. Far above it, the mean of the
+ * noise is debited. In between the debit is linear. */
 double
 noiseDebit(double information, double noise, double threshold)
 {

@@ -9,21 +9,21 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Of the plans' random numbers, downwards, and of the draws' scales; chains have
+/** Random streams of the plans, counting down, and of the draws' scales. Chains have
  * streams 0, 1, ... */
 constexpr std::uint64_t plan_stream = std::numeric_limits<std::uint64_t>::max();
 constexpr std::uint64_t scale_stream = plan_stream - (std::uint64_t(1) << 32);
 
-/** What is drawn at one mode. */
+/** The run at one mode. */
 struct ModeRun {
-  /** Chains have copies of it. */
+  /** Each chain has a copy. */
   WeightedScore score;
   int degrees_of_freedom;
-  /** With the mode's draws. */
+  /** Options with the number of draws of this mode. */
   ChainOptions chains;
-  /** With the burn-in and thinning that are used. */
+  /** Steps with the burn-in and thinning that are used. */
   StepPlan steps;
-  /** One a chain. */
+  /** One per chain. */
   std::vector<Path> paths;
 };
 
@@ -33,7 +33,7 @@ hasGaussian(const ModeRun& mode)
   return mode.score.coordinates().gaussian().factor().allFinite();
 }
 
-/** Finds out how the mode's chains make their steps. */
+/** Plan the steps of the mode's chains. */
 void
 plan(const CalibratedOptions& options,
      std::uint64_t stream,

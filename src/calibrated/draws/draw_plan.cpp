@@ -13,22 +13,23 @@ using Eigen::VectorXd;
 
 namespace {
 
-/** Where and how often the noise of a point's score is measured. */
+/** Numbers of positions, and of points at each position, at which the noise of a
+ * point's score is measured. */
 constexpr int num_noise_positions = 24, num_noise_points = 32;
 
 constexpr double max_step_size = 0.75;
 
 constexpr std::size_t batch_size = 32;
 
-/** Effective draws of the slowest direction that one draw is to be worth; the rest is
- * for tails and for what is not Gaussian. */
+/** Number of effective draws along the slowest direction that one draw should be worth.
+ * The rest is a margin for tails and for shapes that are not Gaussian. */
 constexpr double wanted_ess_share = 0.6;
 
 /** Steps that a draw may take: 96 queries. */
 constexpr int max_thinning = 3;
 
-/** Variance of a batch's gradient, posterior sd = 1, with which steps are long enough
- * for max_thinning and wanted_ess_share. */
+/** Variance of a batch's gradient, in units of the posterior sd, at which steps are
+ * long enough for max_thinning and wanted_ess_share. */
 constexpr double max_noise = 2.0;
 
 /** Integrated autocorrelation time of every \p thinning-th position on a Gaussian:
@@ -67,7 +68,7 @@ gainFor(const Matrix6d& noise, const Gaussian& gaussian)
          L.transpose();
 }
 
-/** Largest changes of a direction's spread. */
+/** Limits of the factor that changes a direction's spread. */
 constexpr double min_spread_factor = 0.7, max_spread_factor = 1.4;
 
 /** The symmetric map, in units of \p wanted, that brings one covariance to the other.
@@ -99,8 +100,8 @@ numDrawsOf(const std::vector<Path>& paths)
   return num_draws;
 }
 
-/** b, the last rows, of every chain that has draws: a run may end before others have
- * any, and Eigen has no rows of a matrix without columns. */
+/** b, the last rows, of every chain that has draws. A run may end before all chains
+ * have any, and Eigen has no rows of a matrix without columns. */
 std::vector<Eigen::Block<Matrix6Xd>>
 heldParts(std::vector<Path>& paths, Index num_held)
 {

@@ -7,17 +7,17 @@ namespace bayesian_icp {
 
 namespace {
 
-/** The guard: how far the gradient may be from that of a Gaussian likelihood, in units
- * in which the posterior's standard deviation is 1. The first is the limit at the mode;
- * the second is added for each unit of the Gaussian's gradient. As it is below 1, the
- * gradient points back from far out. */
+/** The guard: largest deviation of the gradient from that of a Gaussian likelihood, in
+ * units in which the posterior's standard deviation is 1. max_deviation is the limit at
+ * the mode, and max_relative_deviation is added for each unit of the Gaussian's
+ * gradient. As it is below 1, the gradient points back from far out. */
 constexpr double max_deviation = 3.0;
 constexpr double max_relative_deviation = 0.5;
 
-/** Scores are not used if a smaller part of the batch is on the surface. */
+/** Scores are not used if a smaller fraction of the batch is on the surface. */
 constexpr double min_part_with_patch = 0.5;
 
-/** No point is used where the prior alone holds the pose. */
+/** Points that batches are drawn from; none if the prior alone holds the pose. */
 std::vector<std::size_t>
 activePoints(const CalibratedEstimate& estimate, const ProductCoordinates& coordinates)
 {

@@ -22,52 +22,52 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/** A prior is wide from these standard deviations on: [rad], and in parts of the
+/** A prior is wide above these standard deviations: [rad], and as a fraction of the
  * source's extent. */
 constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
 
 /** Cost of the first estimate above which there may be a better mode within a narrow
- * prior: more than a quarter of the points see no target, or fit badly. Of simulated
- * scans with full overlap nine in ten stay below 1.7, and hardly any is above 2. Those
- * that lost half of the overlap are above. */
+ * prior: more than a quarter of the points do not meet the target, or fit badly. Of
+ * simulated scans with full overlap, nine in ten stay below 1.7, and hardly any is
+ * above 2. Scans that lost half of the overlap are above. */
 constexpr double doubtful_cost = 2.0;
 
-/** Starts reach this far, in standard deviations. Beyond, they are further from likely
- * places of the truth than the prior's mean is. */
+/** Starts reach this far, in standard deviations. Further out, they would be further
+ * from likely places of the truth than the prior's mean is. */
 constexpr double reach = 1.75;
 
-/** Above this standard deviation of a rotation [rad], a start hardly ever has both the
- * right rotation and the right place, so hops follow. They have this number of pairs of
- * opposite slides. The shortest and the longest, in deviations of the prior: */
+/** Above lost_angle, a standard deviation of a rotation [rad], a start rarely has both
+ * the right rotation and the right place, so hops follow. They have num_slide_pairs
+ * pairs of opposite slides, of the lengths below in deviations of the prior. */
 constexpr double lost_angle = 0.5;
 constexpr int num_slide_pairs = 6;
 constexpr double shortest_slide = 0.15, longest_slide = 1.5;
-/** What the sensor sees then depends on the mode. It changes by regions of this part of
- * a cloud. */
+/** In such a prior, what the sensor sees depends on the mode. It changes by regions of
+ * this fraction of a cloud. */
 constexpr double region_of_cloud = 1.0 / 40.0;
 
-/** A start is brought near by point-to-point ICP on this part of the points, and then
- * sees this part of the source's root mean square radius. */
+/** Point-to-point ICP on icp_part of the points brings a start near. The robust fit
+ * then begins with a scale of sight times the source's root mean square radius. */
 constexpr double icp_part = 0.5, sight = 0.1;
 
 /** An end of a start is ignored if its cost is above the best one's by more than this
- * part, or if it is within these squared Mahalanobis distances of a mode: the first is
- * for ends on a few points, the second for estimates. */
+ * fraction, or if it is within these squared Mahalanobis distances of a known mode. The
+ * first distance is for ends on a few points, the second for estimates. */
 constexpr double cost_margin = 0.35;
 constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
 
-/** The first estimate is ignored if its cost is above the best end's by this part. It
- * went astray then, for example to where few points meet the target: it leaves
+/** The first estimate is ignored if its cost is above the best end's by this fraction.
+ * It then went astray, for example to where few points meet the target. There it leaves
  * motions to the prior along which it would seem to be the same mode as the right one.
  */
 constexpr double astray_margin = 0.2;
 
-/** For the path between two modes that are one: steps at each place, and the largest
- * distance of the surface from the straight path, in parts of its length. */
+/** For the path that connects two modes: fit steps at each place, and the largest
+ * distance of the surface from the straight path, as a fraction of its length. */
 constexpr int num_way_steps = 6;
 constexpr double max_aside = 0.15;
 
-/** Modes with a smaller share of the posterior are left out. */
+/** Smallest share of the posterior of a mode that is kept. */
 constexpr double min_share = 0.02;
 
 /** Diagonal of the bounding box. */

@@ -15,10 +15,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-/** Standard deviations of the difference of two modes' energies that count as none. */
+/** A difference of two modes' energies within this many standard deviations counts as
+ * none. */
 constexpr double unheeded_deviations = 2.0;
 
-/** The scalar nearest to what scores are weighted with: the energy's weight. */
+/** Weight of the energy: the scalar nearest to the weights of the scores. */
 double
 energyWeight(const CalibratedEstimate& estimate)
 {
@@ -44,9 +45,9 @@ energyWeight(const CalibratedEstimate& estimate)
   return count > 0 ? std::exp(-sum / count) : 1.0 / estimate.kappa_inf;
 }
 
-/** Tukey's energy of each point. One without a patch has the largest; but if
- * \p continued, only as far as it is off the continuation of the surface, and at least
- * the mean of the others. */
+/** Tukey's energy of each point. A point without a patch has the largest energy. If \p
+ * continued, it has this energy only as far as it is off the continuation of the
+ * surface, but at least the mean of the others. */
 VectorXd
 energiesOf(const SurfaceScores& scores, double tau, bool continued)
 {
@@ -79,9 +80,9 @@ heededPart(double energy, double variance)
          std::max(0.0, 1.0 - squared_deviations * variance / (energy * energy));
 }
 
-/** What counts of the sum of the \p differences of two modes' energies. Patches are of
- * \p kappa points. If \p region is not 0, points that meet the target in one mode only
- * are heeded apart, and their patches are of \p region points. */
+/** The part of the sum of the \p differences of two modes' energies that counts.
+ * Patches have \p kappa points. If \p region is not 0, points that meet the target in
+ * only one mode are counted separately, and their patches have \p region points. */
 double
 heededEnergy(const VectorXd& differences,
              const SurfaceScores& a,

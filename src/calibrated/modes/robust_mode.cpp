@@ -26,15 +26,14 @@ constexpr double points_to_prior = 0.2;
 /** Annealing has ended when the scale is within this factor of the residuals'. */
 constexpr double scale_tolerance = 1.001;
 
-/** Longest step of point-to-point ICP [m, rad], its weight of a squared distance
- * against the prior [1/m^2], and when it ends. */
+/** Point-to-point ICP: longest step [m, rad], weight of a squared distance against the
+ * prior [1/m^2], maximum number of steps, and length of a step at which it ends. */
 constexpr double max_point_step = 0.2;
 constexpr double point_weight = 1e4;
 constexpr int max_point_steps = 20;
 constexpr double point_tolerance = 1e-4;
 
-/** Standard deviations of the difference of two fits' residuals that tell them apart.
- */
+/** Two fits are distinct if their residuals differ by this many standard deviations. */
 constexpr double clear_deviations = 2.0;
 
 struct NormalEquations {
@@ -42,8 +41,8 @@ struct NormalEquations {
   Vector6d gradient = Vector6d::Zero();
 };
 
-/** Of the linearised residuals u + j^T xi, weighted at \p xi. \p linear was evaluated
- * without robust weights. */
+/** Normal equations of the linearised residuals u + j^T xi, weighted at \p xi. \p
+ * linear was evaluated without robust weights. */
 NormalEquations
 reweighted(const SurfaceScores& linear, const Vector6d& xi, double tau)
 {

@@ -27,8 +27,9 @@ constexpr std::uint64_t partition_seed = 1;
  * estimated 6x6 covariance is too large by nu / (nu - 7) on average. */
 constexpr double lost_degrees_of_freedom = 13.0;
 
-/** Shells, and what remains of their kappa after its noise: the 99 % quantile of
- * chi-square with six degrees of freedom per shell, over its mean, is 1.43. */
+/** Number of shells, and the factor that keeps their kappa from exceeding 1 by chance:
+ * the 99 % quantile of chi-square with six degrees of freedom per shell, over its mean,
+ * is 1.43. */
 constexpr int num_shells = 12;
 constexpr double shells_to_clusters = 1.0 / 1.43;
 
@@ -41,10 +42,10 @@ struct PointGroups {
   Index count = 0;
 };
 
-/** Shells of equal numbers of points about the origin of the source's frame, where its
- * sensor usually is: a ring of a LiDAR has an error of its own, all around the sensor,
- * that no cluster of neighbours contains. About another place they are groups like any
- * other. */
+/** Shells of equal numbers of points about the origin of the source's frame, where the
+ * sensor usually is. A ring of a LiDAR has an error of its own, all around the sensor,
+ * that no cluster of neighbours contains whole. If the sensor is elsewhere, the shells
+ * are groups like any other. */
 PointGroups
 shellsOf(const Matrix3Xd& positions, Index count)
 {
@@ -87,7 +88,7 @@ public:
     split(0, places_.size(), 0);
   }
 
-  /** Those of points that are in one cluster of each size. */
+  /** Groups of points that are in the same cluster of every size. */
   const PointGroups&
   leaves() const
   {
@@ -132,7 +133,7 @@ private:
     split(middle, end, size);
   }
 
-  /** Move what is on one side of about the middle of an axis to the front. Without
+  /** Move the points on one side of about the middle of an axis to the front, without
    * branches that depend on a coordinate, which would take most of the time.
    * \return where the other side begins; neither is empty */
   std::size_t
@@ -273,10 +274,10 @@ withoutShare(const Matrix6d& H, const Vector6d& s)
 
 /** Sum of the outer products of the groups' scores.
  *
- * What fitting six parameters took from the groups is given back, so that the sum is
- * right on average for independent points: CR2 of Bell and McCaffrey (2002),
- * (I - H_b)^-1/2 s_b, H_b being the group's share of the information. A direction that
- * a few groups hold loses nearly all of their scores. */
+ * CR2 of Bell and McCaffrey (2002), (I - H_b)^-1/2 s_b, restores what the fit of six
+ * parameters took from the groups, so that the sum is right on average for independent
+ * points. H_b is the group's share of the information. Where a few groups hold a
+ * direction, the fit takes nearly all of their scores. */
 Matrix6d
 outerProducts(const GroupSums& groups)
 {
@@ -291,7 +292,7 @@ outerProducts(const GroupSums& groups)
   return scores * scores.transpose();
 }
 
-/** Most points of a cluster, if there are to be about \p num_clusters. */
+/** Maximum number of points of a cluster, for about \p num_clusters clusters. */
 Index
 maxPointsOf(Index num_points, int num_clusters)
 {
@@ -356,8 +357,8 @@ private:
   };
 
   /** Larger clusters are fewer, so they are averaged over more trees. kappa_inf has the
-   * difference of two sizes of which one is a quarter of the other: it has less noise
-   * if they are of the same trees. */
+   * difference of two sizes, one of which is a quarter of the other. The difference has
+   * less noise if both come from the same trees. */
   static constexpr TreeKind tree_kinds[] = {{8, {true, false, true, false}},
                                             {8, {false, true, false, true}},
                                             {8, {true, false, false, false}},

@@ -18,17 +18,19 @@ namespace {
 /** Residual of a point without a usable patch in meanCappedResidual(). */
 constexpr double residual_cap = 5.0;
 
-/** Smallest residualScale(): below, the target's noise is overestimated. */
+/** Smallest residualScale(). Smaller residuals mean that the target's noise is
+ * overestimated. */
 constexpr double min_residual_scale = 0.3;
 
-/** Beyond its border, a surface may bend: its slope is as uncertain as if one point of
- * the patch's noise had told it. */
+/** Beyond its border, a surface may bend. Its slope is as uncertain as if one point
+ * with the patch's noise had determined it. */
 constexpr double slope_error = 2.0;
 
-/** Fewer contacts, in parts of all points, do not tell where the surface goes on. */
+/** If a smaller fraction of the points has a patch, they do not show where the surface
+ * continues. */
 constexpr double min_contacts = 0.1;
 
-/** Of a thread of evaluate(), at a time. */
+/** Number of points that a thread of evaluate() takes at a time. */
 constexpr Eigen::Index points_per_piece = 256;
 
 /** The distance of one point to the surface of the other cloud. */

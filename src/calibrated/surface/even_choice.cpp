@@ -16,28 +16,28 @@ using Eigen::Index;
 
 namespace {
 
-/** A grid is fine enough if it yields this part of the wanted number of points. The
- * next one to be tried is meant to yield the second part. */
+/** A grid is fine enough if it yields wanted_part of the wanted number of points. The
+ * next grid to be tried should yield best_part of it. */
 constexpr double wanted_part = 0.97, best_part = 0.985;
 constexpr int max_trials = 24;
 
-/** Bits of a cube's place on each axis, and so the smallest cube that is tried, in
- * parts of the cloud's extent. */
+/** Number of bits of a cube's place on each axis, which limits the smallest cube that
+ * is tried, as a fraction of the cloud's extent. */
 constexpr int num_bits = 21;
 constexpr double smallest_cube = 1.0 / (1 << 20);
 
-/** Of the grid; no axis is near another one. */
+/** Rotation of the grid, which brings no axis near another one. */
 Eigen::Quaternionf
 tilt()
 {
   return Eigen::Quaternionf(0.5F, 0.31F, -0.7F, 0.4F).normalized();
 }
 
-/** The points that are chosen from cubes: of those in one cube that with the smallest
+/** The points that are chosen from cubes: in each cube the point with the smallest
  * rank, which is random. */
 class ChosenOfCubes {
 public:
-  /** \param[in] most cubes that it has room for
+  /** \param[in] most maximum number of cubes
    * \param[in] stream of the ranks */
   ChosenOfCubes(Index most, ChoiceStream stream)
   : first_rank_((1 + static_cast<std::uint32_t>(stream)) * 0x9e3779b9)
@@ -76,8 +76,8 @@ public:
     return num_cubes_;
   }
 
-  /** In their order.
-   * \param[in] num_points that were added */
+  /** The chosen points in ascending order.
+   * \param[in] num_points number of points that were added */
   std::vector<Index>
   points(Index num_points) const
   {
@@ -120,7 +120,7 @@ private:
 
 /** Choose a point of each cube of side \p cube, until there are more than \p most.
  * \param[in] corner of the first cube
- * \return how many points were looked at */
+ * \return number of points that were examined */
 Index
 chooseOfCubes(const Eigen::Matrix3Xf& points,
               const Eigen::Vector3f& corner,
@@ -148,10 +148,10 @@ chooseOfCubes(const Eigen::Matrix3Xf& points,
   return std::min(begin, points.cols());
 }
 
-/** "Around" a point is in its cube and the 26 about that. A cube's side is the radius
- * in which an even sheet of the wanted number of points has some 30: in units of its
- * root mean square distance from its centroid, and of the square root of that number.
- */
+/** Points "around" a point are in its cube and the 26 cubes about it. The side of a
+ * cube is the radius in which an even sheet of the wanted number of points has some 30
+ * of them. It is in units of the sheet's root mean square distance from its centroid
+ * over the square root of that number. */
 constexpr double cube_of_sheet = 8.0;
 constexpr int num_bisections = 60;
 

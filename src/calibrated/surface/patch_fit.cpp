@@ -16,45 +16,47 @@ using Eigen::Vector3f;
 
 namespace {
 
-/** A neighbourhood grows to at most this multiple of num_neighbors, until it is wide
- * enough for its noise ... */
+/** A neighbourhood grows until it is wide enough for its noise and has wanted_aspect,
+ * but at most to this multiple of num_neighbors. */
 constexpr int max_growth = 16;
-/** ... and has this aspectOf(). */
+/** Smallest aspectOf() at which a neighbourhood stops growing. */
 constexpr double wanted_aspect = 0.35;
 /** Narrower neighbourhoods are lines. */
 constexpr double min_aspect = 0.2;
-/** A quadric's slopes are known at least as well as from points that fill, evenly, an
- * ellipse of the smallest aspect: 4 is the variance of a slope in the unit disc, of one
- * point and unit noise. */
+/** The slopes of a quadric must be known at least as well as from points that evenly
+ * fill an ellipse of the smallest aspect. 4 is the variance of a slope in the unit
+ * disc, for one point and unit noise. */
 constexpr double max_slope_variance = 4.0 / (min_aspect * min_aspect);
 /** Smallest ratio of Clark and Evans (1954) of points that cover a quadric: the mean
  * distance of nearest neighbours over that of points scattered at random. Separate scan
- * lines have a smaller one; between them nothing constrains a quadric. */
+ * lines have a smaller ratio, and nothing constrains a quadric between them. */
 constexpr double min_evenness = 0.8;
 /** Number of points whose nearest neighbours are searched. */
 constexpr Eigen::Index num_evenness_points = 32;
-/** A quadric that misses its points by less than this part of the radius is good
- * enough, however exact they are. */
+/** A quadric that misses its points by less than this fraction of the radius is good
+ * enough, however exact the points are. */
 constexpr double negligible_misfit = 1e-3;
 
-/** Points are gathered in a ball, and then chosen by their distance in the plane of the
- * surface. At its rim, a ball prefers points whose noise brings them nearer to its
- * centre; surfaces would look flatter than they are. */
+/** Number of points gathered in a ball, in units of the neighbourhood. Neighbours are
+ * then chosen by their distance in the plane of the surface. At its rim, a ball prefers
+ * points whose noise brings them nearer to its centre, and surfaces would look flatter
+ * than they are. */
 constexpr double ball_to_neighborhood = 1.5;
 
-/** Least points of a plane, and its largest thickness as a part of its radius. */
+/** Smallest number of points of a plane, and its largest thickness as a fraction of its
+ * radius. */
 constexpr Eigen::Index min_plane_points = 8;
 constexpr double max_thickness = 0.5;
 
-/** Points with a smaller successionOf() follow a curve. Of 30 points that scatter, 2 in
- * a thousand have a smaller one: its deviation is 0.35 (von Neumann 1941). */
+/** Points with a smaller successionOf() follow a curve. Of sets of 30 scattered points,
+ * 2 in a thousand have a smaller one: its deviation is 0.35 (von Neumann 1941). */
 constexpr double min_succession = 1.0;
-/** Error of a plane's slope across the curve that its points follow. */
+/** Possible error of a plane's slope across the curve that its points follow. */
 constexpr double curve_slope_error = 0.03;
 
 constexpr int num_quadric_terms = 6;
 constexpr int num_quartic_terms = 15;
-/** Points below which the quartic is no test of the quadric. */
+/** With fewer points, the quartic does not test the quadric. */
 constexpr Eigen::Index min_points = 21;
 
 /** Principal axes of a neighbourhood. */
@@ -85,8 +87,8 @@ principalFrame(const PointRows& points)
 }
 
 /** Ratio of the points' spread in the plane, across the parabola along the widest axis
- * that fits them best, to that along the axis. Scan lines are bent. A bent line
- * seems to have a width, but says nothing about the slope across it.
+ * that fits them best, to that along the axis. Scan lines are bent. A bent line seems
+ * to have a width, but does not determine the slope across it.
  * \param[in] local in the principal frame */
 double
 aspectOf(const PointRows& local)
@@ -105,9 +107,9 @@ aspectOf(const PointRows& local)
   return std::sqrt(std::max(0.0, y.square().sum() - explained) / spread);
 }
 
-/** Von Neumann's (1941) ratio of the points' places across the widest axis, in their
+/** Von Neumann's (1941) ratio of the points' positions across the widest axis, in their
  * order along it: the mean square of the steps from one to the next over the variance.
- * 2 if they scatter, near 0 if they follow a curve, however it bends.
+ * It is 2 if the points scatter, and near 0 if they follow a curve, however it bends.
  * \param[in] local in the principal frame */
 double
 successionOf(const PointRows& local, std::vector<std::pair<double, double>>& ordered)
@@ -366,7 +368,8 @@ fitPlane(const PointRows& local, double thickness, double aspect, SurfacePatch& 
   patch.kind = is_plane ? PatchKind::Plane : PatchKind::None;
 }
 
-/** Widen the noise of a plane whose points follow a curve: it may lean across it. */
+/** Widen the noise of a plane whose points follow a curve, because the plane may lean
+ * across it. */
 void
 doubtCurve(const PointRows& local, PatchFitWorkspace& workspace, SurfacePatch& patch)
 {

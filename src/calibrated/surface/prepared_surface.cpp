@@ -20,7 +20,7 @@ using Eigen::Matrix3Xd;
 namespace {
 
 /** A target that is narrower than this, in standard deviations of the noise, is a line.
- * Patches that are fitted to its noise would hold motions along it. */
+ * Patches fitted to its noise would hold motions along it. */
 constexpr double min_width_to_noise = 3.0;
 
 /** Standard deviation of the patches' points across the line that fits them best, where
@@ -40,7 +40,7 @@ widthOf(const SurfaceModel& model)
   return std::sqrt(std::max(variance, 0.0));
 }
 
-/** Why distances to the target's surface mean nothing; empty if they do. */
+/** Why distances to the target's surface are meaningless; empty if they are valid. */
 std::string
 complaintAbout(const SurfaceModel& model)
 {

@@ -19,23 +19,24 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** How far a point may be off the surface that it takes over, in the donor's noise. */
+/** Largest distance of a point from the surface that it takes over, in units of the
+ * donor's noise. */
 constexpr double max_takeover_residual = 2.5;
-/** Smallest sigma of a patch: in units of the median, and of the spacing for targets
- * without noise. */
+/** Smallest sigma of a patch in units of the median and, for targets without noise, of
+ * the spacing. */
 constexpr double min_sigma_to_median = 0.3;
 constexpr double min_sigma_to_spacing = 1e-4;
 
-/** Neighbourhoods have at most this part of the root mean square distance of the points
- * from their centroid as a radius. A plane through two distant scan lines says nothing
- * of the ground between them, and a large part of the source would share its errors. A
- * target of few points needs more: max_radius_of_few, in units of sqrt(neighbours /
- * points) of that distance. */
+/** Largest radius of a neighbourhood, as a fraction of the root mean square distance of
+ * the points from their centroid. A plane through two distant scan lines does not
+ * describe the ground between them, and a large part of the source would share its
+ * errors. A target of few points needs larger neighbourhoods: max_radius_of_few is in
+ * units of sqrt(neighbours / points) of that distance. */
 constexpr double max_radius_to_extent = 0.25, max_radius_of_few = 4.0;
-/** A smaller share of quadrics does not say what the target's noise is. */
+/** A smaller share of quadrics does not determine the noise of the target. */
 constexpr double min_share_of_quadrics = 0.05;
 
-/** Indices that a thread takes at a time. */
+/** Number of indices that a thread takes at a time. */
 constexpr int share_size = 64;
 
 /** work(index, workspace) for every index of \p order; a thread has one workspace.

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** Points of neighbourhoods, for each patch. */
+/** Number of points that neighbourhoods are taken from, per patch. */
 constexpr Index points_to_patches = 4;
 
 /** Keeps the first of equal points, in their order. */
