@@ -4,22 +4,24 @@
 
 #include <boost/pending/disjoint_sets.hpp>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <ceres/autodiff_cost_function.h>
-#include <ceres/autodiff_manifold.h>
 #include <ceres/covariance.h>
 #include <ceres/loss_function.h>
+#include <ceres/manifold.h>
 #include <ceres/normal_prior.h>
 #include <ceres/problem.h>
+#include <ceres/product_manifold.h>
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -60,35 +62,9 @@ rotationVectorOf(const Eigen::Quaternion<T>& rotation)
   return vector;
 }
 
-/** Twists on the right of poses, to first order: CovarianceConvention::RightSE3. */
-struct RightTwists {
-  template <typename T>
-  bool
-  Plus(const T* pose, const T* twist, T* moved) const
-  {
-    const PoseView<T> from(pose);
-    T turn[4];
-    ceres::AngleAxisToQuaternion(twist + 3, turn);
-    Eigen::Map<Eigen::Matrix<T, 3, 1>>{moved} =
-        from.position +
-        from.rotation * Eigen::Matrix<T, 3, 1>(twist[0], twist[1], twist[2]);
-    Eigen::Map<Eigen::Quaternion<T>>{moved + 3} =
-        from.rotation * Eigen::Quaternion<T>(turn[0], turn[1], turn[2], turn[3]);
-    return true;
-  }
-
-  template <typename T>
-  bool
-  Minus(const T* moved, const T* pose, T* twist) const
-  {
-    const PoseView<T> from(pose), to(moved);
-    const Eigen::Quaternion<T> back = from.rotation.conjugate();
-    Eigen::Map<Eigen::Matrix<T, 3, 1>>{twist} = back * (to.position - from.position);
-    Eigen::Map<Eigen::Matrix<T, 3, 1>>{twist + 3} =
-        rotationVectorOf<T>(back * to.rotation);
-    return true;
-  }
-};
+/** Moves Parameters by steps of the position and half angles about the fixed axes. */
+using PoseManifold =
+    ceres::ProductManifold<ceres::EuclideanManifold<3>, ceres::EigenQuaternionManifold>;
 
 /** log(T_edge^-1 T_0_target^-1 T_0_source), whitened, less what comes of noises that
  * other edges have, too: the edge's own part of the error, of variance 1. */
@@ -215,14 +191,15 @@ public:
   Solver(const std::vector<Eigen::Matrix4d>& poses,
          const std::vector<GraphEdge>& edges,
          RobustLoss loss)
-  : loss_(loss)
+  : edges_(edges)
+  , loss_(loss)
   , num_poses_(poses.size())
   , unknowns_(num_poses_ * size_of_scan + num_common)
-  , problem_(borrowing())
   {
+    auto* const manifold = new PoseManifold; // problem_ owns it
     for (std::size_t k = 0; k < num_poses_; ++k) {
       Eigen::Map<Parameters>{pose(k)} = parametersOf(poses[k]);
-      problem_.AddParameterBlock(pose(k), 7, &twists_);
+      problem_.AddParameterBlock(pose(k), 7, manifold);
       addNoise(1.0, 6, noise(k));
     }
     addNoise(considered_deviation, num_common, commonNoise());
@@ -248,18 +225,15 @@ public:
     for (std::size_t k = 0; k < num_poses_; ++k)
       result.poses.push_back(
           {poseOf(transformOf(Parameters(pose(k)))), Matrix6d::Zero()});
-    for (const PlacedEdge& edge : edges_)
-      result.squared_errors.push_back(squaredErrorOf(edge));
+    for (const GraphEdge& edge : edges_) {
+      const Vector6d twist = twistFrom(edge, result.poses);
+      result.squared_errors.push_back(twist.dot(edge.covariance.ldlt().solve(twist)));
+    }
     addCovariances(result);
     return result;
   }
 
 private:
-  struct PlacedEdge {
-    EdgeError error;
-    const double *target, *source;
-  };
-
   /** Unknowns of one scan. */
   static constexpr int size_of_scan = 7 + 6;
 
@@ -297,42 +271,17 @@ private:
   void
   addEdge(const GraphEdge& edge)
   {
-    const EdgeError error = errorOf(edge);
     const auto target = static_cast<std::size_t>(edge.target);
     const auto source = static_cast<std::size_t>(edge.source);
-    edges_.push_back({error, pose(target), pose(source)});
     problem_.AddResidualBlock(
         new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6, 6, num_common>(
-            new EdgeError(error)),
+            new EdgeError(errorOf(edge))),
         lossOf(loss_, edge.shared),
         pose(target),
         pose(source),
         noise(target),
         noise(source),
         commonNoise());
-  }
-
-  /** Whatever parts of the error other edges have, too. */
-  static double
-  squaredErrorOf(const PlacedEdge& edge)
-  {
-    const std::array<double, num_common> no_noise{};
-    Vector6d residual;
-    edge.error(edge.target,
-               edge.source,
-               no_noise.data(),
-               no_noise.data(),
-               no_noise.data(),
-               residual.data());
-    return edge.error.shared.own() * residual.squaredNorm();
-  }
-
-  static ceres::Problem::Options
-  borrowing()
-  {
-    ceres::Problem::Options options;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    return options;
   }
 
   void
@@ -347,26 +296,29 @@ private:
       result.complaint = "the edges leave a motion of a pose free";
       return;
     }
+    const Vector6d whole_angles(1.0, 1.0, 1.0, 2.0, 2.0, 2.0);
     for (std::size_t k = 1; k < num_poses_; ++k) {
       const double* const block = pose(k);
-      Matrix6d& sum = result.poses[k].covariance;
-      // Row by row; symmetric, so that the order is of no importance.
-      covariance.GetCovarianceBlockInTangentSpace(block, block, sum.data());
+      Matrix6d own; // Row by row; symmetric, so that the order is of no importance.
+      covariance.GetCovarianceBlockInTangentSpace(block, block, own.data());
       Eigen::Matrix<double, 6, num_common, Eigen::RowMajor> motion;
       covariance.GetCovarianceBlockInTangentSpace(block, commonNoise(), motion.data());
       // How far the common noise moves the pose, by its unit.
       motion /= considered_deviation * considered_deviation;
-      sum += motion * motion.transpose();
+      GaussianPose& found = result.poses[k];
+      const Matrix6d to_twists =
+          noiseToSource(matrixOf(found.mean)) * whole_angles.asDiagonal();
+      found.covariance =
+          to_twists * (own + motion * motion.transpose()) * to_twists.transpose();
     }
   }
 
-  ceres::AutoDiffManifold<RightTwists, 7, 6> twists_;
+  const std::vector<GraphEdge>& edges_;
   RobustLoss loss_;
   std::size_t num_poses_;
   /** In one piece, because Ceres sorts them by their addresses, and the order decides
    * about the last bits. */
   std::vector<double> unknowns_;
-  std::vector<PlacedEdge> edges_;
   ceres::Problem problem_;
 };
 
@@ -377,6 +329,16 @@ toString(RobustLoss loss)
 {
   static constexpr std::array<const char*, 3> names = {"none", "huber", "cauchy"};
   return names[static_cast<std::size_t>(loss)];
+}
+
+Vector6d
+twistFrom(const GraphEdge& edge, const std::vector<GaussianPose>& poses)
+{
+  const auto poseOfVertex = [&poses](int vertex) {
+    return matrixOf(poses[static_cast<std::size_t>(vertex)].mean);
+  };
+  return logSE3(edge.T_target_source.inverse() * poseOfVertex(edge.target).inverse() *
+                poseOfVertex(edge.source));
 }
 
 OptimizedPoses

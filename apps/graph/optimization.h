@@ -39,10 +39,15 @@ struct OptimizedPoses {
   /** In the frame of the first one, which is fixed, with the covariances of the errors
    * that edges leave. */
   std::vector<GaussianPose> poses;
-  /** Of each edge, r^T S^-1 r of its twist r from the edge to the poses found, without
-   * any loss; chi-square with 6 degrees for a graph in which nothing else is known. */
+  /** Of each edge, r^T S^-1 r of r = twistFrom() it, without any loss; chi-square with
+   * 6 degrees for a graph in which nothing else is known. */
   std::vector<double> squared_errors;
 };
+
+/** \brief Twist from an edge to the poses of its vertices, in the frame of its source
+ * [m, rad]. */
+Vector6d
+twistFrom(const GraphEdge& edge, const std::vector<GaussianPose>& poses);
 
 /** \brief Whether an edge contradicts the others: its squared error is above the 99.9 %
  * quantile of chi-square with 6 degrees of freedom. */

@@ -4,8 +4,6 @@
 #include "report/path_charts.h"
 #include "report/section.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <array>
 
@@ -157,12 +155,7 @@ contradictionsHtml(const std::vector<ScanEdge>& edges,
   table.first_column_of_words = 5;
   for (const Disagreement& found : disagreements) {
     const GraphEdge& edge = edges[found.edge].edge;
-    const auto poseOfVertex = [&optimum](int vertex) {
-      return matrixOf(optimum.poses[static_cast<std::size_t>(vertex)].mean);
-    };
-    const Vector6d twist =
-        logSE3(edge.T_target_source.inverse() * poseOfVertex(edge.target).inverse() *
-               poseOfVertex(edge.source));
+    const Vector6d twist = twistFrom(edge, optimum.poses);
     table.rows.push_back({nameOf(edge),
                           shortText(twist.head<3>().norm()),
                           shortText(degrees * twist.tail<3>().norm()),
