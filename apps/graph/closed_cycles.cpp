@@ -22,20 +22,10 @@ verticesOf(const std::vector<GraphEdge>& edges, const Cycle& cycle)
   int vertex = edges[cycle.direct].target;
   std::string text = io::textOf(vertex);
   for (const std::size_t k : cycle.path) {
-    vertex = vertex == edges[k].target ? edges[k].source : edges[k].target;
+    vertex = edges[k].otherEnd(vertex);
     text += '-' + io::textOf(vertex);
   }
   return text;
-}
-
-/** Positions of the cycle's edges, in ascending order. */
-std::vector<std::size_t>
-membersOf(const Cycle& cycle)
-{
-  std::vector<std::size_t> members = cycle.path;
-  members.push_back(cycle.direct);
-  std::sort(members.begin(), members.end());
-  return members;
 }
 
 /** Cycles none of which is a sum (of edges, modulo 2) of shorter ones. */
@@ -52,7 +42,7 @@ independentOf(const std::vector<ClosedCycle>& cycles)
   std::map<std::size_t, std::vector<std::size_t>> basis; // by the first edge
   std::vector<const ClosedCycle*> independent;
   for (const ClosedCycle* closed : by_length)
-    for (std::vector<std::size_t> rest = membersOf(closed->cycle); !rest.empty();) {
+    for (std::vector<std::size_t> rest = closed->cycle.members(); !rest.empty();) {
       const auto [found, is_new] = basis.emplace(rest.front(), rest);
       if (is_new) {
         independent.push_back(closed);
@@ -128,25 +118,6 @@ private:
   std::vector<AlongCommon> common_;
 };
 
-CycleStatistics
-statisticsOf(const std::string& name, const std::vector<const ClosedCycle*>& cycles)
-{
-  CycleStatistics sum;
-  sum.name = name;
-  sum.num_cycles = cycles.size();
-  for (const ClosedCycle* closed : cycles) {
-    sum.nees_per_degree += closed->closure.squared_error;
-    sum.num_degrees += closed->closure.num_degrees;
-    sum.share_in_half += closed->closure.probability > 0.5 ? 1.0 : 0.0;
-    sum.share_in_95 += closed->closure.probability > 0.05 ? 1.0 : 0.0;
-  }
-  const auto count = static_cast<double>(cycles.size());
-  sum.nees_per_degree /= sum.num_degrees;
-  for (double* const mean : {&sum.num_degrees, &sum.share_in_half, &sum.share_in_95})
-    *mean /= count;
-  return sum;
-}
-
 } // namespace
 
 std::vector<ClosedCycle>
@@ -165,13 +136,25 @@ std::vector<CycleStatistics>
 statisticsOf(const std::vector<ClosedCycle>& cycles)
 {
   constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
-  std::map<std::size_t, std::vector<const ClosedCycle*>> of_length;
+  std::map<std::size_t, CycleStatistics> sums; // by length
   for (const ClosedCycle& closed : cycles)
-    for (const std::size_t length : {closed.length(), all})
-      of_length[length].push_back(&closed);
+    for (const std::size_t length : {closed.length(), all}) {
+      CycleStatistics& sum = sums[length];
+      ++sum.num_cycles;
+      sum.nees_per_degree += closed.closure.squared_error;
+      sum.num_degrees += closed.closure.num_degrees;
+      sum.share_in_half += closed.closure.probability > 0.5 ? 1.0 : 0.0;
+      sum.share_in_95 += closed.closure.probability > 0.05 ? 1.0 : 0.0;
+    }
   std::vector<CycleStatistics> lines;
-  for (const auto& [length, members] : of_length)
-    lines.push_back(statisticsOf(length == all ? "all" : io::textOf(length), members));
+  for (auto& [length, line] : sums) {
+    line.name = length == all ? "all" : io::textOf(length);
+    line.nees_per_degree /= line.num_degrees;
+    for (double* const mean :
+         {&line.num_degrees, &line.share_in_half, &line.share_in_95})
+      *mean /= static_cast<double>(line.num_cycles);
+    lines.push_back(line);
+  }
   return lines;
 }
 
@@ -194,7 +177,7 @@ suspectsOf(const std::vector<ClosedCycle>& cycles)
 {
   std::map<std::size_t, std::pair<std::size_t, std::size_t>> counts; // open, all
   for (const ClosedCycle& closed : cycles)
-    for (const std::size_t k : membersOf(closed.cycle)) {
+    for (const std::size_t k : closed.cycle.members()) {
       counts[k].first += closed.closes() ? 0 : 1;
       ++counts[k].second;
     }

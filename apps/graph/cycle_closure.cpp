@@ -30,12 +30,6 @@ neighbourhoodOf(const std::vector<GraphEdge>& edges)
   return at;
 }
 
-int
-otherEnd(const GraphEdge& edge, int vertex)
-{
-  return vertex == edge.target ? edge.source : edge.target;
-}
-
 /** The shortest way from the target of edge \p direct to its source without that edge;
  * empty if there is none of at most \p max_edges. */
 std::vector<std::size_t>
@@ -59,7 +53,7 @@ shortestPath(const std::vector<GraphEdge>& edges,
     if (length == max_edges)
       continue;
     for (const std::size_t k : at.at(vertex)) {
-      const int other = otherEnd(edges[k], vertex);
+      const int other = edges[k].otherEnd(vertex);
       if (k != direct && ways.emplace(other, Arrival{k, length + 1}).second)
         next.push_back(other);
     }
@@ -67,7 +61,7 @@ shortestPath(const std::vector<GraphEdge>& edges,
   std::vector<std::size_t> path;
   if (ways.count(end) > 0)
     for (int vertex = end; vertex != begin;
-         vertex = otherEnd(edges[path.back()], vertex))
+         vertex = edges[path.back()].otherEnd(vertex))
       path.push_back(ways[vertex].last);
   std::reverse(path.begin(), path.end());
   return path;
@@ -125,19 +119,25 @@ addError(std::size_t k, const GraphEdge& edge, const Matrix6d& carry, ErrorTerms
 
 } // namespace
 
+std::vector<std::size_t>
+Cycle::members() const
+{
+  std::vector<std::size_t> members = path;
+  members.push_back(direct);
+  std::sort(members.begin(), members.end());
+  return members;
+}
+
 std::vector<Cycle>
 cyclesOf(const std::vector<GraphEdge>& edges, std::size_t max_length)
 {
   const Neighbourhood at = neighbourhoodOf(edges);
-  std::set<std::set<std::size_t>> known;
+  std::set<std::vector<std::size_t>> known; // by their members
   std::vector<Cycle> cycles;
   for (std::size_t direct = edges.size(); direct-- > 0;) {
-    const std::vector<std::size_t> path =
-        shortestPath(edges, at, direct, max_length - 1);
-    std::set<std::size_t> members(path.begin(), path.end());
-    members.insert(direct);
-    if (!path.empty() && known.insert(members).second)
-      cycles.push_back({direct, path});
+    const Cycle cycle{direct, shortestPath(edges, at, direct, max_length - 1)};
+    if (!cycle.path.empty() && known.insert(cycle.members()).second)
+      cycles.push_back(cycle);
   }
   return {cycles.rbegin(), cycles.rend()};
 }

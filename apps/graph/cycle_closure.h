@@ -17,6 +17,10 @@ struct Cycle {
   std::size_t direct = 0;
   /** From the direct edge's target to its source; an edge may be taken backwards. */
   std::vector<std::size_t> path;
+
+  /** \brief The positions of all its edges, in ascending order. */
+  std::vector<std::size_t>
+  members() const;
 };
 
 /** \brief For each edge but those that the paths need, the shortest way around: fewest

@@ -102,6 +102,13 @@ struct GraphEdge {
    * noiseToSource(T_target_source) and d directionOf() it; each n has six independent
    * numbers of variance 1, of a scan and of this edge, and G has 36, of all edges. */
   SharedNoise shared = SharedNoise();
+
+  /** \brief The vertex that is not \p vertex. */
+  int
+  otherEnd(int vertex) const
+  {
+    return vertex == target ? source : target;
+  }
 };
 
 } // namespace bayesian_icp::app

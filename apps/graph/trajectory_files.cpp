@@ -70,8 +70,7 @@ covarianceOf(const double* numbers)
   const Matrix6d of_half_angles = factor.solve(Matrix6d::Identity());
   if (factor.info() != Eigen::Success || !of_half_angles.allFinite())
     throw std::runtime_error("has an information that is not positive definite");
-  Vector6d scale;
-  scale << 1.0, 1.0, 1.0, 2.0, 2.0, 2.0;
+  const Vector6d scale(1.0, 1.0, 1.0, 2.0, 2.0, 2.0);
   return scale.asDiagonal() * of_half_angles * scale.asDiagonal();
 }
 
