@@ -2,7 +2,6 @@
 #include "calibrated/calibrated_stand_in.h"
 #include "calibrated/draws/draw_plan.h"
 #include "calibrated/draws/product_coordinates.h"
-#include "calibrated/product_form.h"
 #include "summary/estimates.h"
 #include "support/test_support.h"
 
@@ -88,13 +87,42 @@ whitenedComponent(const ChainSet& set, const CalibratedEstimate& e, int k)
 }
 
 ChainSet
-sample(const StandIn& problem, const ChainOptions& options = ChainOptions())
+sample(const StandIn& problem, const BatchScore& score)
 {
-  return sampleCalibrated(problem.score(),
-                          problem.prior,
-                          {{problem.estimate}},
-                          CalibratedOptions(),
-                          options);
+  return sampleCalibrated(
+      score, problem.prior, {{problem.estimate}}, CalibratedOptions(), ChainOptions());
+}
+
+ChainSet
+sample(const StandIn& problem)
+{
+  return sample(problem, problem.score());
+}
+
+/** Draws as if the likelihood were Gaussian about the mode, in ProductCoordinates, with
+ * the exact prior: by steps that look at no points. */
+ChainSet
+sampleProductForm(const StandIn& problem)
+{
+  constexpr int num_chains = 4, num_draws = 2000, thinning = 30;
+  const ProductCoordinates coordinates(problem.estimate);
+  const auto poseAt = [&](const Vector6d& z) {
+    return poseOf(coordinates.pose(z).matrix());
+  };
+  const auto energy = [&](const Vector6d& z) {
+    return coordinates.linearEnergy(z) + problem.prior.energy(poseAt(z));
+  };
+  const Gaussian& gaussian = coordinates.gaussian();
+  ChainSet set;
+  for (std::uint64_t i = 0; i < num_chains; ++i) {
+    Random random(1, i);
+    PoseMatrix draws = randomWalk(
+        energy, gaussian.mean(), gaussian.factor(), num_draws, thinning, random);
+    for (auto draw : draws.rowwise())
+      draw = poseAt(draw.transpose()).transpose();
+    set.chains.push_back({draws});
+  }
+  return set;
 }
 
 /** Standard normal components: mean and second moments within 4.5 Monte Carlo errors,
@@ -200,8 +228,7 @@ TEST(CalibratedDraws, AreStudentsOnlyWhereTheDataHoldThePose)
 TEST(CalibratedDraws, OfTheProductFormAreTheCalibratedGaussian)
 {
   const StandIn problem(StandIn::Options{});
-  expectTheCalibratedGaussian(sampleProductForm(problem.prior, problem.estimate),
-                              problem.estimate);
+  expectTheCalibratedGaussian(sampleProductForm(problem), problem.estimate);
 }
 
 /** The last step of sampleCalibrated() sets the covariance right; here it is looked at
@@ -242,7 +269,7 @@ TEST(CalibratedDraws, AgreeWithTheProductFormHoweverWideThePriorOfAFreeYawIs)
     const StandIn problem(options);
     EXPECT_EQ(ProductCoordinates(problem.estimate).numPriorOnly(), 1);
     const ChainSet draws = sample(problem);
-    const ChainSet oracle = sampleProductForm(problem.prior, problem.estimate, 4);
+    const ChainSet oracle = sampleProductForm(problem);
     EXPECT_EQ(summarize(draws).status, Status::Ok) << summarize(draws).message;
     for (int k = 0; k < 6; ++k) {
       const auto deviation = [&](const Vector6d& pose) {
@@ -250,7 +277,7 @@ TEST(CalibratedDraws, AgreeWithTheProductFormHoweverWideThePriorOfAFreeYawIs)
         return k < 3 ? difference : wrapAngle(difference);
       };
       const MatrixXd a = ofDraws(draws, deviation), b = ofDraws(oracle, deviation);
-      EXPECT_LT(largestDifference(a, b), criticalDifference(a, b)) << k;
+      EXPECT_LT(largestDifference(a, b), criticalDifference(a, b, 6)) << k;
     }
   }
 }
@@ -302,8 +329,7 @@ TEST(ProductCoordinates, DropWholeTurns)
   StandIn problem(options);
   problem.estimate.directions(2, 5) = 0.01; // a screw
   const ProductCoordinates coordinates(problem.estimate);
-  Vector6d z;
-  z << 0.02, 0.001, -0.002, 0.001, 0.003, -0.001;
+  const Vector6d z(0.02, 0.001, -0.002, 0.001, 0.003, -0.001);
   const Vector6d turn = 2.0 * std::acos(-1.0) / 10.0 * Vector6d::Unit(0);
   for (const double num_turns : {-2.0, 1.0})
     EXPECT_LT(
@@ -335,9 +361,7 @@ TEST(CalibratedDraws, FollowTheShapeOfTheScores)
     total += share * e.curvature.col(0) * sd * 0.25 * (u * u - 1.0);
     return num;
   };
-  const ChainSet set = sampleCalibrated(
-      skewed, problem.prior, {{problem.estimate}}, CalibratedOptions(), ChainOptions());
-  const MatrixXd x = ofDraws(set, [&](const Vector6d& pose) {
+  const MatrixXd x = ofDraws(sample(problem, skewed), [&](const Vector6d& pose) {
     return twistBetween(e.mode, isometryOf(pose), e.centre)[0];
   });
   const Eigen::ArrayXXd centred = x.array() - x.mean();
@@ -348,8 +372,7 @@ TEST(CalibratedDraws, FollowTheShapeOfTheScores)
 
 TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
 {
-  StandIn::Options options;
-  const StandIn problem(options);
+  const StandIn problem(StandIn::Options{});
   const CalibratedEstimate& e = problem.estimate;
   const auto L = e.covariance.llt();
   const auto radius = [&](const Eigen::Isometry3d& pose) {
@@ -372,11 +395,7 @@ TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
         total.setConstant(std::nan(""));
       return fault == NoPatch ? num / 3 : num;
     };
-    const ChainSet set = sampleCalibrated(faulty,
-                                          problem.prior,
-                                          {{problem.estimate}},
-                                          CalibratedOptions(),
-                                          ChainOptions());
+    const ChainSet set = sample(problem, faulty);
     const MatrixXd radii =
         ofDraws(set, [&](const Vector6d& pose) { return radius(isometryOf(pose)); });
     // The likelihood's drift points back from 6 standard deviations on; 6 more for the

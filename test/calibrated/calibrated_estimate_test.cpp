@@ -1,17 +1,18 @@
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/surface/even_choice.h"
+#include "support/test_support.h"
 
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp {
@@ -28,9 +29,7 @@ constexpr double sigma = 0.001;
 Vector6d
 priorDeviations()
 {
-  Vector6d sd;
-  sd << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
-  return sd;
+  return {0.02, 0.02, 0.02, 0.05, 0.05, 0.05};
 }
 
 /** A ball beside a box, seen from everywhere. */
@@ -46,155 +45,131 @@ ballAndBox(Random& random, Index num_points)
   return both;
 }
 
-/** In random order, as estimateCalibrated() wants them. */
-Matrix3Xd
-shuffled(const Matrix3Xd& points, Random& random)
-{
-  std::vector<Index> columns(static_cast<std::size_t>(points.cols()));
-  std::iota(columns.begin(), columns.end(), Index(0));
-  shuffle(columns, random);
-  return points(Eigen::all, columns);
-}
-
-/** Two scans, and a true pose from the prior. */
-struct Case {
-  explicit Case(std::uint64_t stream,
-                Index num_source_points = 500,
-                Index num_target_points = 2000)
+/** Two scans [m], and a true pose from the prior. */
+struct Scans {
+  explicit Scans(std::uint64_t stream,
+                 Index num_source_points = 500,
+                 Index num_target_points = 2000)
   {
     Random random(101, stream);
     target = test::noisy(ballAndBox(random, num_target_points), sigma, random);
-    model = std::make_unique<SurfaceModel>(target);
     const Matrix3Xd seen =
         test::noisy(ballAndBox(random, num_source_points), sigma, random);
     truth = isometryOf(random.normal6().cwiseProduct(priorDeviations()));
     const Vector3d centre = seen.rowwise().mean();
     truth = Eigen::Translation3d(centre) * truth * Eigen::Translation3d(-centre);
-    scorer = std::make_unique<SurfaceScorer>(truth.inverse() * shuffled(seen, random),
-                                             *model);
-    prior = std::make_unique<Prior>(
-        Vector6d::Zero(), priorDeviations().cwiseAbs2(), scorer->centroid());
+    // In random order, as estimateCalibrated() wants them.
+    source = truth.inverse() *
+             seen(Eigen::all, randomChoice(seen.cols(), seen.cols(), random));
   }
 
-  /** From the posterior mean to the true pose. */
-  Vector6d
-  error(const CalibratedEstimate& e) const
-  {
-    return twistBetween(movedBy(e.mean, e.centre, e.mode), truth, e.centre);
-  }
-
-  Matrix3Xd target;
-  std::unique_ptr<SurfaceModel> model;
-  std::unique_ptr<SurfaceScorer> scorer;
-  std::unique_ptr<Prior> prior;
+  Matrix3Xd source, target;
   Isometry3d truth = Isometry3d::Identity();
 };
 
-TEST(CalibratedEstimate, ErrorsAreAsLargeAsItSays)
-{
-  constexpr int num_cases = 60;
-  double sum = 0.0;
-  int num_within = 0;
-  const boost::math::chi_squared six(6.0), all(6.0 * num_cases);
-  for (int k = 0; k < num_cases; ++k) {
-    const Case c(static_cast<std::uint64_t>(k));
-    const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior);
-    const Vector6d error = c.error(e);
-    const double nees = error.dot(e.covariance.ldlt().solve(error));
-    sum += nees;
-    num_within += nees < quantile(six, 0.95);
+/** Their registration. */
+struct Case : Scans, test::Problem {
+  explicit Case(const Scans& scans)
+  : Scans(scans)
+  , Problem(source, target, priorDeviations())
+  {}
+
+  /** Of the posterior mean, in standard deviations. */
+  double
+  squaredError(const CalibratedEstimate& e) const
+  {
+    return test::squaredError(
+        twistBetween(movedBy(e.mean, e.centre, e.mode), truth, e.centre), e.covariance);
   }
-  // 99.9 % of sums of 60 NEES, were the posterior exact.
+};
+
+/** Whether the sum of squared errors is among 99.9 % of those of exact posteriors. */
+void
+expectRight(const std::vector<double>& squared_errors)
+{
+  const double sum = std::accumulate(squared_errors.begin(), squared_errors.end(), 0.0);
+  const boost::math::chi_squared all(6.0 * double(squared_errors.size()));
   EXPECT_GT(sum, quantile(all, 0.0005));
   EXPECT_LT(sum, quantile(all, 0.9995));
-  // At least 53 of 60 are within, were it 95 %, with a probability of 99.6 %.
-  EXPECT_GE(num_within, 53);
 }
 
-/** Estimates of several cases, and others of fewer points. */
-class Comparison {
-public:
-  void
-  add(const Case& c, const CalibratedEstimate& e, const CalibratedEstimate& other)
-  {
-    const Vector6d error = c.error(e);
-    sum_ += error.dot(e.covariance.ldlt().solve(error));
-    log_ratio_ += std::log(e.covariance.determinant() / other.covariance.determinant());
-    ++num_cases_;
+TEST(CalibratedEstimate, ErrorsAreAsLargeAsItSays)
+{
+  std::vector<double> squared_errors;
+  for (std::uint64_t stream = 0; stream < 60; ++stream) {
+    const Case c{Scans(stream)};
+    squared_errors.push_back(c.squaredError(c.estimate()));
   }
+  expectRight(squared_errors);
+  // At least 53 of 60 are within, were it 95 %, with a probability of 99.6 %.
+  const double most = quantile(boost::math::chi_squared(6.0), 0.95);
+  EXPECT_GE(std::count_if(squared_errors.begin(),
+                          squared_errors.end(),
+                          [most](double e) { return e < most; }),
+            53);
+}
 
-  /** Whether the sum of NEES is among 99.9 % of those of exact posteriors. */
-  void
-  expectRight() const
-  {
-    const boost::math::chi_squared all(6.0 * num_cases_);
-    EXPECT_GT(sum_, quantile(all, 0.0005));
-    EXPECT_LT(sum_, quantile(all, 0.9995));
+/** Expects that 40 estimates are right.
+ * \param[in] estimates of a case, and with fewer points
+ * \return ratio of their deviations, the geometric mean */
+template <typename Estimates>
+double
+ratioOfDeviations(std::uint64_t first_stream,
+                  Index num_target_points,
+                  const Estimates& estimates)
+{
+  constexpr int num_cases = 40;
+  double sum = 0.0;
+  std::vector<double> squared_errors;
+  for (std::uint64_t k = 0; k < num_cases; ++k) {
+    const Case c{Scans(first_stream + k, 2000, num_target_points)};
+    const auto [e, of_fewer] = estimates(c);
+    squared_errors.push_back(c.squaredError(e));
+    sum += std::log(e.covariance.determinant() / of_fewer.covariance.determinant());
   }
-
-  /** Geometric mean of the ratios of deviations. */
-  double
-  ratio() const
-  {
-    return std::exp(log_ratio_ / (12.0 * num_cases_));
-  }
-
-private:
-  double sum_ = 0.0, log_ratio_ = 0.0;
-  int num_cases_ = 0;
-};
+  expectRight(squared_errors);
+  return std::exp(sum / (12.0 * num_cases));
+}
 
 TEST(CalibratedEstimate, MorePointsThanThoseOfTheCurvatureMakeItSharper)
 {
-  constexpr int num_cases = 40;
-  Comparison comparison;
   EstimateOptions options;
   options.num_curvature_points = 500;
-  for (int k = 0; k < num_cases; ++k) {
-    const Case c(200 + static_cast<std::uint64_t>(k), 2000, 8000);
-    const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior, options);
-    const CalibratedEstimate of_first =
-        estimateCalibrated(c.scorer->ofFirst(500), *c.prior, options);
-    comparison.add(c, e, of_first);
-  }
-  comparison.expectRight();
+  const double ratio = ratioOfDeviations(200, 8000, [&](const Case& c) {
+    return std::pair(c.estimate(options),
+                     estimateCalibrated(c.scorer.ofFirst(500), c.prior, options));
+  });
   // Four times as many points halve the deviations, less what the target's noise adds:
   // if it counted as much as the noise of its 2000 points in the source, by (2 /
   // 5)^1/2.
-  EXPECT_GT(comparison.ratio(), 0.5);
-  EXPECT_LT(comparison.ratio(), 0.7);
+  EXPECT_GT(ratio, 0.5);
+  EXPECT_LT(ratio, 0.7);
 }
 
 TEST(CalibratedEstimate, TheTargetsPointsMakeItSharper)
 {
-  constexpr int num_cases = 40;
-  Comparison comparison;
-  for (int k = 0; k < num_cases; ++k) {
-    const Case c(400 + static_cast<std::uint64_t>(k), 2000, 2000);
-    const Matrix3Xd& points = c.scorer->sourcePoints();
+  const double ratio = ratioOfDeviations(400, 2000, [](const Case& c) {
+    const Matrix3Xd& points = c.scorer.sourcePoints();
     const PreparedSurface source = prepareSurface(points, 1);
-    const SurfaceScorer both = scorerOf(points, source, c.target, *c.model, 4000, 1);
-    ASSERT_EQ(both.numPoints(), 4000);
-    const CalibratedEstimate e = estimateCalibrated(both, *c.prior);
-    const CalibratedEstimate of_source = estimateCalibrated(*c.scorer, *c.prior);
-    comparison.add(c, e, of_source);
-  }
-  comparison.expectRight();
+    const SurfaceScorer both = scorerOf(points, source, c.target, c.model, 4000, 1);
+    EXPECT_EQ(both.numPoints(), 4000);
+    return std::pair(estimateCalibrated(both, c.prior), c.estimate());
+  });
   // Twice as many points, of which every other one would be new if patches had no
   // noise.
-  EXPECT_GT(comparison.ratio(), std::sqrt(0.5));
-  EXPECT_LT(comparison.ratio(), 0.95);
+  EXPECT_GT(ratio, std::sqrt(0.5));
+  EXPECT_LT(ratio, 0.95);
 }
 
 TEST(CalibratedEstimate, IsTheSameTheOtherWay)
 {
   for (std::uint64_t stream = 500; stream < 505; ++stream) {
-    const Case c(stream, 2000, 2000);
-    const Matrix3Xd& points = c.scorer->sourcePoints();
+    const Case c{Scans(stream, 2000, 2000)};
+    const Matrix3Xd& points = c.scorer.sourcePoints();
     const PreparedSurface source = prepareSurface(points, 1);
     const PreparedSurface target = prepareSurface(c.target, 1);
-    const Isometry3d start = isometryOf(c.prior->mean());
-    const Prior wide(poseOf(start.matrix()), Vector6d::Ones(), c.scorer->centroid());
+    const Isometry3d start = isometryOf(c.prior.mean());
+    const Prior wide(poseOf(start.matrix()), Vector6d::Ones(), c.scorer.centroid());
     const CalibratedEstimate forth = estimateCalibrated(
         scorerOf(points, source, c.target, target.model, 4000, 1), wide, {}, &start);
     const Isometry3d back_start = start.inverse();
@@ -209,8 +184,7 @@ TEST(CalibratedEstimate, IsTheSameTheOtherWay)
         twistBetween(forth.mode, back.mode.inverse(), forth.centre);
     // The modes are found to a hundredth of the noise, which is 0.2 of a deviation of
     // 2000 points.
-    EXPECT_LT(difference.dot(forth.covariance.ldlt().solve(difference)),
-              6.0 * 0.2 * 0.2)
+    EXPECT_LT(test::squaredError(difference, forth.covariance), 6.0 * 0.2 * 0.2)
         << stream;
   }
 }
@@ -236,8 +210,8 @@ TEST(CalibratedEstimate, UsesAPartOfTheSourceAndNotMoreThanThePatchesCarry)
 
 TEST(CalibratedEstimate, PutsItsPartsTogether)
 {
-  const Case c(100);
-  const CalibratedEstimate e = estimateCalibrated(*c.scorer, *c.prior);
+  const Case c{Scans(100)};
+  const CalibratedEstimate e = c.estimate();
   const Matrix6d J_inverse = e.score_covariance.inverse();
   const Matrix6d HT = e.curvature * e.transfer;
   EXPECT_LT((e.information - HT.transpose() * J_inverse * HT).norm(),
@@ -247,7 +221,7 @@ TEST(CalibratedEstimate, PutsItsPartsTogether)
   const Vector6d mean =
       -e.covariance * (HT.transpose() * J_inverse * e.scores.total + e.prior.gradient);
   EXPECT_LT((e.mean - mean).norm(), 1e-6 * e.mean.norm());
-  EXPECT_LT((e.centre - e.mode * c.scorer->centroid()).norm(), 1e-12);
+  EXPECT_LT((e.centre - e.mode * c.scorer.centroid()).norm(), 1e-12);
   for (int k = 0; k < 6; ++k) {
     const Vector6d direction = e.directions.col(k);
     EXPECT_NEAR(direction.dot(e.displacement_metric * direction), 1.0, 1e-9);
@@ -257,62 +231,49 @@ TEST(CalibratedEstimate, PutsItsPartsTogether)
 
 TEST(CalibratedEstimate, DoesNotDependOnItsStartOnAnEasyScene)
 {
-  const Case c(101);
-  const CalibratedEstimate two = estimateCalibrated(*c.scorer, *c.prior);
-  const CalibratedEstimate one =
-      estimateCalibrated(*c.scorer, *c.prior, EstimateOptions(), &c.truth);
-  const auto distance = [&](const Vector6d& xi) {
-    return std::sqrt(xi.dot(two.covariance.ldlt().solve(xi)));
-  };
-  EXPECT_LT(distance(two.other_end), 1.0);
-  EXPECT_LT(distance(twistBetween(two.mode, one.mode, two.centre)), 1.0);
+  const Case c{Scans(101)};
+  const CalibratedEstimate two = c.estimate();
+  const CalibratedEstimate one = c.estimate({}, &c.truth);
+  EXPECT_LT(test::squaredError(two.other_end, two.covariance), 1.0);
+  EXPECT_LT(
+      test::squaredError(twistBetween(two.mode, one.mode, two.centre), two.covariance),
+      1.0);
   EXPECT_LT(one.other_end.norm(), 1e-12);
   EXPECT_LT(one.num_queries, two.num_queries);
 }
 
+constexpr double wavelength = 0.04;
+
+Matrix3Xd
+waves(Random& random, Index num_points, double half)
+{
+  const double rate = 2.0 * std::acos(-1.0) / wavelength;
+  Matrix3Xd points = test::squarePlane(random, num_points, half).points;
+  for (Index i = 0; i < num_points; ++i)
+    points(2, i) = 0.006 * std::cos(rate * points(0, i)) + 0.0005 * random.normal();
+  return points;
+}
+
 /** Waves along x: sliding by a wavelength changes nothing but the prior. */
-struct Waves {
-  static constexpr double wavelength = 0.04;
-
-  explicit Waves(double offset)
-  {
-    Random random(102, 0);
-    model = std::make_unique<SurfaceModel>(waves(random, 6000, 0.25));
-    Matrix3Xd source = waves(random, 800, 0.1);
-    source.row(0).array() += offset;
-    scorer = std::make_unique<SurfaceScorer>(source, *model);
-    Vector6d sd = priorDeviations();
-    sd[0] = 0.1;
-    prior =
-        std::make_unique<Prior>(Vector6d::Zero(), sd.cwiseAbs2(), scorer->centroid());
-  }
-
-  static Matrix3Xd
-  waves(Random& random, Index num_points, double half)
-  {
-    const double rate = 2.0 * std::acos(-1.0) / wavelength;
-    Matrix3Xd points = test::squarePlane(random, num_points, half).points;
-    for (Index i = 0; i < num_points; ++i)
-      points(2, i) = 0.006 * std::cos(rate * points(0, i)) + 0.0005 * random.normal();
-    return points;
-  }
-
-  std::unique_ptr<SurfaceModel> model;
-  std::unique_ptr<SurfaceScorer> scorer;
-  std::unique_ptr<Prior> prior;
-};
+test::Problem
+wavesMovedBy(double offset)
+{
+  Random random(102, 0);
+  const Matrix3Xd target = waves(random, 6000, 0.25);
+  Matrix3Xd source = waves(random, 800, 0.1);
+  source.row(0).array() += offset;
+  return {source, target, Vector6d(0.1, 0.02, 0.02, 0.05, 0.05, 0.05)};
+}
 
 TEST(CalibratedEstimate, ASingleStartIsFollowedAlone)
 {
-  const Waves waves(0.0);
+  const test::Problem problem = wavesMovedBy(0.0);
   for (const int shift : {-1, 0, 1, 2}) {
     Isometry3d start = Isometry3d::Identity();
-    start.translation().x() = shift * Waves::wavelength + 0.003;
-    const CalibratedEstimate e =
-        estimateCalibrated(*waves.scorer, *waves.prior, EstimateOptions(), &start);
+    start.translation().x() = shift * wavelength + 0.003;
+    const CalibratedEstimate e = problem.estimate({}, &start);
     // In its valley; patches are half a wavelength wide.
-    EXPECT_NEAR(
-        e.mode.translation().x(), shift * Waves::wavelength, 0.1 * Waves::wavelength)
+    EXPECT_NEAR(e.mode.translation().x(), shift * wavelength, 0.1 * wavelength)
         << shift;
   }
 }
@@ -320,11 +281,10 @@ TEST(CalibratedEstimate, ASingleStartIsFollowedAlone)
 TEST(CalibratedEstimate, StartsThatEndApartAreTold)
 {
   // Half-way between two valleys, which the starts choose between.
-  const Waves waves(0.5 * Waves::wavelength);
-  const CalibratedEstimate e = estimateCalibrated(*waves.scorer, *waves.prior);
-  constexpr double tolerance = 0.1 * Waves::wavelength;
-  EXPECT_NEAR(std::abs(e.mode.translation().x()), 0.5 * Waves::wavelength, tolerance);
-  EXPECT_NEAR(std::abs(e.other_end[0]), Waves::wavelength, tolerance);
+  const CalibratedEstimate e = wavesMovedBy(0.5 * wavelength).estimate();
+  constexpr double tolerance = 0.1 * wavelength;
+  EXPECT_NEAR(std::abs(e.mode.translation().x()), 0.5 * wavelength, tolerance);
+  EXPECT_NEAR(std::abs(e.other_end[0]), wavelength, tolerance);
 }
 
 } // namespace

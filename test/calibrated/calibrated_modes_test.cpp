@@ -1,15 +1,15 @@
 // Further modes of preset `calibrated`: a cube, whose sides look alike, scanned from
 // all sides.
+#include "calibrated/calibration_test_support.h"
 #include "calibrated/modes/calibrated_modes.h"
 #include "calibrated/modes/mode_weights.h"
 #include "calibrated/modes/robust_mode.h"
+#include "support/test_support.h"
 
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -100,8 +100,7 @@ template <typename Surface>
 Clouds
 cloudsOf(const Surface& surface, double true_yaw)
 {
-  Vector6d truth;
-  truth << 0.01, -0.02, 0.01, 0.03, -0.02, true_yaw;
+  const Vector6d truth(0.01, -0.02, 0.01, 0.03, -0.02, true_yaw);
   Clouds clouds;
   clouds.truth = isometryOf(truth);
   clouds.target = sampled(surface, 12000, 1);
@@ -109,20 +108,24 @@ cloudsOf(const Surface& surface, double true_yaw)
   return clouds;
 }
 
-Prior
-priorWith(double yaw_sd, const Eigen::Vector3d& centroid)
+Vector6d
+deviationsWith(double yaw_sd)
 {
-  Vector6d sd;
-  sd << 0.03, 0.03, 0.03, 0.06, 0.06, yaw_sd;
-  return Prior(Vector6d::Zero(), sd.cwiseAbs2(), centroid);
+  return {0.03, 0.03, 0.03, 0.06, 0.06, yaw_sd};
 }
 
-/** Mahalanobis^2 of the truth. */
-double
-distanceOfTruth(const CalibratedEstimate& e, const Eigen::Isometry3d& truth)
+test::Problem
+problemOf(const Clouds& clouds, double yaw_sd)
 {
-  const Vector6d error = twistBetween(e.mode, truth, e.centre) - e.mean;
-  return error.dot(e.covariance.ldlt().solve(error));
+  return {clouds.source, clouds.target, deviationsWith(yaw_sd)};
+}
+
+/** Squared distance of the true pose from the mean, in standard deviations. */
+double
+squaredErrorOf(const CalibratedEstimate& e, const Eigen::Isometry3d& truth)
+{
+  return test::squaredError(twistBetween(e.mode, truth, e.centre) - e.mean,
+                            e.covariance);
 }
 
 /** A fit whose points have these residuals; the last \p num_unseen have no patch. */
@@ -173,23 +176,22 @@ TEST(RelativeCost, AFitOfFewerPointsMakesNoOtherClearlyWorse)
 TEST(RobustFit, StaysWhereItIsHeldAndFitsTheRest)
 {
   const Clouds clouds = cloudsOf(onMug, 0.0);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
+  const test::Problem problem = problemOf(clouds, 0.5);
   Vector6d wrong = Vector6d::Zero();
   wrong[2] = 0.01; // Along the axis, which the ends would find.
-  const Eigen::Vector3d centre = clouds.truth * scorer.centroid();
+  const Eigen::Vector3d centre = clouds.truth * problem.scorer.centroid();
   const Eigen::Isometry3d start = movedBy(wrong, centre, clouds.truth);
-  const Prior prior = priorWith(0.5, scorer.centroid());
   RobustFitOptions options;
   options.tolerance = 1e-6;
-  const auto offTruth = [&](const RobustFit& fit) {
+  const auto offTruth = [&] {
+    const RobustFit fit = fitRobustly(problem.scorer, problem.prior, start, options);
     return Vector6d(twistBetween(clouds.truth, fit.pose, centre));
   };
-  const Vector6d free = offTruth(fitRobustly(scorer, prior, start, options));
+  const Vector6d free = offTruth();
   EXPECT_LT(std::abs(free[2]), 0.001);
   constexpr double tolerance = 1e-5;
   options.hold(2, 2) = 1.0 / (tolerance * tolerance);
-  const Vector6d held = offTruth(fitRobustly(scorer, prior, start, options));
+  const Vector6d held = offTruth();
   EXPECT_NEAR(held[2], wrong[2], 10 * tolerance);
   EXPECT_LT(held.head<2>().norm(), 0.002);
 }
@@ -197,12 +199,10 @@ TEST(RobustFit, StaysWhereItIsHeldAndFitsTheRest)
 TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
 {
   const Clouds clouds = cloudsOf(onCube, 1.3);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  const Prior prior = priorWith(1.0, scorer.centroid());
-  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
-  ASSERT_TRUE(mayHaveSeveralModes(scorer, prior, first));
-  const ModeSearch search = findModes(scorer, prior, first);
+  const test::Problem problem = problemOf(clouds, 1.0);
+  const CalibratedEstimate first = problem.estimate();
+  ASSERT_TRUE(mayHaveSeveralModes(problem.scorer, problem.prior, first));
+  const ModeSearch search = findModes(problem.scorer, problem.prior, first);
   ASSERT_GE(search.modes.size(), 3u);
   // 16 starts and 15 hops of 300 points and at most 21 evaluations, half of the points
   // 20 more times, and an estimate for each mode.
@@ -216,13 +216,16 @@ TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
     const double turns = apart.tail<3>().norm() / quarter_turn;
     EXPECT_NEAR(turns, std::round(turns), 0.05);
     least_distance =
-        std::min(least_distance, distanceOfTruth(mode.estimate, clouds.truth));
+        std::min(least_distance, squaredErrorOf(mode.estimate, clouds.truth));
   }
   EXPECT_LE(search.num_queries, num_queries);
-  EXPECT_LT(least_distance, 22.5); // exceeded with a probability of 0.1 %
+  EXPECT_LT(least_distance, test::chi_square_999);
 
-  const ChainSet set = sampleCalibrated(
-      scoresOf(scorer), prior, search.modes, CalibratedOptions(), ChainOptions());
+  const ChainSet set = sampleCalibrated(scoresOf(problem.scorer),
+                                        problem.prior,
+                                        search.modes,
+                                        CalibratedOptions(),
+                                        ChainOptions());
   ASSERT_GE(set.modes.size(), 2u);
   ASSERT_EQ(set.chains.size(), 4 * set.modes.size());
   double sum = 0.0;
@@ -241,29 +244,27 @@ TEST(CalibratedModes, OfACubeAreAQuarterTurnApart)
 TEST(CalibratedModes, ThereIsOneOfACanHoweverItTurns)
 {
   const Clouds clouds = cloudsOf(onCan, 1.3);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  const Prior prior = priorWith(1.0, scorer.centroid());
-  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
-  const ModeSearch search = findModes(scorer, prior, first);
-  EXPECT_EQ(search.modes.size(), 1u);
-  EXPECT_FALSE(mayHaveSeveralModes(scorer, priorWith(0.19, scorer.centroid()), first));
+  const test::Problem problem = problemOf(clouds, 1.0);
+  const Prior narrow(
+      Vector6d::Zero(), deviationsWith(0.19).cwiseAbs2(), problem.scorer.centroid());
+  const CalibratedEstimate first = problem.estimate();
+  EXPECT_EQ(findModes(problem.scorer, problem.prior, first).modes.size(), 1u);
+  EXPECT_FALSE(mayHaveSeveralModes(problem.scorer, narrow, first));
 }
 
 TEST(CalibratedModes, AHandleOutweighsAFreeYaw)
 {
   const Clouds clouds = cloudsOf(onMug, 0.3);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  const Prior prior = priorWith(0.35, scorer.centroid());
-  const CalibratedEstimate first = estimateCalibrated(scorer, prior);
+  const test::Problem problem = problemOf(clouds, 0.35);
+  const CalibratedEstimate first = problem.estimate();
   std::size_t num_modes = 0;
   ModeSearchOptions options;
   for (options.seed = 1; options.seed <= 4; ++options.seed) {
-    const ModeSearch search = findModes(scorer, prior, first, options);
+    const ModeSearch search = findModes(problem.scorer, problem.prior, first, options);
     num_modes = std::max(num_modes, search.modes.size());
     EXPECT_GT(search.modes.front().estimate.keep.minCoeff(), 0.0);
-    EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+    EXPECT_LT(squaredErrorOf(search.modes.front().estimate, clouds.truth),
+              test::chi_square_999);
   }
   EXPECT_GT(num_modes, 1u);
 }
@@ -271,34 +272,30 @@ TEST(CalibratedModes, AHandleOutweighsAFreeYaw)
 TEST(CalibratedModes, AFirstEstimateThatWentAstrayHidesNone)
 {
   const Clouds clouds = cloudsOf(onMug, 0.3);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  const Prior prior = priorWith(0.35, scorer.centroid());
+  const test::Problem problem = problemOf(clouds, 0.35);
   // It leaves all motions to the prior, so each pose may be the same mode.
-  CalibratedEstimate astray = estimateCalibrated(scorer, prior);
+  CalibratedEstimate astray = problem.estimate();
   astray.mode.translation().x() += 0.3;
   astray.keep.setZero();
-  const ModeSearch search = findModes(scorer, prior, astray);
+  const ModeSearch search = findModes(problem.scorer, problem.prior, astray);
   ASSERT_FALSE(search.modes.empty());
-  EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+  EXPECT_LT(squaredErrorOf(search.modes.front().estimate, clouds.truth),
+            test::chi_square_999);
 }
 
 TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
 {
   const Clouds clouds = cloudsOf(onStairs, 0.3);
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  const Prior prior(
-      Vector6d::Zero(), Vector6d::Constant(0.6).cwiseAbs2(), scorer.centroid());
+  const test::Problem problem(clouds.source, clouds.target, Vector6d::Constant(0.6));
   const Eigen::Isometry3d slipped =
       Eigen::Translation3d(step_run, 0.0, step_rise) * clouds.truth;
-  const CalibratedEstimate first =
-      estimateCalibrated(scorer, prior, EstimateOptions(), &slipped);
-  ASSERT_GT(distanceOfTruth(first, clouds.truth), 1000.0);
+  const CalibratedEstimate first = problem.estimate({}, &slipped);
+  ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
   ModeSearchOptions only_hops;
   only_hops.num_starts = 0;
-  const ModeSearch search = findModes(scorer, prior, first, only_hops);
-  EXPECT_LT(distanceOfTruth(search.modes.front().estimate, clouds.truth), 22.5);
+  const ModeSearch search = findModes(problem.scorer, problem.prior, first, only_hops);
+  EXPECT_LT(squaredErrorOf(search.modes.front().estimate, clouds.truth),
+            test::chi_square_999);
 }
 
 class ModeWeights : public testing::Test {
@@ -320,15 +317,12 @@ protected:
     auto& scores = modes[1].estimate.scores;
     std::fill(scores.has_patch.begin(), scores.has_patch.begin() + num_missing, false);
     scores.off_continuation.head(num_missing).setConstant(off_continuation);
-    weighModes(prior_, region_of_cloud, modes);
+    weighModes(problem_.prior, region_of_cloud, modes);
     return modes[0].log_weight - modes[1].log_weight;
   }
 
-  const Clouds clouds_ = cloudsOf(onCube, 0.3);
-  const SurfaceModel model_{clouds_.target};
-  const SurfaceScorer scorer_{clouds_.source, model_};
-  const Prior prior_ = priorWith(0.35, scorer_.centroid());
-  const CalibratedEstimate estimate_ = estimateCalibrated(scorer_, prior_);
+  const test::Problem problem_ = problemOf(cloudsOf(onCube, 0.3), 0.35);
+  const CalibratedEstimate estimate_ = problem_.estimate();
 };
 
 TEST_F(ModeWeights, RegionsThatMeetNoTargetCountAsFarAsTheyAreMany)
@@ -365,9 +359,8 @@ TEST(CalibratedModes, ThereIsOneAlsoOfCloudsThatDoNotMeet)
 {
   Clouds clouds = cloudsOf(onCube, 0.0);
   clouds.source.row(0).array() += 50.0;
-  const SurfaceModel model(clouds.target);
-  const SurfaceScorer scorer(clouds.source, model);
-  EXPECT_EQ(calibratedModes(scorer, priorWith(0.35, scorer.centroid())).size(), 1u);
+  const test::Problem problem = problemOf(clouds, 0.35);
+  EXPECT_EQ(calibratedModes(problem.scorer, problem.prior).size(), 1u);
 }
 
 PosteriorEstimate
@@ -375,7 +368,7 @@ estimateFrom(const Clouds& clouds, double yaw_sd)
 {
   Options options;
   options.preset = Preset::Calibrated;
-  options.prior.variance = priorWith(yaw_sd, Eigen::Vector3d::Zero()).variance();
+  options.prior.variance = deviationsWith(yaw_sd).cwiseAbs2();
   options.prior.frame = PriorFrame::SourceCentroid;
   return estimatePosterior(clouds.source, clouds.target, Vector6d::Zero(), options);
 }

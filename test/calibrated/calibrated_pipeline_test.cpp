@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -21,29 +20,17 @@ namespace {
 
 constexpr double noise = 0.003;
 
-/** A wavy surface of 1 x 0.6 m scanned twice, with noise. */
+Eigen::Matrix3Xd
+surface(std::uint64_t seed, Eigen::Index num_points)
+{
+  return test::wavySurface(seed, num_points, 0.05, noise);
+}
+
+/** A surface scanned twice. */
 struct Scans {
-  Eigen::Matrix3Xd source;
-  Eigen::Matrix3Xd target;
-  Vector6d truth;
-
-  explicit Scans(const Eigen::Matrix3Xd& points = surface(91, 1500)) : source(points)
-  {
-    truth << 0.01, -0.02, 0.015, 0.02, -0.03, 0.025;
-    movePoints(truth, surface(92, 6000), target);
-  }
-
-  static Eigen::Matrix3Xd
-  surface(std::uint64_t seed, Eigen::Index num_points)
-  {
-    Random random(seed, 0);
-    Eigen::Matrix3Xd points = test::randomPoints(random, num_points);
-    for (Eigen::Index i = 0; i < num_points; ++i)
-      points(2, i) =
-          0.05 * std::sin(9.0 * points(0, i)) * std::cos(8.0 * points(1, i)) +
-          noise * random.normal();
-    return points;
-  }
+  Vector6d truth{0.01, -0.02, 0.015, 0.02, -0.03, 0.025};
+  Eigen::Matrix3Xd source = surface(91, 1500);
+  Eigen::Matrix3Xd target = test::moved(truth, surface(92, 6000));
 };
 
 Options
@@ -51,7 +38,7 @@ calibratedOptions()
 {
   Options options;
   options.preset = Preset::Calibrated;
-  options.prior.variance << 0.01, 0.01, 0.01, 0.01, 0.01, 0.01;
+  options.prior.variance.setConstant(0.01);
   options.prior.frame = PriorFrame::SourceCentroid;
   return options;
 }
@@ -65,17 +52,14 @@ estimateFrom(const Scans& scans, const Options& options = calibratedOptions())
 TEST(Calibrated, APreparedCloudIsForManySourcesPresetsAndThreads)
 {
   const Scans scans;
-  const Scans other_scans{Scans::surface(93, 1400)};
+  Scans other_scans;
+  other_scans.source = surface(93, 1400);
   Options exact = calibratedOptions();
   exact.preset = Preset::Exact;
   exact.chains.num_draws = 40;
   const PoseMatrix expected = estimateFrom(scans).samples;
-  const PoseMatrix of_other =
-      estimatePosterior(
-          other_scans.source, scans.target, Vector6d::Zero(), calibratedOptions())
-          .samples;
-  const PoseMatrix of_exact =
-      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), exact).samples;
+  const PoseMatrix of_other = estimateFrom(other_scans).samples;
+  const PoseMatrix of_exact = estimateFrom(scans, exact).samples;
   ASSERT_GT(of_exact.rows(), 0);
 
   const PreparedCloud target(scans.target);
@@ -98,7 +82,7 @@ TEST(Calibrated, APreparedCloudIsForManySourcesPresetsAndThreads)
 TEST(Calibrated, ThePreparedSourceIsTheNextTarget)
 {
   const Scans scans;
-  const Eigen::Matrix3Xd next = Scans::surface(93, 1400);
+  const Eigen::Matrix3Xd next = surface(93, 1400);
   const Options options = calibratedOptions();
   const PreparedCloud source(scans.source);
   const auto drawsOf = [&](const PreparedCloud& from, const PreparedCloud& to) {
@@ -111,16 +95,13 @@ TEST(Calibrated, ThePreparedSourceIsTheNextTarget)
 TEST(Calibrated, FindsPoseNoiseAndSixObservedDirections)
 {
   // With 1500 points one direction is weak in a fifth of the runs, by chance.
-  const Scans scans(Scans::surface(91, 2000));
+  Scans scans;
+  scans.source = surface(91, 2000);
   const PosteriorEstimate estimate = estimateFrom(scans);
   const Summary& summary = estimate.summary;
   ASSERT_EQ(summary.status, Status::Ok) << summary.message;
   EXPECT_EQ(estimate.samples.rows(), 2000);
-  const Matrix6d& covariance = summary.covariance(CovarianceConvention::R3xSO3);
-  const Vector6d error =
-      poseError(scans.truth, summary.mean, CovarianceConvention::R3xSO3);
-  // chi^2_6 exceeds 27.9 once in 10 000.
-  EXPECT_LT(error.dot(covariance.inverse() * error), 27.9);
+  EXPECT_LT(test::squaredErrorOf(summary, scans.truth), test::chi_square_9999);
   const DataReport& data = summary.data;
   ASSERT_TRUE(data.is_available);
   EXPECT_FALSE(data.flags.any());
@@ -193,29 +174,19 @@ struct Places {
 Places
 placesOf(const Eigen::Matrix3Xd& points, const PosteriorEstimate& estimate)
 {
-  Eigen::Matrix3Xd at_mean, place, sum = Eigen::Matrix3Xd::Zero(3, points.cols());
-  movePoints(estimate.summary.mean, points, at_mean);
+  const Eigen::Matrix3Xd at_mean = test::moved(estimate.summary.mean, points);
+  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, points.cols());
   double sum_of_squares = 0.0;
   for (const auto& draw : estimate.samples.rowwise()) {
-    movePoints(draw.transpose(), points, place);
-    sum += place - at_mean;
-    sum_of_squares += (place - at_mean).squaredNorm();
+    const Eigen::Matrix3Xd offsets = test::moved(draw.transpose(), points) - at_mean;
+    sum += offsets;
+    sum_of_squares += offsets.squaredNorm();
   }
   const auto num_draws = static_cast<double>(estimate.samples.rows());
   const auto num_points = static_cast<double>(points.cols());
   const double squared_offset = (sum / num_draws).squaredNorm() / num_points;
   return {std::sqrt(sum_of_squares / (num_draws * num_points) - squared_offset),
           std::sqrt(squared_offset)};
-}
-
-/** Squared distance of the truth from the mean, in standard deviations. */
-double
-squaredErrorOf(const Vector6d& truth,
-               const Summary& summary,
-               CovarianceConvention convention)
-{
-  const Vector6d error = poseError(truth, summary.mean, convention);
-  return error.dot(summary.covariance(convention).ldlt().solve(error));
 }
 
 TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
@@ -234,11 +205,12 @@ TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
   EXPECT_LT(places.offset, 0.01 * places.spread);
   for (const auto convention :
        {CovarianceConvention::LeftSE3, CovarianceConvention::RightSE3}) {
-    const double near_error = squaredErrorOf(truth_here, here.summary, convention);
+    const double near_error =
+        test::squaredErrorOf(here.summary, truth_here, convention);
     // Four standard errors of a quadratic form of a mean and a covariance of at least
     // 400 independent draws, twice.
     EXPECT_NEAR(
-        squaredErrorOf(scans.truth, there.summary, convention),
+        test::squaredErrorOf(there.summary, scans.truth, convention),
         near_error,
         4.0 *
             std::sqrt(2.0 * (2.0 * near_error * near_error + 4.0 * near_error) / 400.0))
@@ -255,7 +227,7 @@ TEST(Calibrated, PointsBesideTheSurfaceMakeItDoubtful)
   source.leftCols(num_points) = scans.source;
   for (int k = 1; k < 4; ++k) {
     source.middleCols(k * num_points, num_points) =
-        Scans::surface(93 + static_cast<std::uint64_t>(k), num_points);
+        surface(93 + static_cast<std::uint64_t>(k), num_points);
     source.row(0).segment(k * num_points, num_points).array() += 3.0 * k;
   }
   scans.source = source;
@@ -293,21 +265,22 @@ TEST(Calibrated, ASearchInPlaceOfTheTargetsPointsIsRefused)
 TEST(Calibrated, CloudsThatCannotDoAreAStatus)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Scans scans;
-  Scans bad = scans;
-  bad.source = scans.source.leftCols(29).eval();
-  expectFailure(estimateFrom(bad), Status::InvalidInput, "source has 29");
-  bad.source.resize(3, 0);
-  expectFailure(estimateFrom(bad), Status::InvalidInput, "source has 0");
-  bad = scans;
-  bad.source(0, 0) = nan;
-  expectFailure(estimateFrom(bad), Status::InvalidInput, "non-finite");
-  bad = scans;
-  bad.target.row(1).tail(bad.target.cols() - 20).setConstant(nan);
-  expectFailure(estimateFrom(bad), Status::InvalidInput, "target has 20");
-  bad = scans;
-  bad.target.colwise() = Eigen::Vector3d(0.1, 0.2, 0.3);
-  expectFailure(estimateFrom(bad), Status::TooFewCorrespondences, "surface");
+  const auto expect = [](Status status, const char* word, const auto& spoil) {
+    Scans scans;
+    spoil(scans);
+    expectFailure(estimateFrom(scans), status, word);
+  };
+  expect(Status::InvalidInput, "source has 29", [](Scans& scans) {
+    scans.source = surface(91, 29);
+  });
+  expect(Status::InvalidInput, "source has 0", [](Scans& s) { s.source.resize(3, 0); });
+  expect(Status::InvalidInput, "non-finite", [&](Scans& s) { s.source(0, 0) = nan; });
+  expect(Status::InvalidInput, "target has 20", [&](Scans& scans) {
+    scans.target.row(1).tail(scans.target.cols() - 20).setConstant(nan);
+  });
+  expect(Status::TooFewCorrespondences, "surface", [](Scans& scans) {
+    scans.target.colwise() = Eigen::Vector3d(0.1, 0.2, 0.3);
+  });
 }
 
 TEST(Calibrated, CanBeCancelledBeforeTheEstimateAndWhileDrawing)

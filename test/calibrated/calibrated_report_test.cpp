@@ -1,5 +1,6 @@
 // The report of a calibrated estimate: numbers, directions, flags and their thresholds.
 #include "calibrated/calibrated_report.h"
+#include "support/test_support.h"
 
 #include <bayesian_icp/random.h>
 
@@ -43,8 +44,7 @@ diagonalEstimate()
   estimate.scores.num_active_of_source = 90;
   estimate.scores.num_source_points = 100;
   estimate.keep << 1.0, 0.9, 0.4, 0.0, 1.0, 0.5;
-  Vector6d relative_information;
-  relative_information << 99.0, 24.0, 3.0, 0.0, 399.0, 8.0;
+  const Vector6d relative_information(99.0, 24.0, 3.0, 0.0, 399.0, 8.0);
   estimate.prior.precision = Vector6d::Constant(4.0).asDiagonal();
   const Vector6d information = 4.0 * relative_information;
   estimate.information = information.asDiagonal();
@@ -125,12 +125,8 @@ TEST(Report, DirectionsAreIndependentInPosteriorAndPrior)
   // Neither the information nor the prior nor the metric is diagonal; the data say
   // nothing along two oblique twists.
   Random random(9, 0);
-  Matrix6d A, B, C;
-  for (int k = 0; k < 6; ++k) {
-    A.col(k) = random.normal6();
-    B.col(k) = random.normal6();
-    C.col(k) = random.normal6();
-  }
+  const Matrix6d A = test::randomSquare(random), B = test::randomSquare(random),
+                 C = test::randomSquare(random);
   CalibratedEstimate estimate = diagonalEstimate();
   estimate.prior.precision = B * B.transpose() + Matrix6d::Identity();
   estimate.displacement_metric = C * C.transpose() + Matrix6d::Identity();

@@ -49,16 +49,13 @@ struct StandIn {
   static Vector6d
   directionLengths()
   {
-    Vector6d lengths;
-    lengths << 1.0, 1.0, 1.0, 10.0, 10.0, 10.0;
-    return lengths;
+    return {1.0, 1.0, 1.0, 10.0, 10.0, 10.0};
   }
 
   static Eigen::Isometry3d
   mode()
   {
-    Vector6d pose;
-    pose << 0.4, -0.3, 0.8, 0.1, -0.2, 0.5;
+    const Vector6d pose(0.4, -0.3, 0.8, 0.1, -0.2, 0.5);
     return isometryOf(pose);
   }
 

@@ -1,6 +1,8 @@
-// Shared by the tests of the calibration: points of known surfaces with known noise.
+// Shared by the tests of the calibration: points of known surfaces with known noise,
+// and their registration.
 #pragma once
 
+#include "calibrated/calibrated_estimate.h"
 #include "calibrated/score/surface_score.h"
 
 #include <bayesian_icp/random.h>
@@ -10,6 +12,44 @@
 
 namespace bayesian_icp {
 namespace test {
+
+/** A source on a target [m], and a prior about the identity. It stays where it is: the
+ * scorer refers to the model. */
+struct Problem {
+  /** \param[in] deviations of the prior, about the source's centroid [m, rad] */
+  Problem(const Eigen::Matrix3Xd& source,
+          const Eigen::Matrix3Xd& target,
+          const Vector6d& deviations)
+  : model(target)
+  , scorer(source, model)
+  , prior(Vector6d::Zero(), deviations.cwiseAbs2(), scorer.centroid())
+  {}
+  Problem(const Problem&) = delete;
+
+  CalibratedEstimate
+  estimate(const EstimateOptions& options = EstimateOptions(),
+           const Eigen::Isometry3d* start = nullptr) const
+  {
+    return estimateCalibrated(scorer, prior, options, start);
+  }
+
+  SurfaceModel model;
+  SurfaceScorer scorer;
+  Prior prior;
+};
+
+/** Of a scorer without hints, with twists about \p centre. */
+inline SurfaceScores
+scoresAt(const SurfaceScorer& scorer,
+         const Eigen::Isometry3d& pose,
+         const Eigen::Vector3d& centre,
+         double scale)
+{
+  PatchHints hints;
+  SurfaceScores scores;
+  scorer.evaluate(pose, centre, scale, hints, scores);
+  return scores;
+}
 
 /** Points of a surface and its unit normals there, one a column [m]. */
 struct Sheet {

@@ -2,6 +2,7 @@
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/curvature/curvature.h"
 #include "calibrated/modes/robust_mode.h"
+#include "support/test_support.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,6 @@
 #include <Eigen/LU>
 
 #include <cmath>
-#include <memory>
 
 namespace bayesian_icp {
 namespace {
@@ -21,14 +21,7 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-Matrix6d
-randomSquare(Random& random)
-{
-  Matrix6d matrix;
-  for (int k = 0; k < 6; ++k)
-    matrix.col(k) = random.normal6();
-  return matrix;
-}
+using test::randomSquare;
 
 TEST(NoiseThreshold, IsExceededByOneInAThousand)
 {
@@ -143,28 +136,6 @@ TEST(NoiseDebit, LeavesWhatThePriorKnowsBetterToThePrior)
 
 // ---- H on an exact target, against many noisy scans of it ----
 
-/** An exact box, and source points on it whose noise is drawn anew. */
-struct ExactScene {
-  ExactScene()
-  {
-    Random random(93, 0);
-    const Vector3d half(0.1, 0.08, 0.06);
-    model = std::make_unique<SurfaceModel>(test::box(random, 6000, half).points);
-    // Away from the edges, where the nearest patch is on the point's own face.
-    truth = std::make_unique<test::Sheet>(test::box(random, 500, half, 0.03));
-  }
-
-  Matrix3Xd
-  scan(Random& random) const
-  {
-    return test::noisy(*truth, sigma, random);
-  }
-
-  static constexpr double sigma = 0.001;
-  std::unique_ptr<SurfaceModel> model;
-  std::unique_ptr<test::Sheet> truth;
-};
-
 /** E (psi(z + shift) - psi(z - shift)) / 2 of Tukey's psi for a standard normal z, by
  * the trapezoidal rule. */
 double
@@ -184,25 +155,27 @@ expectedDifference(double shift)
 TEST(Secants, AreTheSlopeOfMeanScoresOverManyScans)
 {
   constexpr int num_scans = 60;
-  const ExactScene scene;
-  Random random(94, 0);
+  constexpr double sigma = 0.001;
+  // An exact box, and source points on it whose noise is drawn anew: away from the
+  // edges, where the nearest patch is on the point's own face.
+  Random of_scene(93, 0), random(94, 0);
+  const Vector3d half(0.1, 0.08, 0.06);
+  const SurfaceModel model(test::box(of_scene, 6000, half).points);
+  const test::Sheet sheet = test::box(of_scene, 500, half, 0.03);
   const Isometry3d truth = Isometry3d::Identity();
-  const Vector3d centre = scene.truth->points.rowwise().mean();
+  const Vector3d centre = sheet.points.rowwise().mean();
   // Residuals are in units of the target's noise, of which there is hardly any.
-  const double tau = ExactScene::sigma / scene.model->medianSigma();
-  const Matrix6Xd jacobians =
-      test::distanceJacobians(*scene.truth) / scene.model->medianSigma();
+  const double tau = sigma / model.medianSigma();
+  const Matrix6Xd jacobians = test::distanceJacobians(sheet) / model.medianSigma();
   const Matrix6d gauss_newton = jacobians * jacobians.transpose();
 
-  const SurfaceScorer scorer(scene.scan(random), *scene.model);
-  PatchHints hints;
-  SurfaceScores at_mode;
-  scorer.evaluate(truth, centre, tau, hints, at_mode);
+  const SurfaceScorer scorer(test::noisy(sheet, sigma, random), model);
+  const SurfaceScores at_mode = test::scoresAt(scorer, truth, centre, tau);
   ASSERT_GT(at_mode.num_active, 450);
   const SecantPlan plan = {(gauss_newton / (tau * tau)).inverse(),
                            displacementMetric(scorer, truth),
                            1e-6 * Matrix6d::Identity(),
-                           ExactScene::sigma};
+                           sigma};
   const Secants secants = measureSecants(scorer, truth, at_mode, tau, plan);
 
   // Slopes along the same steps, over scans that the secants have not seen.
@@ -210,14 +183,13 @@ TEST(Secants, AreTheSlopeOfMeanScoresOverManyScans)
   std::vector<Matrix6d> slopes;
   Matrix6d mean = Matrix6d::Zero(), variance = Matrix6d::Zero();
   for (int scan = 0; scan < num_scans; ++scan) {
-    const SurfaceScorer other(scene.scan(random), *scene.model);
+    const SurfaceScorer other(test::noisy(sheet, sigma, random), model);
+    const auto totalAfter = [&](const Vector6d& step) {
+      return test::scoresAt(other, movedBy(step, centre, truth), centre, tau).total;
+    };
     Matrix6d differences;
-    for (int k = 0; k < 6; ++k) {
-      SurfaceScores forward, backward;
-      other.evaluate(movedBy(V.col(k), centre, truth), centre, tau, hints, forward);
-      other.evaluate(movedBy(-V.col(k), centre, truth), centre, tau, hints, backward);
-      differences.col(k) = 0.5 * (forward.total - backward.total);
-    }
+    for (int k = 0; k < 6; ++k)
+      differences.col(k) = 0.5 * (totalAfter(V.col(k)) - totalAfter(-V.col(k)));
     const Matrix6d products = V.transpose() * differences;
     slopes.push_back(0.5 * (products + products.transpose()));
     mean += slopes.back() / num_scans;
@@ -253,17 +225,15 @@ TEST(Secants, AreTheSlopeOfMeanScoresOverManyScans)
 TEST(Curvature, APlaneLeavesThreeMotionsToThePrior)
 {
   constexpr double sigma = 0.001;
-  Vector6d sd;
-  sd << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
+  const Vector6d sd(0.02, 0.02, 0.02, 0.05, 0.05, 0.05);
   for (std::uint64_t stream = 0; stream < 6; ++stream) {
     SCOPED_TRACE(stream);
     Random random(95, stream);
-    const SurfaceModel model(
-        test::noisy(test::squarePlane(random, 3000, 0.3), sigma, random));
-    const SurfaceScorer scorer(
-        test::noisy(test::squarePlane(random, 600, 0.15), sigma, random), model);
-    const Prior prior(Vector6d::Zero(), sd.cwiseAbs2(), scorer.centroid());
-    const CalibratedEstimate e = estimateCalibrated(scorer, prior);
+    const Matrix3Xd target =
+        test::noisy(test::squarePlane(random, 3000, 0.3), sigma, random);
+    const Matrix3Xd source =
+        test::noisy(test::squarePlane(random, 600, 0.15), sigma, random);
+    const CalibratedEstimate e = test::Problem(source, target, sd).estimate();
     int num_prior_only = 0;
     for (int k = 0; k < 6; ++k) {
       const Vector6d direction = e.directions.col(k);

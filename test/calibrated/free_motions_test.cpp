@@ -1,6 +1,7 @@
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/free_motions.h"
 #include "calibrated/modes/robust_mode.h"
+#include "support/test_support.h"
 
 #include <gtest/gtest.h>
 
@@ -35,11 +36,11 @@ barWithoutEnds(Random& random, Index num_points, double half_length)
 
 /** A part of a bar on the bar, at the true pose, where the motion along the bar is
  * free: the last direction, which turns about z on its way. */
-struct Bar {
+struct Bar : test::Problem {
   Bar(const test::Sheet& target, const test::Sheet& source, Random& random)
-  : model(test::noisy(target, bar_noise, random))
-  , scorer(test::noisy(source, bar_noise, random), model)
-  , prior(Vector6d::Zero(), Vector6d::Constant(0.01), scorer.centroid())
+  : Problem{test::noisy(source, bar_noise, random),
+            test::noisy(target, bar_noise, random),
+            Vector6d::Constant(0.1)}
   {
     estimate.centre = scorer.centroid();
     estimate.displacement_metric = displacementMetric(scorer, estimate.mode);
@@ -57,22 +58,15 @@ struct Bar {
   double
   misfit() const
   {
-    PatchHints hints;
-    SurfaceScores scores;
-    scorer.evaluate(estimate.mode,
-                    estimate.centre,
-                    std::numeric_limits<double>::infinity(),
-                    hints,
-                    scores);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const SurfaceScores scores =
+        test::scoresAt(scorer, estimate.mode, estimate.centre, infinity);
     return contactsOf(cappedResiduals(scores)).misfit;
   }
 
   /** [rad / m] */
   static constexpr double tilt = 0.3;
 
-  SurfaceModel model;
-  SurfaceScorer scorer;
-  Prior prior;
   CalibratedEstimate estimate;
 };
 
@@ -128,8 +122,7 @@ TEST(FreeMotions, AreHeldAloneByTheirPrecision)
 {
   Random random(113, 0);
   CalibratedEstimate e;
-  for (int k = 0; k < 6; ++k)
-    e.directions.col(k) = random.normal6();
+  e.directions = test::randomSquare(random);
   e.keep << 1.0, 0.5, 0.0, 1.0, 0.0, 0.1;
   constexpr double tolerance = 0.02;
   const Matrix6d hold = holdOfFree(e, tolerance);

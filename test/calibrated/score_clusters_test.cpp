@@ -1,5 +1,6 @@
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/score/score_clusters.h"
+#include "support/test_support.h"
 
 #include <gtest/gtest.h>
 
@@ -40,8 +41,7 @@ surfaces()
 Matrix6d
 priorPrecision()
 {
-  Vector6d sd;
-  sd << 0.02, 0.02, 0.02, 0.06, 0.06, 0.06;
+  const Vector6d sd(0.02, 0.02, 0.02, 0.06, 0.06, 0.06);
   return sd.cwiseAbs2().cwiseInverse().asDiagonal();
 }
 
@@ -82,6 +82,20 @@ correlatedNoise(const MatrixXd& K, Random& random)
   return std::sqrt(0.5) * (own + K * test::normals(random, K.cols()));
 }
 
+/** Mean of numbers and its standard error. */
+struct Mean {
+  double value, error;
+};
+
+Mean
+meanOf(const Eigen::ArrayXd& numbers)
+{
+  const double mean = numbers.mean();
+  return {mean,
+          std::sqrt((numbers - mean).square().sum()) /
+              static_cast<double>(numbers.size())};
+}
+
 /** Second moment of the total score at the true pose over many scans. */
 Matrix6d
 simulatedCovariance(const Matrix6Xd& jacobians, const MatrixXd& K, Random& random)
@@ -103,7 +117,7 @@ TEST(ScoreClusters, IndependentNoiseHasAFactorOfOne)
   constexpr int num_scans = 400;
   for (const NamedSheet& surface : surfaces()) {
     Random random(82, 0);
-    VectorXd kappa_inf(num_scans);
+    Eigen::ArrayXd kappa_inf(num_scans);
     double sum_48 = 0.0;
     for (int k = 0; k < num_scans; ++k) {
       const PointScores points = fittedScores(
@@ -112,9 +126,7 @@ TEST(ScoreClusters, IndependentNoiseHasAFactorOfOne)
       kappa_inf[k] = J.kappa_inf;
       sum_48 += J.kappa_48;
     }
-    const double mean = kappa_inf.mean();
-    const double error =
-        std::sqrt((kappa_inf.array() - mean).square().sum()) / num_scans;
+    const auto [mean, error] = meanOf(kappa_inf);
     RecordProperty(surface.name, std::to_string(mean));
     // That kappa_inf is at least 1 keeps its mean above. The requirement is 1.15; 1000
     // scans have 1.159, 1.130 and 1.111 on plane, sphere and box.
@@ -173,9 +185,7 @@ TEST(ScoreClusters, DoesNotDependOnUnitsOfTheTwists)
   const VectorXd u = correlatedNoise(smoothing(box.sheet.points, 0.004), random);
   const PointScores points = fittedScores(box.sheet, u, Matrix6d::Zero());
   PointScores other = points;
-  Matrix6d units = Matrix6d::Identity();
-  for (int k = 0; k < 6; ++k)
-    units.col(k) += 0.3 * random.normal6();
+  Matrix6d units = Matrix6d::Identity() + 0.3 * test::randomSquare(random);
   units.bottomRows<3>() *= 0.05;
   other.scores = units * points.scores;
   other.jacobians = units * points.jacobians;
@@ -192,9 +202,7 @@ TEST(ScoreClusters, WithoutAFitTheirCovarianceIsUnbiased)
   constexpr int num_scans = 200, num_clusters = 48;
   Random random(85, 0);
   const test::Sheet sheet = test::squarePlane(random, 480, 1.0);
-  Matrix6d root;
-  for (int k = 0; k < 6; ++k)
-    root.col(k) = random.normal6();
+  const Matrix6d root = test::randomSquare(random);
   const Matrix6d expected = 480.0 * root * root.transpose();
   const Matrix6d whitening = expected.llt().matrixL().solve(Matrix6d::Identity());
   ClusterOptions options;
@@ -233,19 +241,15 @@ TEST(ScoreClusters, ADirectionThatFewClustersHoldIsUnbiased)
   const Matrix6d working_information = truth + 5.0 * precision;
   Vector6d tilt = Vector6d::Zero();
   tilt[4] = 1.0;
-  double sum = 0.0, sum_of_squares = 0.0;
-  for (int k = 0; k < num_scans; ++k) {
+  Eigen::ArrayXd ratios(num_scans);
+  for (double& ratio : ratios) {
     const PointScores points =
         fittedScores(sheet, test::normals(random, num_points), precision);
     const Matrix6d J =
         clusteredCovariance(points, working_information, ClusterOptions());
-    const double ratio = tilt.dot(J * tilt) / tilt.dot(truth * tilt);
-    sum += ratio;
-    sum_of_squares += ratio * ratio;
+    ratio = tilt.dot(J * tilt) / tilt.dot(truth * tilt);
   }
-  const double mean = sum / num_scans;
-  const double error =
-      std::sqrt((sum_of_squares / num_scans - mean * mean) / num_scans);
+  const auto [mean, error] = meanOf(ratios);
   EXPECT_NEAR(mean, 1.0, 4.5 * error);
   // It would see through a bias: half a dozen clusters lose a sixth each.
   EXPECT_LT(4.5 * error, 0.15);
@@ -278,21 +282,18 @@ TEST(ScoreClusters, ShellsSeeTheOffsetsOfRings)
   shells.num_partitions = 1;
   shells.are_shells = true;
   Random random(88, 0);
-  double sum = 0.0, sum_of_squares = 0.0, sum_of_clusters = 0.0;
-  for (int k = 0; k < num_scans; ++k) {
+  double sum_of_clusters = 0.0;
+  Eigen::ArrayXd ratios(num_scans);
+  for (double& ratio : ratios) {
     const PointScores points =
         fittedScores(ground, correlatedNoise(offsets, random), precision);
-    const double ratio =
-        clusteredCovariance(points, working_information, shells)(2, 2) / truth;
-    sum += ratio;
-    sum_of_squares += ratio * ratio;
-    sum_of_clusters +=
-        clusteredCovariance(points, working_information, ClusterOptions())(2, 2) /
-        truth;
+    const auto varianceWith = [&](const ClusterOptions& options) {
+      return clusteredCovariance(points, working_information, options)(2, 2);
+    };
+    ratio = varianceWith(shells) / truth;
+    sum_of_clusters += varianceWith(ClusterOptions()) / truth;
   }
-  const double mean = sum / num_scans;
-  const double error =
-      std::sqrt((sum_of_squares / num_scans - mean * mean) / num_scans);
+  const auto [mean, error] = meanOf(ratios);
   EXPECT_NEAR(mean, 1.0, 4.5 * error);
   // Clusters of neighbours have pieces of rings.
   EXPECT_LT(sum_of_clusters / num_scans, 0.5);

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -260,31 +259,13 @@ TEST(SurfaceModel, PointsAtABorderHaveAPlaneAndNoQuadric)
   EXPECT_NEAR(model.spacing(), spacing, 0.01 * spacing);
 }
 
-/** A box with faces of its own noise. */
-struct NoisyBox {
-  explicit NoisyBox(std::uint64_t stream)
-  {
-    Random random(74, stream);
-    truth = std::make_unique<test::Sheet>(test::box(random, 6000, half()));
-    points = test::noisy(*truth, sigma, random);
-  }
-
-  static Vector3d
-  half()
-  {
-    return {0.1, 0.08, 0.06};
-  }
-
-  static constexpr double sigma = 0.0003;
-  std::unique_ptr<test::Sheet> truth;
-  Matrix3Xd points;
-};
-
 TEST(SurfaceModel, PointsAtACreaseTakeOverThePatchOfTheirFace)
 {
-  const NoisyBox box(0);
-  const SurfaceModel own(box.points, withoutTakeover());
-  const SurfaceModel model(box.points);
+  Random random(74, 0);
+  const Matrix3Xd box =
+      test::noisy(test::box(random, 6000, {0.1, 0.08, 0.06}), 0.0003, random);
+  const SurfaceModel own(box, withoutTakeover());
+  const SurfaceModel model(box);
   int num_taken = 0;
   for (std::size_t j = 0; j < model.patches().size(); ++j) {
     const SurfacePatch& patch = model.patches()[j];
@@ -515,8 +496,7 @@ TEST(SurfaceModel, AnExactPlaneIsFoundExactly)
 {
   constexpr Index side = 40;
   constexpr double spacing = 0.05;
-  Vector6d tilted;
-  tilted << 1.0, 2.0, 3.0, 0.4, -0.3, 0.7;
+  const Vector6d tilted(1.0, 2.0, 3.0, 0.4, -0.3, 0.7);
   const Matrix3Xd flat = test::gridPlane(side, spacing).points;
   const Matrix3Xd turned =
       (rotationOf(tilted) * flat).colwise() + Vector3d(tilted.head<3>());

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <memory>
+#include <numeric>
 
 namespace bayesian_icp {
 namespace {
@@ -16,6 +16,15 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/** Tukey's rho of a residual u at scale tau, whose derivative is psi(u). */
+double
+tukeyEnergy(double u, double tau)
+{
+  const double c = SurfaceScorer::tukey_constant * tau;
+  const double z = std::min(1.0, std::abs(u / c));
+  return c * c / 6.0 * (1.0 - std::pow(1.0 - z * z, 3));
+}
 
 /** A plane that every patch knows exactly, and points around it: some too far off it to
  * count, and some beyond its border. */
@@ -37,8 +46,7 @@ struct PlaneCase {
     points.col(33).y() -= 4.0;
     points.col(8).z() = 20.0 * tau * sigma;
     // Anywhere in the source frame.
-    Vector6d parameters;
-    parameters << 0.4, -0.2, 1.0, 0.5, -0.4, 2.0;
+    const Vector6d parameters(0.4, -0.2, 1.0, 0.5, -0.4, 2.0);
     pose = isometryOf(parameters);
     source = pose.inverse() * points;
   }
@@ -46,11 +54,34 @@ struct PlaneCase {
   SurfaceScores
   scoresAt(const Isometry3d& T_target_source, double scale) const
   {
-    const SurfaceScorer scorer(source, model);
-    PatchHints hints;
-    SurfaceScores scores;
-    scorer.evaluate(T_target_source, centre(), scale, hints, scores);
-    return scores;
+    return test::scoresAt(
+        SurfaceScorer(source, model), T_target_source, centre(), scale);
+  }
+
+  static bool
+  hasPatch(Index i)
+  {
+    return i != 7 && i != 33;
+  }
+
+  /** Expects the gradients of Tukey's energy.
+   * \param[in] heightOf point i over the plane after a twist [m] */
+  template <typename Height>
+  void
+  expectGradients(const Matrix6Xd& scores, const Height& heightOf) const
+  {
+    const double sigma = model.medianSigma();
+    for (Index i = 0; i < source.cols(); ++i) {
+      const auto energy = [&](const Vector6d& xi) {
+        return tukeyEnergy(heightOf(xi, i) / sigma, tau);
+      };
+      const Vector6d expected =
+          hasPatch(i) ? test::centralDifferences(energy, Vector6d::Zero(), step())
+                      : Vector6d::Zero();
+      // Differences of 0.01 in u: (0.01)^2 / 6 times a third derivative of less than
+      // 12 / (4.685 tau)^2, and levers of 1.5 m.
+      EXPECT_LT((scores.col(i) - expected).norm(), 2e-4 / sigma) << i;
+    }
   }
 
   Vector3d
@@ -72,15 +103,6 @@ struct PlaneCase {
   Matrix3Xd source;
 };
 
-/** Tukey's rho of a residual u at scale tau, whose derivative is psi(u). */
-double
-tukeyEnergy(double u, double tau)
-{
-  const double c = SurfaceScorer::tukey_constant * tau;
-  const double z = std::min(1.0, std::abs(u / c));
-  return c * c / 6.0 * (1.0 - std::pow(1.0 - z * z, 3));
-}
-
 TEST(SurfaceScore, ResidualsAreHeightsOverAKnownPlane)
 {
   const PlaneCase c;
@@ -89,7 +111,7 @@ TEST(SurfaceScore, ResidualsAreHeightsOverAKnownPlane)
   int num_with_patch = 0, num_active = 0;
   for (Index i = 0; i < moved.cols(); ++i) {
     const auto index = static_cast<std::size_t>(i);
-    const bool is_inside = i != 7 && i != 33;
+    const bool is_inside = PlaneCase::hasPatch(i);
     EXPECT_EQ(bool(scores.has_patch[index]), is_inside) << i;
     const double u = is_inside ? moved(2, i) / c.model.medianSigma() : 0.0;
     // Moving there and back rounds at 1e-16 m, of a noise of 5e-6 m.
@@ -127,20 +149,9 @@ TEST(SurfaceScore, IsTheGradientOfTukeysEnergy)
 {
   const PlaneCase c;
   const SurfaceScores scores = c.scoresAt(c.pose, c.tau);
-  const double sigma = c.model.medianSigma();
-  for (Index i = 0; i < c.source.cols(); ++i) {
-    const auto energy = [&](const Vector6d& xi) {
-      const Vector3d point = movedBy(xi, c.centre(), c.pose) * c.source.col(i);
-      return tukeyEnergy(point.z() / sigma, c.tau);
-    };
-    const bool is_inside = i != 7 && i != 33;
-    const Vector6d expected =
-        is_inside ? test::centralDifferences(energy, Vector6d::Zero(), c.step())
-                  : Vector6d::Zero();
-    // Differences of 0.01 in u: (0.01)^2 / 6 times a third derivative of less than
-    // 12 / (4.685 tau)^2, and levers of 1.5 m.
-    EXPECT_LT((scores.scores.col(i) - expected).norm(), 2e-4 / sigma) << i;
-  }
+  c.expectGradients(scores.scores, [&](const Vector6d& xi, Index i) {
+    return (movedBy(xi, c.centre(), c.pose) * c.source.col(i)).z();
+  });
   const Vector6d sum = scores.scores.rowwise().sum();
   EXPECT_LT((scores.total - sum).norm(), 1e-12 * scores.scores.norm());
 }
@@ -154,9 +165,7 @@ TEST(SurfaceScore, OfATargetPointIsTheGradientToo)
   const Matrix3Xd source_point = Vector3d(50.0, 0.0, 0.0);
   SurfaceScorer scorer(source_point, c.model);
   scorer.addTargetPoints(c.source, c.model);
-  PatchHints hints;
-  SurfaceScores scores;
-  scorer.evaluate(T_target_source, centre, c.tau, hints, scores);
+  const SurfaceScores scores = test::scoresAt(scorer, T_target_source, centre, c.tau);
 
   ASSERT_EQ(scores.residuals.size(), 1 + c.source.cols());
   EXPECT_EQ(scores.num_source_points, 1);
@@ -167,19 +176,12 @@ TEST(SurfaceScore, OfATargetPointIsTheGradientToo)
   EXPECT_EQ(scores.num_active, other_way.num_active);
   EXPECT_LT((scores.residuals.tail(c.source.cols()) - other_way.residuals).norm(),
             1e-7);
-  const double sigma = c.model.medianSigma();
-  for (Index i = 0; i < c.source.cols(); ++i) {
-    const auto energy = [&](const Vector6d& xi) {
-      const Isometry3d moved = movedBy(xi, centre, T_target_source);
-      return tukeyEnergy((moved.inverse() * c.source.col(i)).z() / sigma, c.tau);
-    };
-    const bool is_inside = i != 7 && i != 33;
-    const Vector6d expected =
-        is_inside ? test::centralDifferences(energy, Vector6d::Zero(), c.step())
-                  : Vector6d::Zero();
-    // See IsTheGradientOfTukeysEnergy.
-    EXPECT_LT((scores.scores.col(1 + i) - expected).norm(), 2e-4 / sigma) << i;
-  }
+  c.expectGradients(scores.scores.rightCols(c.source.cols()),
+                    [&](const Vector6d& xi, Index i) {
+                      const Isometry3d moved = movedBy(xi, centre, T_target_source);
+                      return (moved.inverse() * c.source.col(i)).z();
+                    });
+  PatchHints hints;
   Vector6d total;
   scorer.batchScore(T_target_source, centre, c.tau, {0, 3, 12}, hints, total);
   EXPECT_LT((total - scores.scores.col(3) - scores.scores.col(12)).norm(),
@@ -247,32 +249,27 @@ TEST(SurfaceScore, InfiniteScaleIsLeastSquares)
 
 /** A noisy sphere and a second scan of it. */
 struct SphereCase {
-  SphereCase()
+  Matrix3Xd
+  scan(Index num_points)
   {
-    Random random(62, 0);
-    const auto scan = [&](Index num_points) {
-      return test::noisy(test::sphere(random, num_points, 0.2), 0.002, random);
-    };
-    model = std::make_unique<SurfaceModel>(scan(1500));
-    source = scan(300);
+    return test::noisy(test::sphere(random, num_points, 0.2), 0.002, random);
   }
 
-  std::unique_ptr<SurfaceModel> model;
-  Matrix3Xd source;
+  Random random{62, 0};
+  SurfaceModel model{scan(1500)};
+  Matrix3Xd source = scan(300);
 };
 
 TEST(SurfaceScore, UsesThePatchWhoseProjectedPointIsNearest)
 {
   const SphereCase c;
-  const SurfaceScorer scorer(c.source, *c.model);
-  PatchHints hints;
-  SurfaceScores scores;
-  scorer.evaluate(Isometry3d::Identity(), Vector3d::Zero(), 1.0, hints, scores);
+  const SurfaceScores scores = test::scoresAt(
+      SurfaceScorer(c.source, c.model), Isometry3d::Identity(), Vector3d::Zero(), 1.0);
   for (Index i = 0; i < c.source.cols(); ++i) {
-    const Vector3d point = c.source.col(i) - c.model->origin();
+    const Vector3d point = c.source.col(i) - c.model.origin();
     double nearest = infinity;
     const SurfacePatch* patch = nullptr;
-    for (const SurfacePatch& candidate : c.model->patches()) {
+    for (const SurfacePatch& candidate : c.model.patches()) {
       const SurfaceOffset own = offsetFrom(candidate, candidate.centre);
       const double distance =
           (candidate.centre - own.distance * own.normal - point).norm();
@@ -295,15 +292,14 @@ TEST(SurfaceScore, UsesThePatchWhoseProjectedPointIsNearest)
 TEST(SurfaceScore, HintsChangeNothing)
 {
   const SphereCase c;
-  const SurfaceScorer scorer(c.source, *c.model);
+  const SurfaceScorer scorer(c.source, c.model);
   PatchHints hints;
-  SurfaceScores fresh, hinted;
+  SurfaceScores hinted;
   Random random(63, 0);
   for (int repeat = 0; repeat < 5; ++repeat) {
     const Isometry3d pose =
         movedBy(0.03 * random.normal6(), Vector3d::Zero(), Isometry3d::Identity());
-    PatchHints none;
-    scorer.evaluate(pose, Vector3d::Zero(), 1.2, none, fresh);
+    const SurfaceScores fresh = test::scoresAt(scorer, pose, Vector3d::Zero(), 1.2);
     scorer.evaluate(pose, Vector3d::Zero(), 1.2, hints, hinted);
     EXPECT_EQ(hinted.total, fresh.total);
     EXPECT_EQ(hinted.residuals, fresh.residuals);
@@ -315,26 +311,22 @@ TEST(SurfaceScore, HintsChangeNothing)
 TEST(SurfaceScore, BatchesAddUp)
 {
   const SphereCase c;
-  const SurfaceScorer scorer(c.source, *c.model);
-  PatchHints hints;
-  SurfaceScores scores;
+  const SurfaceScorer scorer(c.source, c.model);
+  const Isometry3d pose = Isometry3d::Identity();
   const Vector3d centre(0.1, 0.0, -0.1);
   const double tau = 0.6;
-  scorer.evaluate(Isometry3d::Identity(), centre, tau, hints, scores);
+  const SurfaceScores scores = test::scoresAt(scorer, pose, centre, tau);
   ASSERT_LT(scores.num_active, c.source.cols());
 
   std::vector<std::size_t> all(static_cast<std::size_t>(c.source.cols()));
-  for (std::size_t i = 0; i < all.size(); ++i)
-    all[i] = i;
+  std::iota(all.begin(), all.end(), std::size_t(0));
+  PatchHints hints;
   Vector6d total;
-  const auto num_with_patch =
-      static_cast<int>(std::count(scores.has_patch.begin(), scores.has_patch.end(), 1));
-  EXPECT_EQ(scorer.batchScore(Isometry3d::Identity(), centre, tau, all, hints, total),
-            num_with_patch);
+  EXPECT_EQ(scorer.batchScore(pose, centre, tau, all, hints, total),
+            std::count(scores.has_patch.begin(), scores.has_patch.end(), 1));
   EXPECT_LT((total - scores.total).norm(), 1e-12 * scores.scores.norm());
 
-  PatchHints none;
-  scorer.batchScore(Isometry3d::Identity(), centre, tau, {5, 9, 5}, none, total);
+  scorer.batchScore(pose, centre, tau, {5, 9, 5}, hints, total);
   EXPECT_LT((total - 2.0 * scores.scores.col(5) - scores.scores.col(9)).norm(),
             1e-12 * scores.scores.norm());
 }
@@ -345,10 +337,8 @@ TEST(SurfaceScore, IsZeroWithoutPatches)
   const Matrix3Xd source = test::randomPoints(random, 10);
   for (const Index num_target_points : {0, 1, 7}) {
     const SurfaceModel model(test::randomPoints(random, num_target_points));
-    const SurfaceScorer scorer(source, model);
-    PatchHints hints;
-    SurfaceScores scores;
-    scorer.evaluate(Isometry3d::Identity(), Vector3d::Zero(), 1.0, hints, scores);
+    const SurfaceScores scores = test::scoresAt(
+        SurfaceScorer(source, model), Isometry3d::Identity(), Vector3d::Zero(), 1.0);
     EXPECT_EQ(scores.total, Vector6d::Zero());
     EXPECT_EQ(scores.information, Matrix6d::Zero());
     EXPECT_EQ(scores.num_active, 0);
@@ -386,16 +376,14 @@ TEST(SurfaceScore, IsTheSameFarFromTheOrigin)
 {
   const SphereCase c;
   const Vector3d far(512000.0, 5400000.0, 128.0);
-  const SurfaceModel far_model(Matrix3Xd(c.source.colwise() + far));
-  const SurfaceModel near_model(c.source);
-  PatchHints near_hints, far_hints;
-  SurfaceScores near_scores, far_scores;
-  const SurfaceScorer scorer(c.source, near_model), far_scorer(c.source, far_model);
-  Isometry3d pose = Isometry3d::Identity();
-  pose.translation() << 0.001, -0.001, 0.002;
-  scorer.evaluate(pose, pose.translation(), 1.0, near_hints, near_scores);
-  pose.translation() += far;
-  far_scorer.evaluate(pose, pose.translation(), 1.0, far_hints, far_scores);
+  const auto scoresOn = [&](const Matrix3Xd& target, const Vector3d& shift) {
+    const SurfaceModel model(target);
+    const Isometry3d pose(Eigen::Translation3d(Vector3d(0.001, -0.001, 0.002) + shift));
+    return test::scoresAt(
+        SurfaceScorer(c.source, model), pose, pose.translation(), 1.0);
+  };
+  const SurfaceScores near_scores = scoresOn(c.source, Vector3d::Zero());
+  const SurfaceScores far_scores = scoresOn(c.source.colwise() + far, far);
   // Coordinates there are multiples of 1e-9 m, of a noise of 2e-3 m; a hundred times
   // that for what quadrics make of it.
   EXPECT_EQ(far_scores.has_patch, near_scores.has_patch);

@@ -58,9 +58,7 @@ TEST_P(Cube, StartedWideIsFoundInSymmetricPosesAndNeverCalledMixed)
   options.prior.variance << 0.01, 0.01, 0.01, 1.0, 1.0, 1.0;
   options.chains.num_chains = 8;
   options.chains.num_draws = 400;
-  Vector6d spread;
-  spread << 0.02, 0.02, 0.02, 1.0, 1.0, 1.0;
-  options.exact.initial_spread = spread;
+  options.exact.initial_spread = Vector6d(0.02, 0.02, 0.02, 1.0, 1.0, 1.0);
   const auto estimate =
       estimatePosterior(source, KdTree(target), Vector6d::Zero(), options);
 

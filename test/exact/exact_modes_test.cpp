@@ -53,9 +53,7 @@ estimateGroove(ExactSteps steps, int num_shifts, int num_draws)
   options.exact.steps = steps;
   options.chains.num_chains = 8;
   options.chains.num_draws = num_draws;
-  Vector6d spread;
-  spread << 0.08, 0.01, 0.01, 0.01, 0.01, 0.01;
-  options.exact.initial_spread = spread;
+  options.exact.initial_spread = Vector6d(0.08, 0.01, 0.01, 0.01, 0.01, 0.01);
   return estimatePosterior(
       groove.source, KdTree(groove.target), Vector6d::Zero(), options);
 }

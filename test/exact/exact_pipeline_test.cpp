@@ -15,44 +15,16 @@
 namespace bayesian_icp {
 namespace {
 
-/** A wavy surface scanned twice, with 3 mm of noise. */
+/** A wavy surface scanned twice. */
 struct Scans {
-  Eigen::Matrix3Xd source;
-  KdTree target;
-  Vector6d truth;
-
   explicit Scans(Eigen::Index num_source = 300)
-  : source(surface(91, num_source))
-  , target(movedSurface())
-  , truth(pose())
+  : source(test::wavySurface(91, num_source, 0.1))
+  , target(test::moved(truth, test::wavySurface(92, 6000, 0.1)).cast<float>())
   {}
 
-  static Vector6d
-  pose()
-  {
-    Vector6d pose;
-    pose << 0.01, -0.02, 0.015, 0.02, -0.03, 0.025;
-    return pose;
-  }
-
-  static Eigen::Matrix3Xd
-  surface(std::uint64_t seed, Eigen::Index num_points)
-  {
-    Random random(seed, 0);
-    Eigen::Matrix3Xd points = test::randomPoints(random, num_points);
-    for (Eigen::Index i = 0; i < num_points; ++i)
-      points(2, i) = 0.1 * std::sin(9.0 * points(0, i)) * std::cos(8.0 * points(1, i)) +
-                     0.003 * random.normal();
-    return points;
-  }
-
-  static Eigen::Matrix3Xf
-  movedSurface()
-  {
-    Eigen::Matrix3Xd moved;
-    movePoints(pose(), surface(92, 6000), moved);
-    return moved.cast<float>();
-  }
+  Vector6d truth{0.01, -0.02, 0.015, 0.02, -0.03, 0.025};
+  Eigen::Matrix3Xd source;
+  KdTree target;
 };
 
 Options
@@ -62,10 +34,14 @@ exactOptions()
   options.preset = Preset::Exact;
   options.exact.scale.effective_points = 100.0;
   options.exact.scale.measurement_sigma = 0.01;
-  Vector6d spread;
-  spread << 0.02, 0.02, 0.02, 0.05, 0.05, 0.05;
-  options.exact.initial_spread = spread;
+  options.exact.initial_spread = Vector6d(0.02, 0.02, 0.02, 0.05, 0.05, 0.05);
   return options;
+}
+
+PosteriorEstimate
+estimateFrom(const Scans& scans, const Options& options)
+{
+  return estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
 }
 
 struct Moments {
@@ -90,32 +66,6 @@ divergence(const Moments& a, const Moments& b)
                 std::log(b.covariance.determinant() / a.covariance.determinant()));
 }
 
-/** Random-walk Metropolis on the full energy: four chains in one, shape from \p guide,
- * which only decides how fast it is. */
-PoseMatrix
-randomWalk(const PoseEnergy& energy, const Moments& guide, int num_draws)
-{
-  const Matrix6d L = Eigen::LLT<Matrix6d>(guide.covariance).matrixL();
-  Random random(93, 0);
-  auto workspace = energy.makeWorkspace();
-  Vector6d pose = guide.mean;
-  double value = energy.energy(pose, workspace);
-  PoseMatrix draws(num_draws, 6);
-  for (int i = -500; i < num_draws; ++i) {
-    for (int step = 0; step < 4; ++step) {
-      const Vector6d proposal = pose + 0.95 * (L * random.normal6());
-      const double proposed = energy.energy(proposal, workspace);
-      if (std::log(1.0 - random.uniform()) < value - proposed) {
-        pose = proposal;
-        value = proposed;
-      }
-    }
-    if (i >= 0)
-      draws.row(i) = pose.transpose();
-  }
-  return draws;
-}
-
 TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
 {
   const Scans scans;
@@ -126,8 +76,7 @@ TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
     Options options = exactOptions();
     options.exact.residual.residual = residual;
     options.exact.steps = steps;
-    const auto estimate =
-        estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
+    const auto estimate = estimateFrom(scans, options);
     ASSERT_EQ(estimate.summary.status, Status::Ok) << estimate.summary.message;
     EXPECT_EQ(estimate.samples.rows(), 2000);
     for (const auto& coordinate : estimate.summary.coordinates)
@@ -140,7 +89,15 @@ TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
                             options.exact.scale.weight(),
                             options.exact.residual);
     const Moments draws = momentsOf(estimate.samples);
-    const Moments reference = momentsOf(randomWalk(energy, draws, 10000));
+    auto workspace = energy.makeWorkspace();
+    Random random(93, 0);
+    const Moments reference = momentsOf(test::randomWalk(
+        [&](const Vector6d& pose) { return energy.energy(pose, workspace); },
+        draws.mean,
+        draws.covariance.llt().matrixL(),
+        10000,
+        4,
+        random));
     EXPECT_LT(divergence(reference, draws), 0.06)
         << toString(residual) << " " << toString(steps);
   }
@@ -160,16 +117,12 @@ TEST(Exact, EveryResidualAndKernelFindsTheTruth)
       options.exact.residual.kernel_width = 0.05;
       options.exact.residual.max_distance = 0.2;
       options.chains.num_draws = 800;
-      const auto estimate =
-          estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
-      const auto& summary = estimate.summary;
-      const std::string name =
-          std::string(toString(residual)) + " " + toString(kernel) + ": ";
-      EXPECT_EQ(summary.status, Status::Ok) << name << summary.message;
-      const Vector6d error =
-          poseError(scans.truth, summary.mean, CovarianceConvention::Parameters);
-      const double squared = error.dot(summary.covariances[0].ldlt().solve(error));
-      EXPECT_LT(squared, 22.5) << name; // chi-squared, 6 degrees, 99.9 %
+      const Summary summary = estimateFrom(scans, options).summary;
+      SCOPED_TRACE(std::string(toString(residual)) + " " + toString(kernel));
+      EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+      EXPECT_LT(
+          test::squaredErrorOf(summary, scans.truth, CovarianceConvention::Parameters),
+          test::chi_square_999);
     }
 }
 
@@ -200,14 +153,11 @@ TEST(Exact, SteinParticlesAreBitIdenticalForEveryNumberOfThreads)
     options.exact.steps = steps;
     options.exact.num_particles = 21;
     options.chains.num_threads = 1;
-    const auto reference =
-        estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
-    ASSERT_EQ(reference.samples.rows(), 21);
+    const PoseMatrix reference = estimateFrom(scans, options).samples;
+    ASSERT_EQ(reference.rows(), 21);
     for (const int num_threads : {2, 4}) {
       options.chains.num_threads = num_threads;
-      const auto estimate =
-          estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
-      EXPECT_EQ(estimate.samples, reference.samples) << toString(steps);
+      EXPECT_EQ(estimateFrom(scans, options).samples, reference) << toString(steps);
     }
   }
 }
@@ -220,8 +170,7 @@ TEST(Exact, ASearchOfTheUsersOwnGivesTheSamePosterior)
   options.exact.residual.max_distance = 0.3;
   options.exact.steps = ExactSteps::Langevin; // Metropolis takes brute force long.
   const test::BruteForceSearch search(scans.target.points().cast<double>(), 0.3, false);
-  const auto a =
-      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
+  const auto a = estimateFrom(scans, options);
   const auto b = estimatePosterior(scans.source, search, Vector6d::Zero(), options);
   EXPECT_EQ(b.samples.rows(), 400);
   for (std::size_t k = 0; k < 6; ++k) {

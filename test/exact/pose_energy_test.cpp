@@ -14,35 +14,41 @@
 namespace bayesian_icp {
 namespace {
 
-/** A scan of a wavy surface near (1, 0.5, -0.3), its source seen from a little off. */
-struct Scan {
-  Eigen::Matrix3Xd source;
-  Eigen::Matrix3Xf target;
-  Vector6d pose;
+/** Points of a wavy surface near (1, 0.5, -0.3). */
+Eigen::Matrix3Xd
+surface(Random& random, Eigen::Index num_points)
+{
+  Eigen::Matrix3Xd points = test::randomPoints(random, num_points, {1.0, 0.5, -0.3});
+  for (Eigen::Index i = 0; i < num_points; ++i)
+    points(2, i) = -0.3 + 0.1 * std::sin(6.0 * points(0, i)) * points(1, i);
+  return points;
+}
 
-  Scan()
-  {
-    Random random(71, 0);
-    const auto surface = [&](Eigen::Index n) {
-      Eigen::Matrix3Xd points = test::randomPoints(random, n, {1.0, 0.5, -0.3});
-      for (Eigen::Index i = 0; i < n; ++i)
-        points(2, i) = -0.3 + 0.1 * std::sin(6.0 * points(0, i)) * points(1, i);
-      return points;
-    };
-    target = surface(1500).cast<float>();
-    source = surface(200);
-    pose << 0.02, -0.015, 0.03, 0.04, -0.05, 0.03;
-  }
+/** A scan of the surface, its source seen from a little off. */
+struct Scan {
+  Random random{71, 0};
+  Eigen::Matrix3Xf target = surface(random, 1500).cast<float>();
+  Eigen::Matrix3Xd source = surface(random, 200);
+  Vector6d pose{0.02, -0.015, 0.03, 0.04, -0.05, 0.03};
+  KdTree tree{target};
 };
 
 Prior
-somePrior(const Eigen::Vector3d& reference)
+somePrior(const Eigen::Vector3d& reference = Eigen::Vector3d::Zero())
 {
-  Vector6d mean, variance;
-  mean << 0.1, -0.1, 0.05, 0.2, -0.1, 0.3;
-  variance << 0.1, 0.2, 0.3, 0.05, 0.1, 0.2;
-  return Prior(mean, variance, reference);
+  return Prior(
+      {0.1, -0.1, 0.05, 0.2, -0.1, 0.3}, {0.1, 0.2, 0.3, 0.05, 0.1, 0.2}, reference);
 }
+
+/** Point to point, with a prior about \p reference. */
+struct PlainEnergy : Scan {
+  explicit PlainEnergy(const Eigen::Vector3d& reference = Eigen::Vector3d::Zero())
+  : energy(source, target_of_tree, somePrior(reference), 1.0, ResidualOptions())
+  {}
+
+  TreeTarget target_of_tree{tree, 1.0};
+  PoseEnergy energy;
+};
 
 std::vector<ResidualOptions>
 allResiduals(double kernel_width, double max_distance)
@@ -136,7 +142,6 @@ private:
 TEST(Gradients, OfEveryResidualAndKernelAgreeWithFiniteDifferences)
 {
   const Scan scan;
-  const KdTree tree(scan.target);
   const Prior prior = somePrior({0.3, 0.2, 0.1});
   // Near the identity, and turned by more than a right angle about all axes.
   Vector6d far = scan.pose;
@@ -145,7 +150,7 @@ TEST(Gradients, OfEveryResidualAndKernelAgreeWithFiniteDifferences)
     for (const Vector6d& pose : {scan.pose, far}) {
       if (pose == far)
         options.kernel_width = options.max_distance = 10.0;
-      const TreeTarget target = treeTargetFor(options, tree);
+      const TreeTarget target = treeTargetFor(options, scan.tree);
       const FixedMatches fixed(target, pose);
       const PoseEnergy energy(scan.source, fixed, prior, 1000.0, options);
       const Vector6d gradient = energy.energyGradient(pose);
@@ -163,13 +168,10 @@ TEST(Gradients, OfEveryResidualAndKernelAgreeWithFiniteDifferences)
 
 TEST(Gradients, OfTheCentredPoseAgreeWithFiniteDifferences)
 {
-  const Scan scan;
-  const KdTree tree(scan.target);
-  const TreeTarget target(tree, 1.0);
   for (const Eigen::Vector3d& reference :
        {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(1.0, 0.5, -0.3)}) {
-    const PoseEnergy energy(
-        scan.source, target, somePrior(reference), 1.0, ResidualOptions());
+    const PlainEnergy scan(reference);
+    const PoseEnergy& energy = scan.energy;
     const Vector6d phi = energy.toPhi(scan.pose);
     const Vector6d numerical = test::centralDifferences(
         [&](const Vector6d& p) { return energy.priorEnergy(p); }, phi);
@@ -189,13 +191,9 @@ TEST(Gradients, OfTheCentredPoseAgreeWithFiniteDifferences)
 
 TEST(CentredPose, IsInvertibleAndMovesTheCentroidByItsTranslation)
 {
-  const Scan scan;
-  const KdTree tree(scan.target);
-  const TreeTarget target(tree, 1.0);
-  const PoseEnergy energy(
-      scan.source, target, somePrior({0, 0, 0}), 1.0, ResidualOptions());
-  const Vector6d phi = energy.toPhi(scan.pose);
-  EXPECT_LT((energy.toTheta(phi) - scan.pose).norm(), 1e-14);
+  const PlainEnergy scan;
+  const Vector6d phi = scan.energy.toPhi(scan.pose);
+  EXPECT_LT((scan.energy.toTheta(phi) - scan.pose).norm(), 1e-14);
   const Eigen::Vector3d c = scan.source.rowwise().mean();
   const Eigen::Vector3d moved = rotationOf(scan.pose) * c + scan.pose.head<3>();
   EXPECT_LT((moved - c - phi.head<3>()).norm(), 1e-14);
@@ -204,13 +202,12 @@ TEST(CentredPose, IsInvertibleAndMovesTheCentroidByItsTranslation)
 TEST(Energy, IsTheSameWithAndWithoutMemoryAndThroughASearch)
 {
   const Scan scan;
-  const KdTree tree(scan.target);
   ResidualOptions options;
   options.max_distance = 0.05;
-  const TreeTarget target(tree, options.max_distance);
+  const TreeTarget target(scan.tree, options.max_distance);
   const test::BruteForceSearch search(scan.target.cast<double>(), options.max_distance);
   const SearchTarget through_search(search);
-  const Prior prior = somePrior({0, 0, 0});
+  const Prior prior = somePrior();
   const PoseEnergy energy(scan.source, target, prior, 100.0, options);
   const PoseEnergy reference(scan.source, through_search, prior, 100.0, options);
   auto workspace = energy.makeWorkspace();
@@ -227,11 +224,10 @@ TEST(Energy, IsTheSameWithAndWithoutMemoryAndThroughASearch)
 TEST(Energy, FarOutEveryPointCostsTheGate)
 {
   const Scan scan;
-  const KdTree tree(scan.target);
   ResidualOptions options;
   options.max_distance = 0.05;
-  const TreeTarget target(tree, options.max_distance);
-  const Prior prior = somePrior({0, 0, 0});
+  const TreeTarget target(scan.tree, options.max_distance);
+  const Prior prior = somePrior();
   const PoseEnergy energy(scan.source, target, prior, 100.0, options);
   Vector6d far = scan.pose;
   far[0] += 50.0;
@@ -240,11 +236,8 @@ TEST(Energy, FarOutEveryPointCostsTheGate)
 
 TEST(BatchTerms, CurvatureIsTheGaussNewtonMatrixAndSecondMomentTheNoise)
 {
-  const Scan scan;
-  const KdTree tree(scan.target);
-  const TreeTarget target(tree, 1.0);
-  const PoseEnergy energy(
-      scan.source, target, somePrior({0, 0, 0}), 1.0, ResidualOptions());
+  const PlainEnergy scan;
+  const PoseEnergy& energy = scan.energy;
   const Vector6d phi = energy.toPhi(scan.pose);
   auto workspace = energy.makeWorkspace();
   const std::vector<std::size_t> all = energy.allPoints();
@@ -286,7 +279,6 @@ plane(Eigen::Index num_points, const Eigen::Vector3f& normal)
 TEST(Energy, OfDistributionsIsTheMahalanobisDistanceOfTheNearestPoints)
 {
   const Scan scan;
-  const KdTree tree(scan.target);
   const Eigen::Vector3d centroid = scan.source.rowwise().mean();
   const Eigen::Matrix3d R = rotationOf(scan.pose);
   for (const auto& options : allResiduals(0.05, 10.0)) {
@@ -298,16 +290,16 @@ TEST(Energy, OfDistributionsIsTheMahalanobisDistanceOfTheNearestPoints)
     double sum = 0.0;
     for (Eigen::Index i = 0; i < scan.source.cols(); ++i) {
       const Eigen::Vector3d moved = R * scan.source.col(i) + scan.pose.head<3>();
-      const auto nearest =
-          tree.nearest(moved.cast<float>(), std::numeric_limits<float>::infinity());
+      const auto nearest = scan.tree.nearest(moved.cast<float>(),
+                                             std::numeric_limits<float>::infinity());
       const Eigen::Vector3d d = moved - scan.target.col(nearest.index).cast<double>();
       const Eigen::Matrix3d C =
           of_target[nearest.index] +
           R * of_source[static_cast<std::size_t>(i)] * R.transpose();
       sum += robustEnergy(options, d.dot(C.ldlt().solve(d)));
     }
-    const TreeTarget target = treeTargetFor(options, tree);
-    const Prior prior = somePrior({0, 0, 0});
+    const TreeTarget target = treeTargetFor(options, scan.tree);
+    const Prior prior = somePrior();
     const PoseEnergy energy(scan.source, target, prior, 1000.0, options);
     const double expected = 1000.0 * sum / static_cast<double>(scan.source.cols());
     EXPECT_NEAR(
@@ -326,7 +318,7 @@ TEST(Energy, OfDistributionsCountsAPlanesDistanceAsPointToPlane)
   ResidualOptions options;
   options.residual = Residual::DistributionToDistribution;
   const TreeTarget target = treeTargetFor(options, tree);
-  const Prior prior = somePrior({0, 0, 0});
+  const Prior prior = somePrior();
   const PoseEnergy energy(source, target, prior, 1.0, options);
   // What the spacing within the plane adds: a thousandth of the square of some 5 cm.
   EXPECT_NEAR(energy.energy(pose) - prior.energy(pose), 0.5 * 0.2 * 0.2, 1e-5);

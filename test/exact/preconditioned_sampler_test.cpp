@@ -1,6 +1,7 @@
 // The sampler of preset `exact` on densities whose moments are known: no point clouds.
 #include "summary/estimates.h"
 #include "support/test_energies.h"
+#include "support/test_support.h"
 
 #include <bayesian_icp/summary.h>
 
@@ -21,9 +22,7 @@ Matrix6d
 randomPrecision(double smallest, double largest)
 {
   Random random(81, 0);
-  Matrix6d m;
-  for (int k = 0; k < 6; ++k)
-    m.col(k) = random.normal6();
+  const Matrix6d m = randomSquare(random);
   const Matrix6d basis =
       Eigen::SelfAdjointEigenSolver<Matrix6d>(m + m.transpose()).eigenvectors();
   Vector6d values;
@@ -60,8 +59,7 @@ expectMoments(const ChainSet& set, const Vector6d& mean, const Matrix6d& covaria
 
 TEST(PreconditionedSampler, GaussiansWellAndBadlyConditioned)
 {
-  Vector6d mean;
-  mean << 0.3, -0.5, 1.0, 0.1, -0.2, 0.3;
+  const Vector6d mean(0.3, -0.5, 1.0, 0.1, -0.2, 0.3);
   for (const double condition : {10.0, 1e6}) {
     const Matrix6d precision = randomPrecision(30.0, 30.0 * condition);
     const auto energy = gaussianEnergy(mean, precision);
@@ -82,8 +80,7 @@ TEST(PreconditionedSampler, NoiseOfTheGradientDoesNotWidenTheDraws)
   const Matrix6d precision = randomPrecision(100.0, 1e4);
   auto energy = gaussianEnergy(Vector6d::Zero(), precision);
   energy.num_terms = 100000;
-  Vector6d scale;
-  scale << 1.0, 5.0, 2.0, 0.5, 3.0, 1.0;
+  const Vector6d scale(1.0, 5.0, 2.0, 0.5, 3.0, 1.0);
   const Matrix6d root = Eigen::LLT<Matrix6d>(precision).matrixL();
   energy.term_noise = std::sqrt(160.0) * root * scale.asDiagonal();
   for (const Automatic<int>& batch_size : {Automatic<int>(), Automatic<int>(160)}) {
@@ -134,9 +131,7 @@ TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
 
 TEST(Modes, ThatRemainAreReportedWithWeightMeanAndChains)
 {
-  auto options = chainOptions(2000);
-  options.num_chains = 8;
-  const ChainSet set = sample(mixture(1.0), ExactOptions(), options);
+  const ChainSet set = sample(mixture(1.0), ExactOptions(), chainOptions(2000, 8));
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
   EXPECT_NE(summary.message.find("2 modes"), std::string::npos) << summary.message;
@@ -154,9 +149,7 @@ TEST(Modes, ThatRemainAreReportedWithWeightMeanAndChains)
 
 TEST(Modes, ThatAreClearlyWorseLoseTheirChains)
 {
-  auto options = chainOptions(2000);
-  options.num_chains = 8;
-  const ChainSet set = sample(mixture(30.0), ExactOptions(), options);
+  const ChainSet set = sample(mixture(30.0), ExactOptions(), chainOptions(2000, 8));
   EXPECT_GT(set.num_moved_chains, 0);
   EXPECT_NEAR(set.moved_by_nats, 30.0, 2.0);
   const Summary summary = summarize(set);

@@ -21,8 +21,7 @@ const double pi = std::acos(-1.0);
 Matrix6d
 exampleCovariance()
 {
-  Vector6d deviations;
-  deviations << 0.5, 1.0, 2.0, 3.0, 0.7, 1.5;
+  const Vector6d deviations(0.5, 1.0, 2.0, 3.0, 0.7, 1.5);
   Matrix6d correlation = Matrix6d::Identity();
   correlation(0, 1) = correlation(1, 0) = 0.8;
   correlation(2, 5) = correlation(5, 2) = -0.6;
@@ -137,11 +136,9 @@ TEST(Metropolis, ABadProposalSlowsTheChainAndBiasesNothing)
 
 TEST(Metropolis, ModesThatChainsTravelBetweenAreOnePosterior)
 {
-  auto options = chainOptions(4000);
-  options.num_chains = 8;
   ExactOptions sampler;
   sampler.steps = ExactSteps::Metropolis;
-  const ChainSet set = sample(mixture(2.0), sampler, options);
+  const ChainSet set = sample(mixture(2.0), sampler, chainOptions(4000, 8));
   const Summary summary = summarize(set);
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
   EXPECT_EQ(set.modes.size(), 1u);

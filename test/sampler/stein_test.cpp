@@ -26,8 +26,7 @@ struct KnownGaussian {
     factor = Matrix6d::Identity();
     factor(5, 0) = 0.9;
     factor(3, 1) = -0.7;
-    Vector6d scale;
-    scale << 0.001, 0.01, 0.1, 0.05, 0.02, 0.1;
+    const Vector6d scale(0.001, 0.01, 0.1, 0.05, 0.02, 0.1);
     factor = scale.asDiagonal() * factor;
     precision = (factor * factor.transpose()).inverse();
   }
@@ -206,9 +205,8 @@ TEST(SteinParticles, OfSeveralModesAreNotOk)
   ExactOptions options;
   options.steps = ExactSteps::SteinGradient;
   options.num_particles = 40;
-  ChainOptions chains = test::chainOptions(8);
-  chains.num_chains = 8;
-  const Summary summary = summarize(test::sample(test::mixture(0.0), options, chains));
+  const Summary summary =
+      summarize(test::sample(test::mixture(0.0), options, test::chainOptions(8, 8)));
   EXPECT_EQ(summary.status, Status::SeveralModes) << summary.message;
 }
 

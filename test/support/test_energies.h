@@ -190,10 +190,11 @@ mixture(double loss)
 }
 
 inline ChainOptions
-chainOptions(int num_draws)
+chainOptions(int num_draws, int num_chains = 4)
 {
   ChainOptions options;
   options.num_draws = num_draws;
+  options.num_chains = num_chains;
   options.seed = 7;
   return options;
 }

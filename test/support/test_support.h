@@ -1,10 +1,12 @@
-// Shared by the core's tests: random poses, synthetic points, a brute-force search and
-// central differences.
+// Shared by the core's tests: random poses, synthetic points, a brute-force search,
+// central differences and errors in units of a covariance.
 #pragma once
 
 #include <bayesian_icp/correspondence.h>
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
+
+#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <functional>
@@ -27,6 +29,39 @@ randomPose(Random& random, double share_of_range = 1.0)
   return pose;
 }
 
+/** Independent standard normal numbers. */
+inline Matrix6d
+randomSquare(Random& random)
+{
+  Matrix6d square;
+  for (int k = 0; k < 6; ++k)
+    square.col(k) = random.normal6();
+  return square;
+}
+
+/** Quantiles of chi-square with six degrees of freedom. */
+constexpr double chi_square_99 = 16.812, chi_square_999 = 22.458,
+                 chi_square_9999 = 27.856;
+
+/** Squared length of an error, in standard deviations. */
+inline double
+squaredError(const Vector6d& error, const Matrix6d& covariance)
+{
+  return error.dot(covariance.ldlt().solve(error));
+}
+
+/** Squared distance of the true pose from the mean, in standard deviations.
+ * \param[in] estimate a Summary or a PoseEstimate */
+template <typename Estimate>
+double
+squaredErrorOf(const Estimate& estimate,
+               const Vector6d& truth,
+               CovarianceConvention convention = CovarianceConvention::R3xSO3)
+{
+  return squaredError(poseError(truth, estimate.mean, convention),
+                      estimate.covariance(convention));
+}
+
 /** Points in a box of 1 x 0.6 x 0.3 m about \p centre. */
 inline Eigen::Matrix3Xd
 randomPoints(Random& random,
@@ -41,6 +76,31 @@ randomPoints(Random& random,
   return points;
 }
 
+/** A wavy surface of 1 x 0.6 m with noise of its height [m]. */
+inline Eigen::Matrix3Xd
+wavySurface(std::uint64_t seed,
+            Eigen::Index num_points,
+            double amplitude,
+            double noise = 0.003)
+{
+  Random random(seed, 0);
+  Eigen::Matrix3Xd points = randomPoints(random, num_points);
+  for (Eigen::Index i = 0; i < num_points; ++i)
+    points(2, i) =
+        amplitude * std::sin(9.0 * points(0, i)) * std::cos(8.0 * points(1, i)) +
+        noise * random.normal();
+  return points;
+}
+
+/** The points, moved by \p pose. */
+inline Eigen::Matrix3Xd
+moved(const Vector6d& pose, const Eigen::Matrix3Xd& points)
+{
+  Eigen::Matrix3Xd result;
+  movePoints(pose, points, result);
+  return result;
+}
+
 /** Gradient of \p f by central differences; the error is of order step^2. */
 inline Vector6d
 centralDifferences(const std::function<double(const Vector6d&)>& f,
@@ -53,6 +113,37 @@ centralDifferences(const std::function<double(const Vector6d&)>& f,
     gradient[k] = (f(pose + h) - f(pose - h)) / (2.0 * step);
   }
   return gradient;
+}
+
+/** Draws by random-walk Metropolis, one in each row.
+ * \param[in] energy -log density
+ * \param[in] factor L of a covariance L L^T, which only decides how fast it is
+ * \param[in] thinning steps from one draw to the next */
+inline PoseMatrix
+randomWalk(const std::function<double(const Vector6d&)>& energy,
+           const Vector6d& start,
+           const Matrix6d& factor,
+           int num_draws,
+           int thinning,
+           Random& random)
+{
+  constexpr int num_burn_in = 500;
+  Vector6d position = start;
+  double value = energy(position);
+  PoseMatrix draws(num_draws, 6);
+  for (int i = -num_burn_in; i < num_draws; ++i) {
+    for (int step = 0; step < thinning; ++step) {
+      const Vector6d proposal = position + 0.95 * (factor * random.normal6());
+      const double proposed = energy(proposal);
+      if (std::log(1.0 - random.uniform()) < value - proposed) {
+        position = proposal;
+        value = proposed;
+      }
+    }
+    if (i >= 0)
+      draws.row(i) = position.transpose();
+  }
+  return draws;
 }
 
 /** Exact nearest neighbours by looking at every target point. */
