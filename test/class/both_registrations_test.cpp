@@ -114,9 +114,7 @@ protected:
   {
     Registration icp;
     icp.setMaxCorrespondenceDistance(max_distance);
-    icp.setInputSource(source);
-    icp.setInputTarget(target);
-    icp.align(output, guess);
+    output = aligned(icp, source, target, guess);
     EXPECT_FALSE(icp.hasConverged());
     EXPECT_EQ(icp.getConvergeCriteria()->getConvergenceState(),
               registration::DefaultConvergenceCriteria<

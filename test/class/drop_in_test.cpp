@@ -245,9 +245,6 @@ TEST_P(DropInClouds, WithAReadyTreeOfHalfOfTheTarget)
   });
 }
 
-/** PCL's tree has returned whether it has been built since 1.14. */
-using Built = decltype(Tree().setInputCloud(Cloud::ConstPtr()));
-
 /** A tree that searches by itself, as KdTreeNanoflann of PCL 1.15.1 does: it derives
  * from PCL's tree and has null where that one has its FLANN. */
 struct OwnSearch : Tree {
@@ -429,10 +426,7 @@ TEST_P(DropInClouds, ThePairsOfTheDefaultEstimationCanBeAskedForAfterwards)
   const auto pairsAfterAlign = [this](Icp& icp) {
     const auto estimation = pcl::make_shared<Estimation>();
     icp.setCorrespondenceEstimation(estimation);
-    icp.setInputSource(source);
-    icp.setInputTarget(target);
-    Cloud output;
-    icp.align(output);
+    aligned(icp, source, target);
     Correspondences pairs;
     estimation->determineCorrespondences(pairs);
     return (pairs);
@@ -558,19 +552,14 @@ TEST(DropInThreads, AreSetForIcpAndForThePosteriorByOneCall)
 #endif
 }
 
-INSTANTIATE_TEST_SUITE_P(UniqueAndTied,
-                         DropInTrees,
-                         ::testing::Bool(),
-                         [](const auto& tied) {
-                           return tied.param ? "Tied" : "Unique";
-                         });
-
+const auto name_of_clouds = [](const auto& tied) {
+  return tied.param ? "Tied" : "Unique";
+};
+INSTANTIATE_TEST_SUITE_P(UniqueAndTied, DropInTrees, ::testing::Bool(), name_of_clouds);
 INSTANTIATE_TEST_SUITE_P(UniqueAndTied,
                          DropInClouds,
                          ::testing::Bool(),
-                         [](const auto& tied) {
-                           return tied.param ? "Tied" : "Unique";
-                         });
+                         name_of_clouds);
 
 TEST(DropInTies, OccurOnTheLattice)
 {

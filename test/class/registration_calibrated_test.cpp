@@ -1,9 +1,8 @@
 // Preset `calibrated` in the PCL class: what it finds, and whose points it looks at.
 #include "support/registration_support.h"
+#include "support/test_support.h"
 
 #include <pcl/registration/correspondence_rejection_one_to_one.h>
-
-#include <Eigen/LU>
 
 #include <functional>
 
@@ -40,11 +39,8 @@ TEST_F(CalibratedTest, FindsThePoseAndReportsWhatTheDataSay)
   icp.align(output);
   const bayesian_icp::Summary& summary = icp.getSummary();
   ASSERT_EQ(summary.status, bayesian_icp::Status::Ok) << summary.message;
-  const auto convention = bayesian_icp::CovarianceConvention::R3xSO3;
-  const bayesian_icp::Vector6d error =
-      bayesian_icp::poseError(smallPose(), icp.getMean(), convention);
-  // chi^2_6 exceeds 27.9 once in 10 000.
-  EXPECT_LT(error.dot(icp.getCovariance(convention).inverse() * error), 27.9);
+  EXPECT_LT(bayesian_icp::test::squaredErrorOf(summary, smallPose()),
+            bayesian_icp::test::chi_square_9999);
   ASSERT_TRUE(summary.data.is_available);
   EXPECT_EQ(summary.data.directions.size(), 6u);
   EXPECT_NEAR(summary.data.noise_scale, 0.001, 0.0003);
@@ -162,9 +158,7 @@ TEST_F(CalibratedTest, AnObjectThatKeepsItsCloudsGivesWhatANewOneGives)
   const Cloud::Ptr other_target = bumpySurface<PointXYZ>(4, 7000);
   const auto expectAsNew = [&](const Cloud::Ptr& cloud, const Cloud::Ptr& to) {
     BayesianIcp fresh;
-    fresh.setInputSource(cloud);
-    fresh.setInputTarget(to);
-    fresh.align(output);
+    aligned(fresh, cloud, to);
     const Eigen::Matrix4f expected = fresh.getFinalTransformation();
     icp.align(output);
     EXPECT_EQ(icp.getSamples(), fresh.getSamples());

@@ -2,7 +2,6 @@
 // indices, correspondence estimation, rejectors, trees, representation, estimation.
 #include "support/registration_support.h"
 
-#include <pcl/registration/correspondence_rejection_distance.h>
 #include <pcl/registration/correspondence_rejection_median_distance.h>
 #include <pcl/registration/correspondence_rejection_one_to_one.h>
 #include <pcl/registration/correspondence_rejection_surface_normal.h>
@@ -24,15 +23,6 @@ protected:
 
   BayesianIcp icp, plain;
 };
-
-registration::CorrespondenceRejectorDistance::Ptr
-rejectorBeyond(float max_distance)
-{
-  const auto rejector =
-      pcl::make_shared<registration::CorrespondenceRejectorDistance>();
-  rejector->setMaximumDistance(max_distance);
-  return (rejector);
-}
 
 /** Rejects nothing. */
 const registration::CorrespondenceRejectorDistance::Ptr no_limit = rejectorBeyond(1e3f);
@@ -216,17 +206,11 @@ TEST(Plugins, RejectorsThatNeedNormalsGetThoseOfTheMovedMiniBatch)
   BayesianIterativeClosestPoint<PointNormal, PointNormal> icp;
   usePaper(icp);
   icp.addCorrespondenceRejector(rejector);
-  icp.setInputSource(scans.source);
-  icp.setInputTarget(scans.target);
   const QuietConsole quiet;
-  PointCloud<PointNormal> output;
-  icp.align(output, half_turn);
+  aligned(icp, scans.source, scans.target, half_turn);
   EXPECT_TRUE(icp.hasConverged());
   EXPECT_GT(icp.getSamples().rows(), 0);
 }
-
-/** PCL's tree has returned whether it has been built since 1.14. */
-using Built = decltype(Tree().setInputCloud(Cloud::ConstPtr()));
 
 /** A search tree that counts queries. */
 struct CountingTree : Tree {

@@ -1,7 +1,6 @@
 // pcl::StochasticGradientDescentIterativeClosestPoint as a drop-in registration.
 #include "support/registration_support.h"
 
-#include <pcl/registration/correspondence_rejection_distance.h>
 #include <pcl/registration/stochastic_gradient_icp.h>
 #include <pcl/registration/transformation_estimation_2D.h>
 
@@ -195,10 +194,7 @@ TEST_F(SgdRegistration, ADistanceRejectorActsAsTheGate)
   SgdIcp gated, rejecting;
   gated.setMaxCorrespondenceDistance(0.03);
   align(gated);
-  const auto rejector =
-      pcl::make_shared<registration::CorrespondenceRejectorDistance>();
-  rejector->setMaximumDistance(0.03f);
-  rejecting.addCorrespondenceRejector(rejector);
+  rejecting.addCorrespondenceRejector(rejectorBeyond(0.03f));
   align(rejecting);
   EXPECT_LT(
       (rejecting.getFinalTransformation() - gated.getFinalTransformation()).norm(),
@@ -298,10 +294,7 @@ TEST_F(SgdRegistration, DoubleKeepsTheRotationOrthonormalAndNormalsAreTurned)
   for (auto& point : *with_normals.source)
     point.getNormalVector3fMap() = Eigen::Vector3f::UnitZ();
   StochasticGradientDescentIterativeClosestPoint<PointNormal, PointNormal, double> icp;
-  icp.setInputSource(with_normals.source);
-  icp.setInputTarget(with_normals.target);
-  PointCloud<PointNormal> moved;
-  icp.align(moved);
+  const auto moved = aligned(icp, with_normals.source, with_normals.target);
   const Eigen::Matrix3d R = icp.getFinalTransformation().topLeftCorner<3, 3>();
   EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
   const Eigen::Vector3f normal = moved[3].getNormalVector3fMap();

@@ -24,11 +24,8 @@ TEST(DropIn, KeepsFieldsAndRotatesNormals)
   scans.source->header.stamp = 123456;
   BayesianIterativeClosestPoint<PointXYZRGBNormal, PointXYZRGBNormal> icp;
   useFewSamples(icp);
-  icp.setInputSource(scans.source);
-  icp.setInputTarget(scans.target);
   const QuietConsole quiet;
-  PointCloud<PointXYZRGBNormal> output;
-  icp.align(output);
+  const auto output = aligned(icp, scans.source, scans.target);
   const Eigen::Matrix3f R = icp.getFinalTransformation().topLeftCorner<3, 3>();
   ASSERT_EQ(output.size(), scans.source->size());
   EXPECT_EQ(output.header.frame_id, "camera");
@@ -60,10 +57,7 @@ drawsOf()
   const Scans<PointT> scans;
   BayesianIterativeClosestPoint<PointT, PointT, Scalar> icp;
   useFewSamples(icp);
-  icp.setInputSource(scans.source);
-  icp.setInputTarget(scans.target);
-  PointCloud<PointT> output;
-  icp.align(output);
+  aligned(icp, scans.source, scans.target);
   EXPECT_TRUE(icp.hasConverged());
   EXPECT_LT((icp.getMeanTransformation() -
              bayesian_icp::matrixOf(icp.getMean()).template cast<Scalar>())
@@ -131,8 +125,7 @@ TEST_F(Posterior, IncludesTheGuessAndHasItAsPriorMean)
 {
   // A source that is far away and brought back by the guess: the draws are of the whole
   // source-to-target pose.
-  bayesian_icp::Vector6d far;
-  far << 10, -5, 3, 0.5, -0.3, 2.0;
+  const bayesian_icp::Vector6d far(10, -5, 3, 0.5, -0.3, 2.0);
   const Eigen::Matrix4f away = bayesian_icp::matrixOf(far).inverse().cast<float>();
   transformPointCloud(*scans.source, *scans.source, away);
   icp.setNumberOfSamples(400);
@@ -227,11 +220,9 @@ TEST_F(Posterior, IsEmptyForAGuessThatIsNotRigid)
 TEST_F(Posterior, IsEmptyForAGuessBeyondTheRangeOfFloat)
 {
   BayesianIterativeClosestPoint<PointXYZ, PointXYZ, double> in_double;
-  in_double.setInputSource(scans.source);
-  in_double.setInputTarget(scans.target);
   Eigen::Matrix4d guess = Eigen::Matrix4d::Identity();
   guess(0, 3) = 1e300;
-  in_double.align(output, guess);
+  output = aligned(in_double, scans.source, scans.target, guess);
   EXPECT_FALSE(in_double.hasConverged());
   EXPECT_EQ(in_double.getSummary().status, bayesian_icp::Status::InvalidInput);
   EXPECT_EQ(output[0].getVector3fMap(), (*scans.source)[0].getVector3fMap());

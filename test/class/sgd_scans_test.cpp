@@ -34,11 +34,8 @@ protected:
     options.max_iterations = 300;
     options.translation_epsilon = 0.0; // never at rest
     icp.setOptions(options);
-    icp.setInputSource(pair_.source);
-    icp.setInputTarget(pair_.target);
     icp.setIndices(some_);
-    Cloud output;
-    icp.align(output);
+    aligned(icp, pair_.source, pair_.target);
     return (bayesian_icp::poseError(icp.getResult().pose,
                                     bayesian_icp::poseOf(pair_.T_target_source),
                                     bayesian_icp::CovarianceConvention::R3xSO3));

@@ -31,9 +31,7 @@ height(double x, double y)
 Vector6d
 pose(double x, double y, double z, double roll, double pitch, double yaw)
 {
-  Vector6d result;
-  result << x, y, z, roll, pitch, yaw;
-  return result;
+  return {x, y, z, roll, pitch, yaw};
 }
 
 Vector6d
@@ -53,14 +51,6 @@ scan(std::uint64_t seed, Eigen::Index num_points, const Region& region, double n
     points.col(i) << x, y, height(x, y) + noise * random.normal();
   }
   return points;
-}
-
-Matrix3Xd
-moved(const Vector6d& motion, const Matrix3Xd& points)
-{
-  Matrix3Xd result;
-  movePoints(motion, points, result);
-  return result;
 }
 
 TorturePair

@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "support/test_support.h"
+
 #include <bayesian_icp/pose.h>
 
 #include <cstdint>
@@ -48,10 +50,6 @@ smallMotion();
 /** \brief Points of the surface with noise of the height [m]. */
 Eigen::Matrix3Xd
 scan(std::uint64_t seed, Eigen::Index num_points, const Region& region, double noise);
-
-/** \brief The points, moved. */
-Eigen::Matrix3Xd
-moved(const Vector6d& motion, const Eigen::Matrix3Xd& points);
 
 /** \brief The surface scanned twice, smallMotion() apart. */
 TorturePair

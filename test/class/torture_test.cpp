@@ -11,8 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -28,9 +26,6 @@ PrintTo(const TortureCase& the_case, std::ostream* stream)
 }
 
 namespace {
-
-/** chi^2 with 6 degrees of freedom exceeds it once in 10 000. */
-constexpr double max_squared_distance = 27.9;
 
 /** In standard deviations of the noise: a third of the way from the guess to the truth
  * of most pairs. */
@@ -68,24 +63,15 @@ estimateOf(const TorturePair& pair, const Options& options)
   icp.setOptions(options);
   if (options.exact.residual.max_distance < 1.0)
     icp.setMaxCorrespondenceDistance(options.exact.residual.max_distance);
-  icp.setInputSource(cloudOf(pair.source));
-  icp.setInputTarget(cloudOf(pair.target));
   const pcl::test::QuietConsole quiet;
-  pcl::PointCloud<pcl::PointXYZ> output;
-  icp.align(output, matrixOf(pair.guess).template cast<Scalar>());
+  pcl::test::aligned(icp,
+                     cloudOf(pair.source),
+                     cloudOf(pair.target),
+                     matrixOf(pair.guess).template cast<Scalar>());
   PosteriorEstimate estimate;
   estimate.summary = icp.getSummary();
   estimate.samples = icp.getSamples();
   return estimate;
-}
-
-/** Squared distance of the truth from the mean, in standard deviations. */
-double
-squaredDistance(const TorturePair& pair, const Summary& summary)
-{
-  const auto convention = CovarianceConvention::R3xSO3;
-  const Vector6d error = poseError(pair.truth, summary.mean, convention);
-  return error.dot(summary.covariance(convention).ldlt().solve(error));
 }
 
 /** Where the draws put a point of the source, along the axes that the clouds hold: root
@@ -135,15 +121,15 @@ isRight(const TorturePair& pair,
                                : options.preset == Preset::Exact
                                    ? options.exact.scale.measurement_sigma
                                    : options.paper.scale.measurement_sigma;
-  const double squared_distance = squaredDistance(pair, estimate.summary);
+  const double squared_error = squaredErrorOf(estimate.summary, pair.truth);
   const Placement placement =
       placementOf(pair, estimate.summary.mean, estimate.samples);
-  const bool is_right = pair.has_truth && squared_distance < max_squared_distance &&
+  const bool is_right = pair.has_truth && squared_error < chi_square_9999 &&
                         placement.error < max_error * pair.noise &&
                         placement.spread < sd_of_a_point &&
                         placement.offset_of_mean < max_offset * placement.spread;
   return (is_right ? ::testing::AssertionSuccess() : ::testing::AssertionFailure())
-         << "squared distance " << squared_distance << ", error " << placement.error
+         << "squared error " << squared_error << ", error " << placement.error
          << " m, spread " << placement.spread << " m, mean " << placement.offset_of_mean
          << " m off";
 }

@@ -6,6 +6,7 @@
 
 #include <pcl/common/transforms.h>
 #include <pcl/registration/bayesian_icp.h>
+#include <pcl/registration/correspondence_rejection_distance.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
@@ -13,6 +14,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace pcl::test {
 
@@ -21,6 +23,8 @@ using Icp = IterativeClosestPoint<PointXYZ, PointXYZ>;
 using BayesianIcp = BayesianIterativeClosestPoint<PointXYZ, PointXYZ>;
 using Estimation = registration::CorrespondenceEstimation<PointXYZ, PointXYZ>;
 using Tree = search::KdTree<PointXYZ>;
+/** PCL's tree has returned whether it has been built since 1.14. */
+using Built = decltype(Tree().setInputCloud(Cloud::ConstPtr()));
 
 constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
@@ -47,9 +51,7 @@ bumpySurface(std::uint64_t seed, std::size_t num_points = 900)
 inline bayesian_icp::Vector6d
 smallPose()
 {
-  bayesian_icp::Vector6d pose;
-  pose << 0.03, -0.02, 0.01, 0.04, -0.03, 0.05;
-  return (pose);
+  return {0.03, -0.02, 0.01, 0.04, -0.03, 0.05};
 }
 
 /** Source and target of a registration whose truth is smallPose(). */
@@ -92,15 +94,29 @@ public:
   ~QuietConsole() { console::setVerbosityLevel(console::L_INFO); }
 };
 
+/** Registers \p source to \p target.
+ * \return the source, moved */
+template <typename Registration, typename CloudPtr>
+auto
+aligned(Registration& icp,
+        const CloudPtr& source,
+        const CloudPtr& target,
+        const typename Registration::Matrix4& guess = Registration::Matrix4::Identity())
+{
+  icp.setInputSource(source);
+  icp.setInputTarget(target);
+  std::decay_t<decltype(*source)> output;
+  icp.align(output, guess);
+  return (output);
+}
+
 /** Two scans, and what becomes of the source. */
 class ScansTest : public ::testing::Test {
 protected:
   void
   align(Icp& icp, const Eigen::Matrix4f& guess = Eigen::Matrix4f::Identity())
   {
-    icp.setInputSource(scans.source);
-    icp.setInputTarget(scans.target);
-    icp.align(output, guess);
+    output = aligned(icp, scans.source, scans.target, guess);
   }
 
   Scans<PointXYZ> scans;
@@ -128,6 +144,15 @@ everyNth(index_t first, index_t end, index_t step = 1)
   for (index_t i = first; i < end; i += step)
     indices->push_back(i);
   return (indices);
+}
+
+inline registration::CorrespondenceRejectorDistance::Ptr
+rejectorBeyond(float max_distance)
+{
+  const auto rejector =
+      pcl::make_shared<registration::CorrespondenceRejectorDistance>();
+  rejector->setMaximumDistance(max_distance);
+  return (rejector);
 }
 
 inline void
