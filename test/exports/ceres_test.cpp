@@ -78,7 +78,7 @@ TEST(Ceres, SolutionAndCovarianceAreThoseOfTheMeasurement)
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> found;
   ASSERT_TRUE(of_solution.GetCovarianceMatrixInTangentSpace(blocks, found.data()));
   // Ceres's steps of a quaternion are half angles.
-  const Vector6d angles = (Vector6d() << 1.0, 1.0, 1.0, 2.0, 2.0, 2.0).finished();
+  const Vector6d angles(1.0, 1.0, 1.0, 2.0, 2.0, 2.0);
   EXPECT_LT(
       relativeDifference(angles.asDiagonal() * Matrix6d(found) * angles.asDiagonal(),
                          covariance),

@@ -141,7 +141,7 @@ TEST(Exports, G2oInformationWeighsDrawsLikeTheirDensity)
 TEST(Exports, InformationIsTheInverseWhateverTheUnits)
 {
   Matrix6d covariance = someCovariance(1.0);
-  const Vector6d scale = (Vector6d() << 1e-6, 1e3, 1.0, 1e-9, 1e-2, 1e5).finished();
+  const Vector6d scale(1e-6, 1e3, 1.0, 1e-9, 1e-2, 1e5);
   covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
   const Matrix6d information = informationOf(covariance);
   const Matrix6d product =

@@ -109,7 +109,7 @@ TEST(Gtsam, ReaderOfG2oTakesHalfAnglesForAngles)
       dynamic_cast<const gtsam::noiseModel::Gaussian*>(edge->noiseModel().get());
   ASSERT_NE(noise, nullptr);
   // What docs/exports.md warns of: half the deviation of each angle.
-  const Vector6d half_angles = (Vector6d() << 0.5, 0.5, 0.5, 1.0, 1.0, 1.0).finished();
+  const Vector6d half_angles(0.5, 0.5, 0.5, 1.0, 1.0, 1.0);
   const Matrix6d expected =
       half_angles.asDiagonal() * file.covariance * half_angles.asDiagonal();
   EXPECT_LT(relativeDifference(noise->covariance(), expected), 1e-8);

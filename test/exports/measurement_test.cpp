@@ -19,7 +19,7 @@ namespace {
 constexpr auto left = CovarianceConvention::LeftSE3;
 constexpr auto right = CovarianceConvention::RightSE3;
 
-const Vector6d some_pose = (Vector6d() << 0.4, -0.3, 0.2, 0.2, -0.1, 0.7).finished();
+const Vector6d some_pose(0.4, -0.3, 0.2, 0.2, -0.1, 0.7);
 
 Matrix6d
 informationAt(const PoseEstimate& estimate, CovarianceConvention convention)
@@ -53,7 +53,7 @@ TEST(WithoutPrior, GivesTheLikelihoodBack)
   factor(1, 5) = 0.005;
   factor(2, 3) = -0.004;
   Vector6d prior_mean = some_pose;
-  prior_mean += (Vector6d() << 0.01, -0.015, 0.01, 0.012, 0.0, -0.01).finished();
+  prior_mean += Vector6d(0.01, -0.015, 0.01, 0.012, 0.0, -0.01);
   const Prior prior(prior_mean, Vector6d::Constant(0.015 * 0.015), {0.3, -0.2, 0.5});
 
   constexpr Eigen::Index num_draws = 40000;
@@ -93,8 +93,7 @@ TEST(WithoutPrior, GivesTheLikelihoodBack)
 TEST(WithoutPrior, SaysWhereTheCloudsSayNothing)
 {
   // min_ess draws of the prior itself.
-  const Vector6d deviation =
-      (Vector6d() << 0.02, 0.02, 0.02, 0.01, 0.01, 0.03).finished();
+  const Vector6d deviation(0.02, 0.02, 0.02, 0.01, 0.01, 0.03);
   const Prior prior(some_pose, deviation.cwiseAbs2());
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     Random random(seed, 0);

@@ -2,6 +2,8 @@
 // and what is read from a text.
 #pragma once
 
+#include "support/test_support.h"
+
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
@@ -22,10 +24,7 @@ inline Matrix6d
 someCovariance(double deviation)
 {
   Random random(7, 0);
-  Matrix6d factor;
-  for (int i = 0; i < 6; ++i)
-    for (int k = 0; k < 6; ++k)
-      factor(i, k) = random.normal();
+  const Matrix6d factor = randomSquare(random);
   return deviation * deviation / 6.0 *
          (factor * factor.transpose() + Matrix6d::Identity());
 }
@@ -33,8 +32,7 @@ someCovariance(double deviation)
 inline const Vector6d&
 meanPoseOfTests()
 {
-  static const Vector6d mean =
-      (Vector6d() << 2.0, -1.0, 0.5, 0.4, -0.7, 2.5).finished();
+  static const Vector6d mean(2.0, -1.0, 0.5, 0.4, -0.7, 2.5);
   return mean;
 }
 

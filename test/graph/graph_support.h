@@ -48,8 +48,7 @@ somePoses(std::size_t count, Random& random)
 inline Poses
 steadyPoses(std::size_t count)
 {
-  Vector6d step;
-  step << 1.0, 0.0, 0.05, 0.0, 0.02, 0.1;
+  const Vector6d step(1.0, 0.0, 0.05, 0.0, 0.02, 0.1);
   Poses poses(1, Eigen::Matrix4d::Identity());
   while (poses.size() < count)
     poses.push_back(poses.back() * expSE3(step));
@@ -88,8 +87,8 @@ edgeAlongX(int target, int source, double metres, double variance)
 inline double
 squaredErrorOf(const app::GaussianPose& estimate, const Eigen::Matrix4d& truth)
 {
-  const Vector6d error = logSE3(matrixOf(estimate.mean).inverse() * truth);
-  return error.dot(estimate.covariance.ldlt().solve(error));
+  return squaredError(logSE3(matrixOf(estimate.mean).inverse() * truth),
+                      estimate.covariance);
 }
 
 /** \brief Both halves of \p noise, each by the inverse of T's rotation. */
@@ -97,19 +96,9 @@ inline Vector6d
 turnedBack(const Eigen::Matrix4d& T, const Vector6d& noise)
 {
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-  Vector6d turned;
-  turned << R.transpose() * noise.head<3>(), R.transpose() * noise.tail<3>();
-  return turned;
-}
-
-/** \brief 36 independent numbers of variance 1. */
-inline Matrix6d
-drawnSquare(Random& random)
-{
-  Matrix6d square;
-  for (int k = 0; k < 6; ++k)
-    square.col(k) = random.normal6();
-  return square;
+  return (Vector6d() << R.transpose() * noise.head<3>(),
+          R.transpose() * noise.tail<3>())
+      .finished();
 }
 
 /** \brief Unit vector of the motion [m, rad]. */
@@ -123,7 +112,7 @@ alongMotion(const Eigen::Matrix4d& T)
 inline std::vector<app::GraphEdge>
 drawnSpan(const Poses& poses, int span, const app::SharedNoise& shared, Random& random)
 {
-  const Matrix6d common = drawnSquare(random);
+  const Matrix6d common = randomSquare(random);
   std::vector<Vector6d> noises; // of scans
   for (std::size_t k = 0; k < poses.size(); ++k)
     noises.push_back(random.normal6());

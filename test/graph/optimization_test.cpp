@@ -28,6 +28,16 @@ chained(const std::vector<GraphEdge>& edges, std::size_t count)
   return poses;
 }
 
+/** Of \p count poses, from the chain of the first edges on. */
+OptimizedPoses
+optimized(const std::vector<GraphEdge>& edges, std::size_t count)
+{
+  const OptimizedPoses found =
+      optimizedPoses(chained(edges, count), edges, RobustLoss::None);
+  EXPECT_EQ(found.complaint, "");
+  return found;
+}
+
 /** Edges k to k + 1. */
 std::vector<GraphEdge>
 drawnChain(const Poses& poses, Random& random)
@@ -68,8 +78,7 @@ TEST(OptimizedPosesOf, AChainAreTheChainAndCovariancesAddUpAlongIt)
   const Poses truth = somePoses(5, random);
   std::vector<GraphEdge> edges = drawnChain(truth, random);
   const Poses chain = chained(edges, 5);
-  const OptimizedPoses found = optimizedPoses(chain, edges, RobustLoss::None);
-  EXPECT_EQ(found.complaint, "");
+  const OptimizedPoses found = optimized(edges, 5);
   ASSERT_EQ(found.poses.size(), 5u);
   EXPECT_EQ(found.poses[0].covariance, Matrix6d(Matrix6d::Zero()));
   for (std::size_t k = 1; k < 5; ++k) {
@@ -98,17 +107,14 @@ TEST(OptimizedPosesOf, TwoParallelEdgesAreTheirMeanWeightedByInformation)
   const Matrix6d covariance = (A + B).inverse();
   const Eigen::Matrix4d mean =
       edges[0].T_target_source * expSE3(Vector6d(covariance * (B * between)));
-  const OptimizedPoses found =
-      optimizedPoses(chained(edges, 2), edges, RobustLoss::None);
-  EXPECT_EQ(found.complaint, "");
-  const Vector6d error = errorOf(found.poses[1], mean);
+  const OptimizedPoses found = optimized(edges, 2);
   // To second order in the difference of the edges.
-  EXPECT_LT(error.norm(), 0.01 * between.norm());
+  EXPECT_LT(errorOf(found.poses[1], mean).norm(), 0.01 * between.norm());
   EXPECT_LT(relativeDifference(found.poses[1].covariance, covariance), 0.02);
-  const Matrix6d S = edges[0].covariance + edges[1].covariance;
-  EXPECT_NEAR(found.squared_errors[0] + found.squared_errors[1],
-              between.dot(S.inverse() * between),
-              0.01 * between.dot(S.inverse() * between));
+  const double expected =
+      squaredError(between, edges[0].covariance + edges[1].covariance);
+  EXPECT_NEAR(
+      found.squared_errors[0] + found.squared_errors[1], expected, 0.01 * expected);
 }
 
 TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
@@ -120,8 +126,7 @@ TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
     const Poses truth = somePoses(5, random);
     const std::vector<GraphEdge> edges = drawnLoop(truth, random);
     const Poses chain = chained(edges, 5);
-    const OptimizedPoses found = optimizedPoses(chain, edges, RobustLoss::None);
-    ASSERT_EQ(found.complaint, "");
+    const OptimizedPoses found = optimized(edges, 5);
     of_poses += squaredErrorOf(found.poses[4], truth[4]) / num_runs;
     for (const double squared_error : found.squared_errors)
       of_edges += squared_error / num_runs;
@@ -177,9 +182,7 @@ TEST(OptimizedPosesOf, WhatAllEdgesHaveInCommonAddsUpAlongAChain)
     edges.push_back(edgeAlongX(k, k + 1, 1.0, 1e-6));
     edges.back().shared = {0.0, 0.1};
   }
-  const OptimizedPoses found =
-      optimizedPoses(chained(edges, 11), edges, RobustLoss::None);
-  EXPECT_EQ(found.complaint, "");
+  const OptimizedPoses found = optimized(edges, 11);
   EXPECT_NEAR(found.poses[10].mean[0], 10.0, 1e-9);
   EXPECT_NEAR(found.poses[10].covariance(0, 0),
               1e-6 * (0.9 * 10.0 + 0.1 * 100.0),
@@ -196,7 +199,7 @@ TEST(OptimizedPosesOf, AGraphWithAWrongEdgeHardlyMoveWithARobustLoss)
   for (int k = 0; k + 2 < 8; ++k)
     edges.push_back(drawnEdge(truth, k, k + 2, random));
   const Poses chain = chained(edges, 8);
-  const OptimizedPoses right = optimizedPoses(chain, edges, RobustLoss::None);
+  const OptimizedPoses right = optimized(edges, 8);
   GraphEdge wrong = drawnEdge(truth, 1, 6, random);
   wrong.T_target_source(0, 3) += 1.0;
   edges.push_back(wrong);
@@ -299,8 +302,7 @@ TEST(Way, AlongAChainHasTheCovarianceThatTheOptimisationFinds)
   Random random(6, 0);
   const Poses truth = somePoses(4, random);
   std::vector<GraphEdge> edges = drawnChain(truth, random);
-  const OptimizedPoses found =
-      optimizedPoses(chained(edges, 4), edges, RobustLoss::None);
+  const OptimizedPoses found = optimized(edges, 4);
   const app::Way way = app::wayAlong(edges, 0, {0, 1, 2});
   EXPECT_EQ(way.end, 3);
   EXPECT_LT(errorOf(found.poses[3], way.T_begin_end).norm(), 1e-9);

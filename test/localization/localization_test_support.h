@@ -3,12 +3,12 @@
 #pragma once
 
 #include "io/cloud_file.h"
+#include "io/motion.h"
 #include "localization/localizer.h"
 #include "localization/messages.h"
 
 #include <array>
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -69,11 +69,7 @@ tableCloud(const std::string& name, const std::string& frame)
 inline Eigen::Matrix4d
 trueTablePose()
 {
-  Eigen::Matrix4d truth;
-  std::ifstream file(BAYESIAN_ICP_DATA_DIR "/table/T_target_source.txt");
-  for (Eigen::Index i = 0; i < 16; ++i)
-    file >> truth(i / 4, i % 4);
-  return truth;
+  return io::readMatrixFile(BAYESIAN_ICP_DATA_DIR "/table/T_target_source.txt");
 }
 
 /** The pose with independent errors along and about the map's axes. */

@@ -2,13 +2,13 @@
 #include "examples/kalman.h"
 #include "localization/localization_test_support.h"
 #include "localization/stated_pose.h"
+#include "support/test_support.h"
 
 #include <bayesian_icp/measurement.h>
 #include <bayesian_icp/random.h>
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 Vector6d
 somePose()
 {
-  return (Vector6d() << 12.0, -7.0, 0.4, 0.3, -0.5, 2.6).finished();
+  return Vector6d(12.0, -7.0, 0.4, 0.3, -0.5, 2.6);
 }
 
 StatedPose
@@ -57,9 +57,7 @@ Matrix6d
 correlatedCovariance()
 {
   Random random(3, 0);
-  Matrix6d factor;
-  for (int i = 0; i < 36; ++i)
-    factor(i / 6, i % 6) = 0.1 * random.normal();
+  const Matrix6d factor = 0.1 * randomSquare(random);
   return factor * factor.transpose();
 }
 
@@ -110,11 +108,9 @@ TEST(StatedPose, HasRotationsAboutTheFixedAxesOfTheMap)
   // A robot that looks along the map's y axis: it rolls about that axis.
   Vector6d pose = Vector6d::Zero();
   pose[5] = 0.5 * M_PI;
-  Vector6d variances;
-  variances << 1.0, 2.0, 3.0, 0.01, 0.04, 0.09;
+  const Vector6d variances(1.0, 2.0, 3.0, 0.01, 0.04, 0.09);
   const PriorOptions prior = priorFrom(stated(pose, variances.asDiagonal())).options;
-  Vector6d expected;
-  expected << 1.0, 2.0, 3.0, 0.04, 0.01, 0.09;
+  const Vector6d expected(1.0, 2.0, 3.0, 0.04, 0.01, 0.09);
   EXPECT_LT((prior.variance - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
@@ -143,8 +139,7 @@ TEST(StatedPose, OfAPlanarFilterNeedsAFloor)
   EXPECT_NE(refusalOf(pose).find("variance of z is 0"), std::string::npos)
       << refusalOf(pose);
   const PriorOptions prior = priorFrom(pose, {0.02, 0.03}).options;
-  Vector6d expected;
-  expected << 0.25, 0.25, 4e-4, 9e-4, 9e-4, 0.01;
+  const Vector6d expected(0.25, 0.25, 4e-4, 9e-4, 9e-4, 0.01);
   EXPECT_LT((prior.variance - expected).cwiseAbs().maxCoeff(), 1e-15);
 }
 
@@ -182,10 +177,9 @@ TEST(StatedPose, ThatCannotBeUsedIsRefusedWithTheReason)
 TEST(KalmanExample, HasAPriorInTheAxesOfTheTarget)
 {
   // A quarter turn: the source's x axis is the target's y axis.
-  Vector6d mean, variances, expected;
-  mean << 1.0, 2.0, 3.0, 0.0, 0.0, std::acos(0.0);
-  variances << 1.0, 4.0, 9.0, 0.01, 0.04, 0.09;
-  expected << 4.0, 1.0, 9.0, 0.01, 0.04, 0.09;
+  const Vector6d mean(1.0, 2.0, 3.0, 0.0, 0.0, std::acos(0.0)),
+      variances(1.0, 4.0, 9.0, 0.01, 0.04, 0.09),
+      expected(4.0, 1.0, 9.0, 0.01, 0.04, 0.09);
   const Prior prior = kalman::priorAbout({matrixOf(mean), variances.asDiagonal()});
   EXPECT_TRUE(prior.mean().isApprox(mean, 1e-12)) << prior.mean();
   EXPECT_TRUE(prior.variance().isApprox(25.0 * expected, 1e-9)) << prior.variance();
@@ -196,20 +190,18 @@ TEST(KalmanExample, FollowsATurnThatTheCloudsHardlySee)
   // A can whose axis is 70 mm from the origin; the clouds know its turn to 0.15 rad and
   // the rest to a tenth of a millimetre. Their mean is two deviations off.
   constexpr double turn_deviation = 0.15, deviation = 1e-4;
-  Vector6d turn;
-  turn << 0.0, -0.07, 0.0, 0.0, 0.0, 1.0; // exp() turns about (0.07 m, 0, 0)
+  const Vector6d turn(
+      0.0, -0.07, 0.0, 0.0, 0.0, 1.0); // exp() turns about (0.07 m, 0, 0)
   const Eigen::Matrix4d truth = matrixOf(somePose());
   kalman::State measured, state;
   measured.T = truth * expSE3(2.0 * turn_deviation * turn);
   measured.P = deviation * deviation * Matrix6d::Identity() +
                turn_deviation * turn_deviation * turn * turn.transpose();
-  Vector6d odometry_error;
-  odometry_error << 0.015, 0.02, -0.01, 0.01, 0.008, -0.009;
+  const Vector6d odometry_error(0.015, 0.02, -0.01, 0.01, 0.008, -0.009);
   state.T = truth * expSE3(odometry_error);
   state.P = 0.02 * 0.02 * Matrix6d::Identity();
   const kalman::State fused = update(state, measured);
   const Vector6d error = logSE3(fused.T.inverse() * truth);
-  // 99 % quantile of chi-square with six degrees of freedom.
-  EXPECT_LT(error.dot(fused.P.ldlt().solve(error)), 16.812) << error.transpose();
+  EXPECT_LT(squaredError(error, fused.P), chi_square_99) << error.transpose();
   EXPECT_NEAR(std::sqrt(fused.P(5, 5)), 0.02, 0.001);
 }

@@ -32,9 +32,7 @@ gradientOf(const Vector6d& pose,
            const Eigen::Matrix3Xd& points,
            const Correspondences& correspondences)
 {
-  Eigen::Matrix3Xd moved;
-  movePoints(pose, points, moved);
-  return meanGradient(pose, points, moved, correspondences);
+  return meanGradient(pose, points, test::moved(pose, points), correspondences);
 }
 
 TEST(Likelihood, GradientMatchesCentralDifferences)
@@ -80,8 +78,7 @@ TEST(Likelihood, WeightIsEffectivePointsOverSquaredSigma)
 TEST(PriorGradient, MatchesCentralDifferencesInBothFrames)
 {
   Random random(14, 0);
-  Vector6d variance;
-  variance << 0.125, 0.01, 2.0, 0.1, 0.5, 0.02;
+  const Vector6d variance(0.125, 0.01, 2.0, 0.1, 0.5, 0.02);
   for (const auto& reference :
        {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1.0, -2.0, 3.0)})
     for (int i = 0; i < 10; ++i) {

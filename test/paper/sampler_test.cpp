@@ -116,8 +116,7 @@ TEST(SgldStep, WithoutNoiseIsTheDescentStepOfEquation5)
 TEST(SgldStep, InjectsNoiseOfVarianceAlphaA)
 {
   Random random(2, 0);
-  Vector6d A;
-  A << 1, 2, 3, 4, 5, 6;
+  const Vector6d A(1, 2, 3, 4, 5, 6);
   const int n = 50000;
   Vector6d sum_of_squares = Vector6d::Zero();
   for (int i = 0; i < n; ++i)
@@ -132,8 +131,7 @@ TEST(Chains, SampleAGaussianWithTheBiasOfTheStepSize)
 {
   // theta' = (1 - alpha p / 2) theta + sqrt(alpha) xi has variance 1 / (p (1 - alpha
   // p/4)). The angles are so narrow that bringing them to canonical form changes none.
-  Vector6d precision;
-  precision << 10.0, 20.0, 60.0, 40.0, 80.0, 100.0;
+  const Vector6d precision(10.0, 20.0, 60.0, 40.0, 80.0, 100.0);
   const double alpha = 0.02;
   auto options = withSteps(alpha);
   options.num_burn_in = 500;
@@ -181,8 +179,7 @@ TEST(Chains, StartAtTheGuessPlusTheirSpread)
 {
   const int num_chains = 4000;
   auto options = withSteps(0.1);
-  Vector6d start;
-  start << 1, -2, 3, 0.1, 0.2, -0.3;
+  const Vector6d start(1, -2, 3, 0.1, 0.2, -0.3);
   options.initial_spread << 0.5, 0.1, 0.2, 0.01, 0.02, 0.0;
   // A flat density and no noise: the first draw is the start.
   options.sgld.noise_factor = 0.0;

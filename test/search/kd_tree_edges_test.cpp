@@ -24,7 +24,7 @@ INSTANTIATE_TEST_SUITE_P(InstructionSets,
 TEST_P(KdTreeEdges, GateIsInclusive)
 {
   Random random(3, 0);
-  const Eigen::Matrix3Xf points = clouds().front().make(random, 500);
+  const Eigen::Matrix3Xf points = uniformPoints(random, 500);
   const KdTree tree = treeOf(points);
   const Eigen::Vector3f query(0.3f, 0.4f, 2.f);
   const KdTree::Neighbor nearest = tree.nearest(query, infinity);
@@ -50,13 +50,13 @@ TEST_P(KdTreeEdges, EmptyCloudHasNoNeighbor)
 TEST_P(KdTreeEdges, NonFiniteColumnsAreNeverFound)
 {
   Random random(4, 0);
-  Eigen::Matrix3Xf points = clouds().front().make(random, 300);
+  Eigen::Matrix3Xf points = uniformPoints(random, 300);
   for (Eigen::Index i = 0; i < 300; i += 3)
     points(i % 2, i) = i % 4 == 0 ? nan : i % 4 == 1 ? infinity : -infinity;
   const KdTree tree = treeOf(points);
   EXPECT_EQ(tree.size(), 200u);
   for (std::uint32_t hint = 0; hint < 300; ++hint) {
-    const Eigen::Vector3f query = clouds().front().make(random, 1);
+    const Eigen::Vector3f query = uniformPoints(random, 1);
     ASSERT_TRUE(isSame(tree.nearest(query, infinity, hint),
                        bruteForce(points, query, infinity)));
   }
@@ -67,7 +67,7 @@ TEST_P(KdTreeEdges, NonFiniteColumnsAreNeverFound)
 TEST_P(KdTreeEdges, NonFiniteQueryHasNoNeighbor)
 {
   Random random(5, 0);
-  const KdTree tree = treeOf(clouds().front().make(random, 100));
+  const KdTree tree = treeOf(uniformPoints(random, 100));
   for (const float coordinate : {nan, infinity, -infinity})
     for (int axis = 0; axis < 3; ++axis) {
       const Eigen::Vector3f query = coordinate * Eigen::Vector3f::Unit(axis);
@@ -79,10 +79,10 @@ TEST_P(KdTreeEdges, NonFiniteQueryHasNoNeighbor)
 TEST_P(KdTreeEdges, HugeCoordinatesAreSearchedAndOverflowIsBeyondEveryGate)
 {
   Random random(6, 0);
-  const Eigen::Matrix3Xf points = 1e18f * clouds().front().make(random, 2000);
+  const Eigen::Matrix3Xf points = 1e18f * uniformPoints(random, 2000);
   const KdTree tree = treeOf(points);
   for (std::uint32_t hint = 0; hint < 100; ++hint) {
-    const Eigen::Vector3f query = 1e18f * clouds().front().make(random, 1);
+    const Eigen::Vector3f query = 1e18f * uniformPoints(random, 1);
     const KdTree::Neighbor found = tree.nearest(query, infinity, hint);
     ASSERT_NE(found.index, KdTree::none);
     ASSERT_TRUE(isSame(found, bruteForce(points, query, infinity)));

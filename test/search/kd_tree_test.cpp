@@ -98,12 +98,12 @@ TEST_P(KdTreePath, OfTwoEquallyNearPointsInDifferentSubtreesTheFirstIsFound)
 TEST(KdTree, AllInstructionSetsGiveTheSameBits)
 {
   Random random(7, 0);
-  const Eigen::Matrix3Xf points = clouds().front().make(random, 20000);
+  const Eigen::Matrix3Xf points = uniformPoints(random, 20000);
   std::vector<KdTree> trees;
   for (const InstructionSet set : supportedInstructionSets())
     trees.emplace_back(points, 1, set);
   for (int i = 0; i < 2000; ++i) {
-    const Eigen::Vector3f query = clouds().front().make(random, 1) + offset(random, i);
+    const Eigen::Vector3f query = uniformPoints(random, 1) + offset(random, i);
     const auto hint = static_cast<std::uint32_t>(random.index(20000));
     const KdTree::Neighbor expected = trees.front().nearest(query, infinity);
     for (const KdTree& tree : trees)
@@ -114,8 +114,8 @@ TEST(KdTree, AllInstructionSetsGiveTheSameBits)
 TEST(KdTree, SeveralThreadsMaySearchAtOnce)
 {
   Random random(8, 0);
-  const Eigen::Matrix3Xf points = clouds().front().make(random, 5000);
-  const Eigen::Matrix3Xf queries = clouds().front().make(random, 5000);
+  const Eigen::Matrix3Xf points = uniformPoints(random, 5000);
+  const Eigen::Matrix3Xf queries = uniformPoints(random, 5000);
   const KdTree tree(points);
   std::vector<KdTree::Neighbor> found(5000), expected(5000);
   const auto search = [&](std::size_t from, std::vector<KdTree::Neighbor>& to) {
@@ -161,7 +161,7 @@ TEST(SearchInBlocks, PassesOnAnException)
 TEST(KdTree, AnswersAfterAMove)
 {
   Random random(9, 0);
-  const Eigen::Matrix3Xf points = clouds().front().make(random, 200);
+  const Eigen::Matrix3Xf points = uniformPoints(random, 200);
   KdTree built(points);
   KdTree tree(Eigen::Matrix3Xf::Zero(3, 1));
   tree = std::move(built);

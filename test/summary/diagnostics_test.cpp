@@ -2,8 +2,6 @@
  * \brief The convergence diagnostics against R's package posterior (stored values, see
  * data/diagnostics/make_reference.R) and against the theory of AR(1) chains.
  */
-#include "summary/diagnostics_data.h"
-
 #include <bayesian_icp/diagnostics.h>
 
 #include <gtest/gtest.h>
@@ -11,8 +9,12 @@
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <limits>
 #include <random>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -23,11 +25,6 @@ using bayesian_icp::mcseMean;
 using bayesian_icp::quantile;
 using bayesian_icp::rhat;
 using bayesian_icp::tailEss;
-using diagnostics_data::flatten;
-using diagnostics_data::number;
-using diagnostics_data::readChains;
-using diagnostics_data::readCsv;
-using diagnostics_data::Rows;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -38,6 +35,47 @@ constexpr double tolerance = 1e-10;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/** \brief The cells of a file in data/diagnostics, without the heading. */
+Rows
+readCsv(const std::string& name)
+{
+  std::ifstream file(BAYESIAN_ICP_TEST_DATA_DIR "/diagnostics/" + name + ".csv");
+  std::string line;
+  if (!std::getline(file, line))
+    throw std::runtime_error("no test data " + name);
+  Rows rows;
+  while (std::getline(file, line)) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');)
+      rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+double
+number(const std::string& cell)
+{
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  if (cell.empty() || *end != '\0')
+    throw std::runtime_error("not a number: " + cell);
+  return value;
+}
+
+MatrixXd
+readChains(const std::string& name)
+{
+  const Rows rows = readCsv(name);
+  MatrixXd draws(rows.size(), rows.at(0).size());
+  for (Index draw = 0; draw < draws.rows(); ++draw)
+    for (Index chain = 0; chain < draws.cols(); ++chain)
+      draws(draw, chain) = number(rows[draw].at(chain));
+  return draws;
+}
 
 /** \brief Equal up to the tolerance; NaN and infinity equal themselves only. */
 void
@@ -197,7 +235,7 @@ TEST(Quantile, EqualsTypeSevenOfR)
   ASSERT_GE(references.size(), 50u);
   for (const auto& reference : references) {
     SCOPED_TRACE(reference.at(0) + " at " + reference.at(1));
-    const VectorXd values = flatten(readChains(reference[0]));
+    const VectorXd values = readChains(reference[0]).reshaped();
     // Bit by bit: the tail ESS counts the draws up to a quantile that is one of them.
     EXPECT_EQ(quantile(values, number(reference[1])), number(reference.at(2)));
   }

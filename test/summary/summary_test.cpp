@@ -34,9 +34,7 @@ gaussianDraws(Random& random,
 Matrix6d
 someCovariance(Random& random)
 {
-  Matrix6d factor;
-  for (int k = 0; k < 6; ++k)
-    factor.col(k) = 0.02 * random.normal6();
+  const Matrix6d factor = 0.02 * test::randomSquare(random);
   return factor * factor.transpose() + 1e-4 * Matrix6d::Identity();
 }
 
@@ -226,8 +224,7 @@ TEST(Covariance, LeftIsTheAdjointOfRight)
 TEST(Covariance, HoldsTheTruthFarFromTheOriginAsNearIt)
 {
   Random random(41, 0);
-  const Vector6d deviations =
-      (Vector6d() << 1e-4, 1e-4, 2e-4, 0.004, 0.004, 0.003).finished();
+  const Vector6d deviations(1e-4, 1e-4, 2e-4, 0.004, 0.004, 0.003);
   const Vector6d near_truth = test::randomPose(random, 0.5);
   const PoseMatrix near_draws = gaussianDraws(
       random,
@@ -242,8 +239,8 @@ TEST(Covariance, HoldsTheTruthFarFromTheOriginAsNearIt)
                                const PoseMatrix& draws,
                                CovarianceConvention convention) {
     const Vector6d mean = meanPose(draws);
-    const Vector6d error = poseError(truth, mean, convention);
-    return error.dot(covarianceAbout(mean, draws, convention).ldlt().solve(error));
+    return test::squaredError(poseError(truth, mean, convention),
+                              covarianceAbout(mean, draws, convention));
   };
   // A deviation along each of six axes; standard errors are 6 sqrt(2 / n) by the
   // covariance and 2 sqrt(6 / n) by the mean.

@@ -30,8 +30,7 @@ model()
 {
   MotionModel model;
   model.velocity << 5.0, 0.5, -0.2, 0.1, -0.2, 0.8;
-  Vector6d sd;
-  sd << 0.3, 0.1, 0.1, 0.02, 0.02, 0.05;
+  const Vector6d sd(0.3, 0.1, 0.1, 0.02, 0.02, 0.05);
   model.velocity_covariance = sd.cwiseAbs2().asDiagonal();
   model.acceleration = 0.5;
   model.angular_acceleration = 0.1;
@@ -79,7 +78,7 @@ runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
   Eigen::Matrix4d truth = Eigen::Matrix4d::Identity(), target = truth;
   const Matrix6d root =
       Eigen::SelfAdjointEigenSolver<Matrix6d>(covariance).operatorSqrt();
-  const Matrix6d common = drawnSquare(random);
+  const Matrix6d common = randomSquare(random);
   Vector6d noise_of_target = random.normal6();
   RunOfTrack run;
   int num_on_target = 0;
@@ -177,8 +176,7 @@ TEST(MotionFilter, GivesBackTheRegistrationWhereNothingElseIsKnown)
   filter.predict(seconds);
   Matrix6d covariance = registrationCovariance();
   covariance(0, 0) = 1e-4;
-  Vector6d motion;
-  motion << 0.4, -0.1, 0.2, 0.02, 0.05, -0.1;
+  const Vector6d motion(0.4, -0.1, 0.2, 0.02, 0.05, -0.1);
   filter.update({motion, covariance}, app::independent_noise);
   EXPECT_LT((filter.pose().mean - motion).cwiseAbs().maxCoeff(), 1e-4);
   EXPECT_LT((filter.pose().covariance - covariance).cwiseAbs().maxCoeff(), 1e-8);
@@ -200,8 +198,7 @@ TEST(MotionFilter, FollowsATurnThatTheCloudsHardlySee)
                               turn_deviation * turn_deviation * turn * turn.transpose();
   const double squared_innovation =
       filter.update({poseOf(expSE3(2.0 * turn_deviation * turn)), covariance});
-  // 99 % quantile of chi-square with six degrees of freedom.
-  EXPECT_LT(squared_innovation, 16.812);
-  EXPECT_LT(squaredErrorOf(filter.pose(), Eigen::Matrix4d::Identity()), 16.812);
+  EXPECT_LT(squared_innovation, chi_square_99);
+  EXPECT_LT(squaredErrorOf(filter.pose(), Eigen::Matrix4d::Identity()), chi_square_99);
   EXPECT_NEAR(std::sqrt(filter.pose().covariance(5, 5)), 0.02, 0.001);
 }
