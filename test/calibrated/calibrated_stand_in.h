@@ -55,8 +55,7 @@ struct StandIn {
   static Eigen::Isometry3d
   mode()
   {
-    const Vector6d pose(0.4, -0.3, 0.8, 0.1, -0.2, 0.5);
-    return isometryOf(pose);
+    return isometryOf({0.4, -0.3, 0.8, 0.1, -0.2, 0.5});
   }
 
   static Eigen::Vector3d
@@ -95,10 +94,9 @@ private:
   static Prior
   makePrior(const Options& options)
   {
-    Vector6d sd, offset;
-    sd << Eigen::Vector3d::Constant(options.prior_translation), options.prior_tilt,
-        options.prior_tilt, options.prior_yaw;
-    offset << 0.5, -0.3, 0.8, -0.6, 0.4, 0.3;
+    const double length = options.prior_translation, tilt = options.prior_tilt;
+    const Vector6d sd(length, length, length, tilt, tilt, options.prior_yaw),
+        offset(0.5, -0.3, 0.8, -0.6, 0.4, 0.3);
     const Eigen::Vector3d reference = mode().inverse() * centre();
     Vector6d mean = poseOf(mode().matrix()) + offset.cwiseProduct(sd);
     // The offset is that of the reference point, wherever the mean turns it.

@@ -29,15 +29,9 @@ height(double x, double y)
 } // namespace
 
 Vector6d
-pose(double x, double y, double z, double roll, double pitch, double yaw)
-{
-  return {x, y, z, roll, pitch, yaw};
-}
-
-Vector6d
 smallMotion()
 {
-  return pose(0.01, -0.02, 0.015, 0.02, -0.03, 0.025);
+  return {0.01, -0.02, 0.015, 0.02, -0.03, 0.025};
 }
 
 Matrix3Xd

@@ -39,10 +39,6 @@ struct Region {
 };
 constexpr Region whole = {-0.5, 0.5, -0.3, 0.3};
 
-/** \brief Six numbers as a pose [m, rad]. */
-Vector6d
-pose(double x, double y, double z, double roll, double pitch, double yaw);
-
 /** \brief The truth of most pairs. */
 Vector6d
 smallMotion();

@@ -78,9 +78,7 @@ TEST(Preconditioner, FollowsEquations10And11)
   options.decay_rate = 0.75;
   options.lambda_rms = 1e-3;
   RmsPropPreconditioner preconditioner(options);
-  Vector6d first, second;
-  first << 1, -2, 3, -4, 5, 0;
-  second << -1, 1, 0, 2, 0.5, 0;
+  const Vector6d first(1, -2, 3, -4, 5, 0), second(-1, 1, 0, 2, 0.5, 0);
   preconditioner.update(first);
   const Vector6d A = preconditioner.update(second);
   for (int k = 0; k < 6; ++k) {
@@ -105,10 +103,8 @@ TEST(StepSize, DecaysInBlocksTowardsTheEnd)
 TEST(SgldStep, WithoutNoiseIsTheDescentStepOfEquation5)
 {
   Random random(1, 0);
-  Vector6d pose, gradient, A;
-  pose << 1, 2, 3, 0.1, 0.2, 0.3;
-  gradient << 1, -1, 2, -2, 3, -3;
-  A << 1, 2, 3, 4, 5, 6;
+  const Vector6d pose(1, 2, 3, 0.1, 0.2, 0.3), gradient(1, -1, 2, -2, 3, -3),
+      A(1, 2, 3, 4, 5, 6);
   const Vector6d next = sgldStep(pose, gradient, A, 0.02, 0.0, random);
   EXPECT_LT((next - (pose - 0.01 * A.cwiseProduct(gradient))).norm(), 1e-15);
 }

@@ -186,12 +186,10 @@ TEST(MotionFilter, FollowsATurnThatTheCloudsHardlySee)
 {
   // As KalmanExample.FollowsATurnThatTheCloudsHardlySee: an axis 70 mm from the origin.
   constexpr double turn_deviation = 0.15, deviation = 1e-4;
-  Vector6d turn, off;
-  turn << 0.0, -0.07, 0.0, 0.0, 0.0, 1.0;
-  off << 0.015, 0.02, -0.01, 0.01, 0.008, -0.009;
+  const Vector6d turn(0.0, -0.07, 0.0, 0.0, 0.0, 1.0);
   MotionModel still;
   still.velocity_covariance = 0.02 * 0.02 * Matrix6d::Identity();
-  still.velocity = off;
+  still.velocity << 0.015, 0.02, -0.01, 0.01, 0.008, -0.009;
   MotionFilter filter(still);
   filter.predict(1.0);
   const Matrix6d covariance = deviation * deviation * Matrix6d::Identity() +
