@@ -1,9 +1,10 @@
 #include "batch/batch_file.h"
 
-#include "batch/batch_line.h"
 #include "io/errors.h"
 #include "io/folders.h"
 #include "io/numbers.h"
+#include "register/json_values.h"
+#include "register/posterior_files.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +13,7 @@
 namespace bayesian_icp::app {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
 namespace {
 
@@ -34,7 +36,60 @@ rankFilesOf(const std::string& name)
   return found;
 }
 
+ordered_json
+covariancesOf(const Summary& summary)
+{
+  auto list = ordered_json::array();
+  for (const auto convention :
+       {CovarianceConvention::Parameters, CovarianceConvention::RightSE3})
+    list.push_back(covarianceJson(convention, summary.covariance(convention)));
+  return list;
+}
+
+void
+addPosterior(const Run& run, ordered_json& line)
+{
+  const RegistrationResult& result = run.result;
+  line["mean"] = meanJson(result.summary.mean);
+  line["covariances"] = covariancesOf(result.summary);
+  line["final_transformation"] = finalTransformationJson(result);
+  line["icp"] = icpJson(result);
+  line["draws"] = result.summary.num_draws;
+  line["source"] = cloudJson(run.source);
+  line["target"] = cloudJson(run.target);
+  line["time"] = timeJson(run);
+}
+
+void
+addNothing(const BatchPair& pair, ordered_json& line)
+{
+  for (const char* const key : {"mean", "covariances", "final_transformation", "icp"})
+    line[key] = nullptr;
+  line["draws"] = 0;
+  line["source"] = {{"file", pair.source_file}};
+  line["target"] = {{"file", pair.target_file}};
+  line["time"] = ordered_json::object();
+}
+
 } // namespace
+
+std::string
+batchLine(const BatchResult& result)
+{
+  std::string message = result.message;
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  ordered_json line = {
+      {"name", result.pair.name}, {"status", result.status}, {"message", message}};
+  if (result.run != nullptr)
+    addPosterior(*result.run, line);
+  else
+    addNothing(result.pair, line);
+  line["time"]["total_s"] = result.seconds;
+  line["seed"] = result.pair.settings.options.chains.seed;
+  line["settings_id"] = result.pair.settings_id;
+  // Names of files need not be UTF-8.
+  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
 
 std::string
 rankFileName(const std::string& name, int rank)
@@ -56,20 +111,23 @@ BatchFile::BatchFile(const std::string& name, const std::vector<BatchPair>& pair
 bool
 BatchFile::note(const std::string& line)
 {
-  FinishedPair finished;
+  std::string pair, settings_id, status;
   try {
-    finished = readBatchLine(line);
+    const auto document = nlohmann::json::parse(line);
+    document.at("name").get_to(pair);
+    document.at("settings_id").get_to(settings_id);
+    document.at("status").get_to(status);
   }
-  catch (const std::exception&) {
+  catch (const nlohmann::json::exception&) {
     throw io::FileError(name_, "has a line that is no result: " + io::inQuotes(line));
   }
-  const auto found = settings_ids_.find(finished.name);
-  if (found != settings_ids_.end() && found->second != finished.settings_id)
+  const auto found = settings_ids_.find(pair);
+  if (found != settings_ids_.end() && found->second != settings_id)
     throw io::FileError(name_,
-                        "has a result of pair " + io::inQuotes(finished.name) +
+                        "has a result of pair " + io::inQuotes(pair) +
                             " with other settings, files or program version; take "
                             "another file, or remove its line");
-  return statuses_.emplace(finished.name, finished.status).second;
+  return statuses_.emplace(pair, status).second;
 }
 
 void
@@ -103,21 +161,14 @@ BatchFile::remaining() const
   return positions;
 }
 
-std::size_t
-BatchFile::numFinished() const
-{
-  return pairs_.size() - remaining().size();
-}
-
-std::size_t
-BatchFile::numNotOk() const
+bool
+BatchFile::areAllOk() const
 {
   const std::string ok = toString(Status::Ok);
-  return static_cast<std::size_t>(
-      std::count_if(pairs_.begin(), pairs_.end(), [&](const BatchPair& pair) {
-        const auto found = statuses_.find(pair.name);
-        return found != statuses_.end() && found->second != ok;
-      }));
+  return std::none_of(pairs_.begin(), pairs_.end(), [&](const BatchPair& pair) {
+    const auto found = statuses_.find(pair.name);
+    return found != statuses_.end() && found->second != ok;
+  });
 }
 
 } // namespace bayesian_icp::app

@@ -1,9 +1,10 @@
 /** \file
- * \brief The file of a batch's lines, which one or several processes write.
+ * \brief The lines of JSON that the pairs of a batch end in, and the file of them,
+ * which one or several processes write.
  */
 #pragma once
 
-#include "batch/manifest.h"
+#include "batch/batch_run.h"
 #include "io/line_file.h"
 
 #include <map>
@@ -12,6 +13,12 @@
 #include <vector>
 
 namespace bayesian_icp::app {
+
+/** \brief The line of a pair, without a line break. The parts are those of
+ * posterior.json; of the covariances, `parameters` and `right_se3`. A pair that could
+ * not be registered has status "error" and the same keys. */
+std::string
+batchLine(const BatchResult& result);
 
 /** \brief FILE with one line per pair, and FILE.rank1, FILE.rank2, ... in which other
  * processes of a running batch put their lines. Whatever was killed at whatever time,
@@ -27,12 +34,9 @@ public:
   std::vector<std::size_t>
   remaining() const;
 
-  /** \brief Number of pairs of the manifest that have a line, and of those whose status
-   * is not "ok". */
-  std::size_t
-  numFinished() const;
-  std::size_t
-  numNotOk() const;
+  /** \brief Whether no pair of the manifest has a line whose status is not "ok". */
+  bool
+  areAllOk() const;
 
   /** \brief Write a line, at once. \throws io::FileError */
   void

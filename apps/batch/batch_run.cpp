@@ -2,14 +2,14 @@
 
 #include "io/interrupt.h"
 #include "io/motion.h"
-#include "register/output_files.h"
+#include "register/posterior_files.h"
+#include "threads/first_exception.h"
 
 #include <omp.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <new>
@@ -35,35 +35,22 @@ public:
   void
   work()
   {
-    try {
-      while (!isStopped()) {
-        const std::size_t next = next_++;
-        if (next >= pairs_.size())
-          return;
-        handle(pairs_[next]);
-      }
-    }
-    catch (...) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      if (!failure_)
-        failure_ = std::current_exception();
-      has_failed_ = true;
-    }
+    for (std::size_t i = next_++; i < pairs_.size() && !isStopped(); i = next_++)
+      failure_.guard([&] { handle(pairs_[i]); });
   }
 
   /** \throws what one of the threads has met */
   void
   rethrow() const
   {
-    if (failure_)
-      std::rethrow_exception(failure_);
+    failure_.rethrow();
   }
 
 private:
   bool
   isStopped() const
   {
-    return has_failed_ || io::wasInterrupted();
+    return failure_.isThere() || io::wasInterrupted();
   }
 
   Run
@@ -119,7 +106,7 @@ private:
   give(const BatchResult& result)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!has_failed_)
+    if (!failure_.isThere())
       take_(result);
   }
 
@@ -127,9 +114,8 @@ private:
   const BatchRunOptions& options_;
   const std::function<void(const BatchResult&)>& take_;
   std::atomic<std::size_t> next_{0};
-  std::atomic<bool> has_failed_{false};
+  FirstException failure_;
   std::mutex mutex_;
-  std::exception_ptr failure_;
 };
 
 } // namespace

@@ -1,26 +1,145 @@
 /** \file
  * \brief pcl_bayesian_icp_batch: registers many pairs of clouds.
  */
-#include "batch/batch_command.h"
 #include "batch/batch_file.h"
-#include "batch/batch_line.h"
 #include "batch/batch_run.h"
 #include "batch/ranks.h"
 #include "io/cloud_file.h"
+#include "io/command_line.h"
 #include "io/interrupt.h"
 #include "io/numbers.h"
 #include "io/program.h"
+#include "register/settings_options.h"
 
 #include <bayesian_icp/summary.h>
 
 #include <iostream>
 #include <optional>
+#include <sstream>
 
 namespace bayesian_icp::app {
 namespace {
 
+namespace po = boost::program_options;
+
 /** Failures have those of io::explainFailure(). */
 enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
+
+/** What the user asks for. */
+struct Request {
+  std::string manifest_file;
+  /** Empty for standard output. */
+  std::string results_file;
+  /** Empty if no files of single pairs are wanted. */
+  std::string output_folder;
+  bool use_suggested_prior = false;
+  bool is_quiet = false;
+  /** Of pairs that say nothing else. */
+  Settings settings;
+  /** Something that the user ought to know; empty if nothing. */
+  std::string note;
+};
+
+po::options_description
+describeOptions(Request& request)
+{
+  po::options_description group("General");
+  // clang-format off
+  group.add_options()
+    ("help,h", "Show this text.")
+    ("version", "Show the version.")
+    ("results", io::fileName("FILE", request.results_file),
+     "Write the lines to this file, and skip pairs that already have a line in it. "
+     "(default: standard output)")
+    ("output,o", io::fileName("DIR", request.output_folder),
+     "Write DIR/NAME/posterior.json and samples.csv for each pair. Without it, only "
+     "the lines are written.")
+    ("suggested-prior", io::flag(request.use_suggested_prior),
+     "Take the prior about the guess and the source's centroid, with the standard "
+     "deviations 'suggested_prior_sigma' of each pair. Without it, all pairs have the "
+     "prior of --prior-mean and --prior-variance.")
+    ("quiet", io::flag(request.is_quiet), "Show no progress.");
+  // clang-format on
+  po::options_description all;
+  all.add(group);
+  describeSettings(Settings(), all);
+  return all;
+}
+
+void
+refuseSecondPrior(const po::variables_map& given)
+{
+  for (const char* const name : {"prior-mean", "prior-variance", "prior-frame"})
+    if (given.count(name) > 0)
+      throw io::UsageError("--suggested-prior and --" + std::string(name) +
+                           " exclude each other");
+}
+
+std::string
+helpText(const po::options_description& options)
+{
+  std::ostringstream help;
+  help << R"(Usage: pcl_bayesian_icp_batch MANIFEST [options]
+       mpirun -n N pcl_bayesian_icp_batch MANIFEST --results FILE [options]
+
+Registers many pairs of clouds in parallel. Prints one line of JSON for each
+pair as soon as it is finished. MANIFEST is a JSON list of pairs,
+  {"name": ..., "source": FILE, "target": FILE, "guess": FILE or six numbers,
+   "settings": {...}}
+whose files are relative to the manifest. Guess and settings are optional. The
+settings have the form of the 'options' of a posterior.json. They take
+precedence over the options below, which apply to all pairs. --threads is the
+number of threads of the whole process: each pair has one thread if there are
+more pairs than threads. docs/batch.md describes the keys of a line.
+
+A batch that was stopped continues if it is started again with the same
+--results. If a pair cannot be read or registered, its line has the status
+"error", and the other pairs continue.
+)" << options
+       << R"(
+Exit codes:
+  0    the status of all pairs is "ok"
+  1    the status of some pairs is not "ok"
+  2    wrong usage
+  3    the manifest cannot be used, or a result cannot be written
+  130  interrupted (Ctrl-C or SIGTERM); the pairs under way were abandoned
+
+Example:
+  pcl_bayesian_icp_batch manifest.json --results results.jsonl \
+      --prior-variance 0.01
+)";
+  return help.str();
+}
+
+/** Reads the command line, and the configuration file that it names.
+ * \return nothing if it asks for help or version, which has been printed
+ * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
+ *         read */
+std::optional<Request>
+parseCommandLine(int argc, const char* const* argv)
+{
+  Request request;
+  const po::options_description options = describeOptions(request);
+  const po::variables_map given = io::splitCommandLine(argc, argv, options, "manifest");
+  if (io::printHelpOrVersion(
+          given,
+          std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
+              (Ranks::hasMpi() ? " with MPI" : " without MPI"),
+          [&options] { return helpText(options); }))
+    return std::nullopt;
+  const std::vector<std::string> manifests = io::optionTexts(given, "manifest");
+  if (manifests.empty())
+    throw io::UsageError("expected a manifest");
+  if (manifests.size() > 1)
+    throw io::UsageError("expected one manifest, but got a second file: " +
+                         io::inQuotes(manifests[1]));
+  request.manifest_file = manifests[0];
+  io::takeOptions(given, options);
+  if (request.use_suggested_prior)
+    refuseSecondPrior(given);
+  request.settings = settingsFrom(given, Settings(), request.note);
+  return request;
+}
 
 void
 tell(const std::string& message)
@@ -69,13 +188,13 @@ exitCodeOf(bool are_all_ok)
 }
 
 BatchRunOptions
-runOptionsOf(const BatchRequest& request)
+runOptionsOf(const Request& request)
 {
   return {request.settings.options.chains.num_threads, request.output_folder};
 }
 
 int
-runToStandardOutput(const BatchRequest& request,
+runToStandardOutput(const Request& request,
                     const Ranks& ranks,
                     const std::vector<BatchPair>& pairs)
 {
@@ -87,37 +206,33 @@ runToStandardOutput(const BatchRequest& request,
   return exitCodeOf(progress.numNotOk() == 0);
 }
 
-/** This process's part of the pairs at \p positions ("3 5 9 ..."). */
+/** This process's part of the pairs at \p positions. */
 std::vector<BatchPair>
 shareOf(const Ranks& ranks,
-        const std::string& positions,
+        const std::vector<std::size_t>& positions,
         const std::vector<BatchPair>& pairs)
 {
   std::vector<BatchPair> share;
-  int turn = 0;
-  for (const std::string_view word : io::words(positions)) {
-    std::size_t position = 0;
-    io::readNumber(word, position);
-    if (turn++ % ranks.size() == ranks.rank())
-      share.push_back(pairs.at(position));
-  }
+  for (auto i = static_cast<std::size_t>(ranks.rank()); i < positions.size();
+       i += static_cast<std::size_t>(ranks.size()))
+    share.push_back(pairs.at(positions[i]));
   return share;
 }
 
 /** Process 0 owns the file; the others write theirs, which it takes in at the end. */
 int
-runToFile(const BatchRequest& request,
+runToFile(const Request& request,
           const Ranks& ranks,
           const std::vector<BatchPair>& pairs)
 {
   std::optional<BatchFile> file;
-  std::string positions;
+  std::vector<std::size_t> positions;
   if (ranks.rank() == 0) {
     file.emplace(request.results_file, pairs);
-    for (const std::size_t position : file->remaining())
-      positions += io::textOf(position) + ' ';
-    if (file->numFinished() > 0 && !request.is_quiet)
-      tell(io::textOf(file->numFinished()) + " of " + io::textOf(pairs.size()) +
+    positions = file->remaining();
+    const std::size_t num_finished = pairs.size() - positions.size();
+    if (num_finished > 0 && !request.is_quiet)
+      tell(io::textOf(num_finished) + " of " + io::textOf(pairs.size()) +
            " pairs already have a line in " + request.results_file);
   }
   const auto share = shareOf(ranks, ranks.broadcast(positions), pairs);
@@ -137,16 +252,16 @@ runToFile(const BatchRequest& request,
   ranks.maximum(0); // All have written their parts.
   if (file)
     file->takeRankFiles();
-  return ranks.maximum(exitCodeOf(!file || file->numNotOk() == 0));
+  return ranks.maximum(exitCodeOf(!file || file->areAllOk()));
 }
 
 int
 runTool(int argc, char** argv, const Ranks& ranks)
 {
-  const std::optional<BatchRequest> asked = parseBatchCommand(argc, argv);
+  const std::optional<Request> asked = parseCommandLine(argc, argv);
   if (!asked)
     return Good;
-  const BatchRequest& request = *asked;
+  const Request& request = *asked;
   if (!request.note.empty() && !request.is_quiet && ranks.rank() == 0)
     tell("note: " + request.note);
   if (ranks.size() > 1 && request.results_file.empty())

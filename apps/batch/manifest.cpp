@@ -1,7 +1,6 @@
 #include "batch/manifest.h"
 
 #include "io/json_file.h"
-#include "io/json_node.h"
 #include "io/text_hash.h"
 #include "register/settings_json.h"
 

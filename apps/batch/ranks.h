@@ -3,7 +3,8 @@
  */
 #pragma once
 
-#include <string>
+#include <cstddef>
+#include <vector>
 
 namespace bayesian_icp::app {
 
@@ -35,9 +36,9 @@ public:
     return size_;
   }
 
-  /** \brief The \p text of process 0, in all processes. */
-  std::string
-  broadcast(const std::string& text) const;
+  /** \brief The \p numbers of process 0, in all processes. */
+  std::vector<std::size_t>
+  broadcast(std::vector<std::size_t> numbers) const;
 
   /** \brief The largest \p value of all processes, in all processes, when all have come
    * here. */

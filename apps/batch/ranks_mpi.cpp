@@ -59,21 +59,20 @@ Ranks::hasMpi()
   return true;
 }
 
-std::string
-Ranks::broadcast(const std::string& text) const
+std::vector<std::size_t>
+Ranks::broadcast(std::vector<std::size_t> numbers) const
 {
-  std::string shared = text;
+  static_assert(sizeof(std::size_t) == sizeof(unsigned long));
   if (size_ == 1)
-    return shared;
+    return numbers;
   MPI_Request request;
-  long length = static_cast<long>(shared.size());
-  MPI_Ibcast(&length, 1, MPI_LONG, 0, MPI_COMM_WORLD, &request);
+  int count = static_cast<int>(numbers.size());
+  MPI_Ibcast(&count, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
   await(request);
-  shared.resize(static_cast<std::size_t>(length));
-  MPI_Ibcast(
-      shared.data(), static_cast<int>(length), MPI_CHAR, 0, MPI_COMM_WORLD, &request);
+  numbers.resize(static_cast<std::size_t>(count));
+  MPI_Ibcast(numbers.data(), count, MPI_UNSIGNED_LONG, 0, MPI_COMM_WORLD, &request);
   await(request);
-  return shared;
+  return numbers;
 }
 
 int

@@ -1,9 +1,6 @@
 #include "io/json_file.h"
 
-#include "io/errors.h"
 #include "io/input_file.h"
-
-#include <nlohmann/json.hpp>
 
 namespace bayesian_icp::io {
 

@@ -4,7 +4,6 @@
 #include "io/errors.h"
 #include "io/input_file.h"
 #include "io/json_file.h"
-#include "io/json_node.h"
 #include "io/numbers.h"
 
 #include <cmath>

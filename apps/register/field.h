@@ -31,6 +31,13 @@ longNameOf(const Field& field)
   return option.substr(0, option.find(','));
 }
 
+/** \brief "group.key", as in a configuration file. */
+inline std::string
+pathOf(const Field& field)
+{
+  return std::string(field.group) + '.' + field.key;
+}
+
 /** \brief A visitor of fields that looks for the option of a complaint of validate():
  * "prior.variance[x] is ..." speaks of the key "variance_m2_rad2". */
 class OptionFinder {

@@ -1,6 +1,8 @@
 #include "register/settings.h"
 
+#include "io/errors.h"
 #include "io/numbers.h"
+#include "register/choices.h"
 #include "register/setting_fields.h"
 
 #include <cmath>
@@ -16,6 +18,19 @@ lacksNormals(const Settings& settings)
   return settings.options.preset == Preset::Exact &&
          settings.options.exact.residual.residual != Residual::PointToPoint &&
          (settings.is_reciprocal || settings.is_one_to_one);
+}
+
+bool
+hasSetting(Preset preset, const std::string& name)
+{
+  const Settings settings;
+  bool has_it = false;
+  auto look = [&](const Field& field, const auto&) {
+    has_it |= name == "--" + longNameOf(field) || name == field.group ||
+              name == pathOf(field);
+  };
+  visitPreset(preset, settings, look);
+  return has_it;
 }
 
 } // namespace
@@ -64,6 +79,23 @@ Settings::validate() const
   OptionFinder finder(complaint);
   visitSettings(*this, finder);
   return finder.complaintWithOption();
+}
+
+void
+refuseOfOtherPresets(const std::string& name, Preset preset)
+{
+  if (hasSetting(preset, name))
+    return;
+  std::string others;
+  for (const Preset candidate : choicesOf(preset))
+    if (hasSetting(candidate, name))
+      others += (others.empty() ? "" : " and ") + std::string(toString(candidate));
+  if (!others.empty())
+    throw io::UsageError(name +
+                         (others.find(' ') == std::string::npos
+                              ? " belongs to preset "
+                              : " belongs to presets ") +
+                         others + ", and the preset is " + toString(preset));
 }
 
 } // namespace bayesian_icp::app

@@ -57,4 +57,10 @@ struct Settings {
   validate() const;
 };
 
+/** \brief Refuse a setting that \p preset does not have, but another preset has.
+ * \param[in] name "--option", "group" or "group.key"
+ * \throws io::UsageError */
+void
+refuseOfOtherPresets(const std::string& name, Preset preset);
+
 } // namespace bayesian_icp::app

@@ -1,10 +1,9 @@
 #include "register/settings_json.h"
 
-#include "io/json_node.h"
+#include "io/json_file.h"
 #include "io/motion.h"
 #include "register/choices.h"
 #include "register/json_values.h"
-#include "register/other_presets.h"
 #include "register/setting_fields.h"
 
 #include <set>
@@ -140,16 +139,8 @@ struct JsonReader {
   {
     if (known.count(path) > 0)
       return;
-    refuseOfOtherPresets(path, preset, [&](const Field& field) {
-      return path == field.group || path == pathOf(field);
-    });
+    refuseOfOtherPresets(path, preset);
     throw io::UsageError("unknown key " + io::inQuotes(path));
-  }
-
-  static std::string
-  pathOf(const Field& field)
-  {
-    return std::string(field.group) + '.' + field.key;
   }
 };
 

@@ -2,7 +2,6 @@
 
 #include "register/config_file.h"
 #include "register/field_options.h"
-#include "register/other_presets.h"
 #include "register/setting_fields.h"
 
 #include <optional>
@@ -76,10 +75,7 @@ settingsFrom(const po::variables_map& given,
   if (given.count("effective-points") > 0)
     settings.is_effective_points_source_size = false;
   for (const auto& option : given)
-    refuseOfOtherPresets(
-        "--" + option.first, settings.options.preset, [&option](const Field& field) {
-          return option.first == longNameOf(field);
-        });
+    refuseOfOtherPresets("--" + option.first, settings.options.preset);
   const std::string complaint = settings.validate();
   if (!complaint.empty())
     throw io::UsageError(complaint);

@@ -1,14 +1,21 @@
 #include "register/sgd_run.h"
 
+#include "io/coordinates.h"
 #include "io/interrupt.h"
+#include "io/numbers.h"
 #include "io/output_folder.h"
 #include "io/program.h"
+#include "register/json_values.h"
+#include "register/posterior_files.h"
 #include "register/progress_bar.h"
+#include "register/report_text.h"
+#include "register/text_layout.h"
 
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/tree_search.h>
 
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <optional>
 
@@ -16,7 +23,19 @@ namespace bayesian_icp::app {
 
 namespace {
 
+using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
+
+struct SgdRun {
+  SgdSettings settings;
+  io::CloudFile source;
+  io::CloudFile target;
+  StochasticGradientIcpResult result;
+  /** Of the moved source to the target [m^2], without a gate. */
+  double mean_squared_distance = 0.0;
+  double reading_seconds = 0.0;
+  double registration_seconds = 0.0;
+};
 
 double
 secondsSince(Clock::time_point start)
@@ -70,6 +89,94 @@ registerFiles(const Request& request)
   run.registration_seconds = secondsSince(start);
   run.mean_squared_distance = meanSquaredDistance(source, tree, run.result.pose);
   return run;
+}
+
+std::string
+poseTable(const Vector6d& pose)
+{
+  std::string table;
+  for (int k = 0; k < 6; ++k) {
+    table += leftAligned(coordinate_names[static_cast<std::size_t>(k)], 6) +
+             cell(pose[k], 6, 12) + (k < 3 ? " m" : " rad");
+    if (k >= 3)
+      table += cell(degrees_per_radian * pose[k], 4, 12) + " deg";
+    table += '\n';
+  }
+  return table;
+}
+
+/** The result in words. */
+std::string
+endText(const SgdRun& run)
+{
+  const std::string steps = io::textOf(run.result.num_iterations) + " iterations";
+  switch (run.result.end) {
+  case DescentEnd::Converged:
+    return "converged after " + steps;
+  case DescentEnd::MaxIterations:
+    return "not converged: the pose has not come to rest in " + steps;
+  case DescentEnd::TooFewCorrespondences:
+    return "failed: too few points of the mini-batches have a target point within the "
+           "maximum distance (after " +
+           steps + ")";
+  case DescentEnd::Diverged:
+    return "failed: the descent diverged after " + steps +
+           "; a smaller --step-size may help";
+  case DescentEnd::Cancelled:
+    return "interrupted after " + steps;
+  case DescentEnd::InvalidInput:
+    break;
+  }
+  return "failed: the source or the guess cannot be used";
+}
+
+/** The table: pose with units, steps, distance, time, matrix. */
+std::string
+sgdReportText(const SgdRun& run)
+{
+  std::string text =
+      cloudLine("Source: ", run.source) + cloudLine("Target: ", run.target);
+  text += "Method: SGD-ICP, " + std::string(toString(run.settings.options.optimizer)) +
+          "; no posterior\n";
+  text += "Time:   " + io::fixedTextOf(run.registration_seconds, 3) + " s\n";
+  text += "\nPose that maps source points into the target frame:\n" +
+          poseTable(run.result.pose) + '\n';
+  text += wrapped("Status: " + endText(run));
+  if (std::isfinite(run.mean_squared_distance))
+    text += "Root mean square distance of the source to the target: " +
+            io::textOf(std::sqrt(run.mean_squared_distance), 4) + " m\n";
+  return text +
+         "\nMatrix row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
+         "...\n" +
+         matrixText(matrixOf(run.result.pose));
+}
+
+/** The same and the options as JSON, units in the names of keys. */
+std::string
+sgdJson(const SgdRun& run)
+{
+  ordered_json pose;
+  for (std::size_t k = 0; k < 6; ++k)
+    pose[coordinateKey(k)] = run.result.pose[static_cast<Eigen::Index>(k)];
+  const ordered_json document = {
+      {"schema", "pcl_bayesian_icp/sgd_icp"},
+      {"schema_version", 1},
+      {"program", {{"name", "pcl_bayesian_icp"}, {"version", BAYESIAN_ICP_VERSION}}},
+      {"source", cloudJson(run.source)},
+      {"target", cloudJson(run.target)},
+      {"frame", "the pose and T_target_source map source points into the target frame"},
+      {"end", toString(run.result.end)},
+      {"has_converged", run.result.has_converged},
+      {"iterations", run.result.num_iterations},
+      {"pose", pose},
+      {"T_target_source", jsonOf(matrixOf(run.result.pose))},
+      {"mean_squared_distance_m2", run.mean_squared_distance},
+      {"options", jsonOf(run.settings)},
+      {"time",
+       {{"reading_s", run.reading_seconds},
+        {"registration_s", run.registration_seconds}}}};
+  // Names of files need not be UTF-8.
+  return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
 void

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "register/registration.h"
+#include "register/run.h"
 
 #include <Eigen/Core>
 

@@ -2,7 +2,6 @@
 
 #include "io/coordinates.h"
 #include "io/numbers.h"
-#include "register/data_text.h"
 #include "register/report_text.h"
 #include "register/settings_json.h"
 #include "register/text_layout.h"

@@ -2,7 +2,7 @@
 
 #include "io/coordinates.h"
 #include "io/numbers.h"
-#include "register/data_text.h"
+#include "register/report_text.h"
 
 #include <algorithm>
 #include <cmath>

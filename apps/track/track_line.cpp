@@ -4,7 +4,7 @@
 #include "io/text_hash.h"
 #include "register/choices.h"
 #include "register/json_values.h"
-#include "register/posterior_json.h"
+#include "register/posterior_files.h"
 #include "register/settings_json.h"
 
 #include <algorithm>

@@ -36,6 +36,13 @@ public:
     }
   }
 
+  /** \brief Whether there was an exception. */
+  bool
+  isThere() const
+  {
+    return is_there_;
+  }
+
   /** \brief Throw the exception that was kept, if any. Call this after the parallel
    * region. */
   void

@@ -1,7 +1,7 @@
 // What a run tells its callbacks, and of its time. A power of two loses no digits, so a
 // normalised run of clouds four times as large takes exactly the steps of the plain
 // run, four times as far apart.
-#include "register/registration.h"
+#include "register/run.h"
 
 #include <bayesian_icp/random.h>
 

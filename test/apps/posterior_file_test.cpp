@@ -2,8 +2,7 @@
 // broken in one place each.
 #include "io/errors.h"
 #include "io/posterior_file.h"
-#include "register/output_files.h"
-#include "register/posterior_json.h"
+#include "register/posterior_files.h"
 #include "sampler/chain_set.h"
 #include "summary/estimates.h"
 #include "support/command_helpers.h"

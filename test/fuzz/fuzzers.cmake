@@ -20,10 +20,10 @@ add_library(
   ${apps}/io/json_file.cpp
   ${apps}/io/line_file.cpp
   ${apps}/io/motion.cpp
+  ${apps}/io/output_folder.cpp
   ${apps}/io/pcd_format.cpp
   ${apps}/io/ply_format.cpp
   ${apps}/io/posterior_file.cpp
-  ${apps}/register/authors_config.cpp
   ${apps}/register/config_file.cpp
   ${apps}/register/settings.cpp
   ${apps}/register/settings_json.cpp
@@ -60,9 +60,8 @@ find_package(Boost REQUIRED COMPONENTS program_options)
 target_sources(
   fuzz_result_file
   PRIVATE ${apps}/batch/batch_file.cpp
-          ${apps}/batch/batch_line.cpp
           ${evaluation}/samplers/gold_file.cpp
-          ${apps}/register/posterior_json.cpp)
+          ${apps}/register/posterior_files.cpp)
 target_compile_definitions(fuzz_result_file
                            PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
 target_link_libraries(fuzz_result_file PRIVATE Boost::program_options)

@@ -1,12 +1,14 @@
 /** \file
- * \brief posterior.json: everything about a run but the draws.
+ * \brief What a run leaves behind: samples.csv has its draws, posterior.json all else.
  */
 #pragma once
 
+#include "io/output_folder.h"
 #include "register/run.h"
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <iosfwd>
 #include <string>
 
 namespace bayesian_icp::app {
@@ -17,7 +19,7 @@ std::string
 posteriorJson(const Run& run);
 
 /** \brief Parts of the document: a cloud, ICP's result, a mean pose, the final
- * transformation, a covariance with its convention in words. */
+ * transformation, a covariance with its convention in words, times. */
 nlohmann::ordered_json
 cloudJson(const io::CloudFile& cloud);
 nlohmann::ordered_json
@@ -28,5 +30,17 @@ nlohmann::ordered_json
 finalTransformationJson(const RegistrationResult& result);
 nlohmann::ordered_json
 covarianceJson(CovarianceConvention convention, const Matrix6d& matrix);
+nlohmann::ordered_json
+timeJson(const Run& run);
+
+/** \brief The draws of the chains that have not diverged: a header with units, then a
+ * line a draw with 17 significant digits, chains and draws counted from 0. */
+void
+writeSamples(const std::vector<Chain>& chains, std::ostream& stream);
+
+/** \brief Put samples.csv and posterior.json on their way into \p folder.
+ * \throws io::FileError if one cannot be written */
+void
+addPosteriorFiles(const Run& run, io::OutputFolder& folder);
 
 } // namespace bayesian_icp::app

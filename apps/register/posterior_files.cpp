@@ -1,14 +1,16 @@
-#include "register/posterior_json.h"
+#include "register/posterior_files.h"
 
 #include "io/coordinates.h"
+#include "io/numbers.h"
 #include "io/posterior_file.h"
-#include "register/data_text.h"
 #include "register/json_values.h"
+#include "register/report_text.h"
 #include "register/settings_json.h"
 
 #include <bayesian_icp/pose.h>
 
 #include <cmath>
+#include <ostream>
 
 namespace bayesian_icp::app {
 
@@ -41,55 +43,6 @@ const Convention conventions[] = {
      {"v_x", "v_y", "v_z", "w_x", "w_y", "w_z"},
      "twist (v, w) in the source frame, T = T_mean exp(xi): GTSAM's, which puts the "
      "rotation first"}};
-
-} // namespace
-
-ordered_json
-cloudJson(const io::CloudFile& cloud)
-{
-  return {{"file", cloud.file},
-          {"points", cloud.points.cols()},
-          {"finite_points", cloud.num_finite}};
-}
-
-ordered_json
-icpJson(const RegistrationResult& result)
-{
-  const bool has_fitness = result.icp_fitness < std::numeric_limits<double>::max();
-  return {{"has_converged", result.icp_has_converged},
-          {"mean_squared_distance_m2", has_fitness ? result.icp_fitness : std::nan("")},
-          {"T_target_source", jsonOf(result.icp_matrix)}};
-}
-
-ordered_json
-meanJson(const Vector6d& mean)
-{
-  ordered_json json;
-  for (std::size_t k = 0; k < 6; ++k)
-    json[coordinateKey(k)] = mean[static_cast<Eigen::Index>(k)];
-  json["T_target_source"] = jsonOf(matrixOf(mean));
-  return json;
-}
-
-ordered_json
-finalTransformationJson(const RegistrationResult& result)
-{
-  return {{"is", result.is_final_the_mean ? "posterior mean" : "ICP's result"},
-          {"T_target_source", jsonOf(result.final_matrix)}};
-}
-
-ordered_json
-covarianceJson(CovarianceConvention convention, const Matrix6d& matrix)
-{
-  const Convention& words = conventions[static_cast<std::size_t>(convention)];
-  return {{"convention", toString(convention)},
-          {"order", words.order},
-          {"units", {"m", "m", "m", "rad", "rad", "rad"}},
-          {"meaning", words.meaning},
-          {"matrix", jsonOf(matrix)}};
-}
-
-namespace {
 
 ordered_json
 coordinatesJson(const Summary& summary)
@@ -216,6 +169,59 @@ dataJson(const DataReport& report)
 
 } // namespace
 
+ordered_json
+cloudJson(const io::CloudFile& cloud)
+{
+  return {{"file", cloud.file},
+          {"points", cloud.points.cols()},
+          {"finite_points", cloud.num_finite}};
+}
+
+ordered_json
+icpJson(const RegistrationResult& result)
+{
+  const bool has_fitness = result.icp_fitness < std::numeric_limits<double>::max();
+  return {{"has_converged", result.icp_has_converged},
+          {"mean_squared_distance_m2", has_fitness ? result.icp_fitness : std::nan("")},
+          {"T_target_source", jsonOf(result.icp_matrix)}};
+}
+
+ordered_json
+meanJson(const Vector6d& mean)
+{
+  ordered_json json;
+  for (std::size_t k = 0; k < 6; ++k)
+    json[coordinateKey(k)] = mean[static_cast<Eigen::Index>(k)];
+  json["T_target_source"] = jsonOf(matrixOf(mean));
+  return json;
+}
+
+ordered_json
+timeJson(const Run& run)
+{
+  return {{"reading_s", run.reading_seconds},
+          {"icp_s", run.result.icp_seconds},
+          {"sampling_s", run.result.sampling_seconds}};
+}
+
+ordered_json
+finalTransformationJson(const RegistrationResult& result)
+{
+  return {{"is", result.is_final_the_mean ? "posterior mean" : "ICP's result"},
+          {"T_target_source", jsonOf(result.final_matrix)}};
+}
+
+ordered_json
+covarianceJson(CovarianceConvention convention, const Matrix6d& matrix)
+{
+  const Convention& words = conventions[static_cast<std::size_t>(convention)];
+  return {{"convention", toString(convention)},
+          {"order", words.order},
+          {"units", {"m", "m", "m", "rad", "rad", "rad"}},
+          {"meaning", words.meaning},
+          {"matrix", jsonOf(matrix)}};
+}
+
 std::string
 posteriorJson(const Run& run)
 {
@@ -235,12 +241,33 @@ posteriorJson(const Run& run)
       {"posterior", posteriorOf(result)},
       {"data", dataJson(result.summary.data)},
       {"options", jsonOf(run.settings)},
-      {"time",
-       {{"reading_s", run.reading_seconds},
-        {"icp_s", result.icp_seconds},
-        {"sampling_s", result.sampling_seconds}}}};
+      {"time", timeJson(run)}};
   // Names of files need not be UTF-8.
   return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+void
+writeSamples(const std::vector<Chain>& chains, std::ostream& stream)
+{
+  stream << io::samples_header << '\n';
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    if (chains[i].diverged)
+      continue;
+    for (Eigen::Index draw = 0; draw < chains[i].draws.rows(); ++draw) {
+      std::string line = io::textOf(i) + ',' + io::textOf(draw);
+      for (int k = 0; k < 6; ++k)
+        line += ',' + io::textOf(chains[i].draws(draw, k), 17);
+      stream << line << '\n';
+    }
+  }
+}
+
+void
+addPosteriorFiles(const Run& run, io::OutputFolder& folder)
+{
+  folder.add("samples.csv",
+             [&](std::ostream& stream) { writeSamples(run.result.chains, stream); });
+  folder.add("posterior.json", posteriorJson(run));
 }
 
 } // namespace bayesian_icp::app
