@@ -341,7 +341,3 @@ class BatchRanks(BatchTest):
         result = run_batch(self.seeds(1), *FAST, launcher=self.MPIRUN)
         self.assertEqual(result.returncode, 2)
         self.assertIn("several processes need --results", result.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

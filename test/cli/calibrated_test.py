@@ -1,7 +1,6 @@
 """Preset calibrated: what it reports, and its options."""
 
 import re
-import unittest
 
 import cloud_files
 from cli_tool import DATA, ToolTest, run, strict_json
@@ -114,7 +113,3 @@ class CalibratedOptions(ToolTest):
         for word in words:
             samples, _ = self.run_to_files(*pair, *PRESET, word)
             self.assertNotEqual(samples, plain, word)
-
-
-if __name__ == "__main__":
-    unittest.main()

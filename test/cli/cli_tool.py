@@ -9,7 +9,8 @@ import unittest
 
 import cloud_files
 
-TOOL = os.environ["PCL_BAYESIAN_ICP"]
+PROGRAMS = os.environ["PCL_BAYESIAN_ICP_PROGRAMS"]
+TOOL = f"{PROGRAMS}/pcl_bayesian_icp"
 DATA = pathlib.Path(os.environ["PCL_BAYESIAN_ICP_DATA"])
 # What the tools are built with: a sanitizer needs more address space than can be limited.
 SANITIZER = os.environ.get("PCL_BAYESIAN_ICP_SANITIZER")

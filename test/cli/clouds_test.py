@@ -275,7 +275,3 @@ class CommittedScans(ToolTest):
             found = [row[3] for row in document["icp"]["T_target_source"][:3]]
             truth = true_translation(folder)
             self.assertLess(math.dist(found, truth), math.hypot(*truth) / 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import copy
 import json
 import math
-import unittest
 
 import cloud_files
 from cli_tool import FAST, ToolTest, run, strict_json
@@ -274,7 +273,3 @@ class Repeatability(ConfigTest):
         for is_normalized in (False, True):
             content = {**AUTHORS_CONFIG, "normalize-cloud": is_normalized}
             self.check("--config", self.file("authors.json", json.dumps(content)))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -225,7 +225,3 @@ class OneFolderForTwo(FaultTest):
                 self.assertEqual(result.returncode, 3, result.stderr)
                 self.assertIn("in use by another process", result.stderr)
         self.assertEqual(results.read_text(), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 import math
 import random
 import re
-import unittest
 
 import cloud_files
 from cli_tool import DATA, ToolTest, run, strict_json
@@ -125,7 +124,3 @@ class Modes(ExactTest):
                 self.assertAlmostEqual(float(mean), mean_of(mode)[k], delta=0.6e-6)
                 variance = mode["covariance"]["matrix"][k][k]
                 self.assertAlmostEqual(float(deviation), math.sqrt(variance), delta=0.6e-6)
-
-
-if __name__ == "__main__":
-    unittest.main()

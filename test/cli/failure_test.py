@@ -64,7 +64,3 @@ class RealScans(ToolTest):
                 samples, document = self.run_to_files(*pair, *options)
                 self.assertEqual(len(samples.splitlines()), document["posterior"]["draws"] + 1)
                 self.assertGreater(document["posterior"]["draws"], 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -7,6 +7,7 @@ import os
 import pathlib
 import re
 import resource
+import shutil
 import subprocess
 import tempfile
 import time
@@ -16,13 +17,13 @@ import cloud_files
 import x_server
 from cli_tool import FAST, TOOL, ToolTest, call
 
-BATCH = os.environ["PCL_BAYESIAN_ICP_BATCH"]
-EVALUATE = os.environ["PCL_BAYESIAN_ICP_EVALUATE"]
-POSE_GRAPH = os.environ["PCL_BAYESIAN_ICP_POSE_GRAPH"]
-SIMULATE = os.environ["PCL_BAYESIAN_ICP_SIMULATE"]
-TRACK = os.environ["PCL_BAYESIAN_ICP_TRACK"]
-TRANSFORM = os.environ["PCL_BAYESIAN_ICP_TRANSFORM"]
-VIEWER = os.environ["PCL_BAYESIAN_ICP_VIEWER"]  # empty where it is not built
+BATCH = f"{TOOL}_batch"
+EVALUATE = f"{TOOL}_evaluate"
+POSE_GRAPH = f"{TOOL}_pose_graph"
+SIMULATE = f"{TOOL}_simulate"
+TRACK = f"{TOOL}_track"
+TRANSFORM = f"{TOOL}_transform"
+VIEWER = shutil.which(f"{TOOL}_viewer")  # None where it is not built
 
 MOTION = "0.1,-0.2,0.3,0.02,-0.01,0.5"
 REGISTERED = {"aligned.pcd", "posterior.json", "report.html", "samples.csv"}

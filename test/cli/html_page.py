@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import tempfile
 
-import png_file
+from PIL import Image
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
@@ -108,7 +108,7 @@ class Browser:
         return json.loads(html.unescape(re.search("<pre>(.*?)</pre>", shown, re.S).group(1)))
 
     def picture(self, page, width, height, scale=1):
-        """(width, height, rows) of a screenshot."""
+        """A screenshot."""
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "screenshot.png"
             self.run(
@@ -117,4 +117,4 @@ class Browser:
                 f"--force-device-scale-factor={scale}",
                 pathlib.Path(page).as_uri(),
             )
-            return png_file.read_png(file.read_bytes())
+            return Image.open(file).convert("RGB")

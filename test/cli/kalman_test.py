@@ -1,54 +1,45 @@
 """The examples of a Kalman filter: kalman_fusion and kalman_sequence."""
 
 import json
-import os
+import math
 import re
 import shutil
-import unittest
+
+import numpy as np
+from numpy.linalg import inv
 
 import cloud_files
-from cli_tool import DATA, ToolTest, call
-from robot_formats import quaternion_of, turned
+from cli_tool import DATA, PROGRAMS, ToolTest, call
 from trajectories import (
     CHI2_HIGH,
     CHI2_LOW,
     FOUR_EYES,
     TrajectoryTest,
-    composed,
     g2o_error,
-    inverted,
-    pose_of_matrix,
-    small_pose,
+    pose_of,
 )
 
-KALMAN_FUSION = os.environ["PCL_BAYESIAN_ICP_KALMAN_FUSION"]
-KALMAN_SEQUENCE = os.environ["PCL_BAYESIAN_ICP_KALMAN_SEQUENCE"]
+KALMAN_FUSION = f"{PROGRAMS}/kalman_fusion"
+KALMAN_SEQUENCE = f"{PROGRAMS}/kalman_sequence"
 SCAN_LINE = re.compile(
     r"scan \d+: (.*); error of odometry (\S+) m (\S+) rad, "
     r"fused (\S+) m (\S+) rad, stated (\S+) m (\S+) rad"
 )
 
 
-def rows_of(pose):
-    """The 3x4 matrix of a pose."""
-    axes = [turned(pose[1], [float(i == k) for i in range(3)]) for k in range(3)]
-    return [[axes[k][i] for k in range(3)] + [pose[0][i]] for i in range(3)]
-
-
 class KalmanFusion(ToolTest):
     def test_each_direction_from_who_knows_it(self):
         """A can turns about its axis unseen: the odometry says how far."""
         folder = DATA / "can"
-        lines = (folder / "T_target_source.txt").read_text().splitlines()
-        true = pose_of_matrix([list(map(float, line.split())) for line in lines])
+        true = np.loadtxt(folder / "T_target_source.txt")
         # Errors of the odometry of about its standard deviation, 0.02. Of four or five odometries,
         # one makes noise of the clouds seem to say a little of the turn; this is one of the
         # others.
-        error = [0.015, 0.02, -0.01, 0.01, 0.008, -0.019]
-        odometry = composed(true, inverted(small_pose(error)))
-        rows = [*rows_of(odometry), [0.0, 0.0, 0.0, 1.0]]
-        text = "\n".join(" ".join(map(repr, row)) for row in rows)
-        matrix = self.file("odometry.txt", text)
+        error = np.array([0.015, 0.02, -0.01, 0.01, 0.008, -0.019])
+        w = math.sqrt(1.0 - error[3:] @ error[3:])
+        odometry = true @ inv(pose_of(error[:3], [*error[3:], w]))
+        matrix = self.folder / "odometry.txt"
+        np.savetxt(matrix, odometry)
         result = call(KALMAN_FUSION, folder / "source.pcd", folder / "target.pcd", matrix)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("directions that they do not see: 1", result.stdout)
@@ -59,7 +50,7 @@ class KalmanFusion(ToolTest):
         self.assertAlmostEqual(deviations[5], 0.02, delta=0.001)
         for k in range(5):
             self.assertLess(deviations[k], 0.005)
-        pose = (numbers[0][:3], quaternion_of(*numbers[0][3:]))
+        pose = cloud_files.matrix_of(*numbers[0])
         error = g2o_error(pose, true)
         for k in range(6):
             error_of_axis = error[k] * (1 if k < 3 else 2)
@@ -74,9 +65,7 @@ class KalmanSequence(TrajectoryTest):
         scans, from_world = self.trajectory(FOUR_EYES)
         for k in range(len(from_world)):
             (scans / f"scan_{k}.pcd").rename(scans / f"scan_{k:04d}.pcd")
-        lines = [sum(rows_of(inverted(pose)), []) for pose in from_world]
-        text = "".join(" ".join(map(repr, line)) + "\n" for line in lines)
-        (scans / "poses.txt").write_text(text)
+        np.savetxt(scans / "poses.txt", [inv(pose)[:3].ravel() for pose in from_world])
         self.state_accuracy(scans, 0.0)
         return scans
 
@@ -179,7 +168,3 @@ class KalmanSequence(TrajectoryTest):
         self.assertEqual(result.returncode, 2)
         last = result.stderr.splitlines()[-1]  # PCL speaks first
         self.assertRegex(last, "^kalman_sequence: .*scan_0000.pcd: cannot be read$")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -111,7 +111,3 @@ class LargeClouds(FaultTest):
         print({tool: round(size) for tool, size in per_point.items()}, "bytes a point")
         for tool, size in per_point.items():
             self.assertLess(size, MOST_BYTES_A_POINT[tool])
-
-
-if __name__ == "__main__":
-    unittest.main()

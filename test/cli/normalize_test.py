@@ -4,7 +4,6 @@ times as large has exactly the draws of the plain run, four times as far apart."
 import copy
 import csv
 import json
-import unittest
 
 import cloud_files
 from cli_tool import FAST, ToolTest, run
@@ -106,7 +105,3 @@ class Normalize(ToolTest):
             self.assert_refused(2, result, message)
         result = run(*pair, "--config", self.configs()[1], "--max-distance=1")
         self.assert_refused(2, result, "--max-distance: is in metres")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,12 +1,12 @@
 """What is printed, and what is written."""
 
-import csv
 import math
 import os
 import shutil
-import statistics
 import subprocess
 import unittest
+
+import numpy as np
 
 import cloud_files
 import robot_formats
@@ -15,19 +15,8 @@ from cli_tool import FAST, TOOL, ToolTest, run, strict_json
 NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
 
 
-def columns(samples):
-    """{column name: numbers} of samples.csv."""
-    rows = list(csv.DictReader(samples.splitlines()))
-    return {name: [float(row[name]) for row in rows] for name in rows[0]}
-
-
-def mean_and_errors(values, is_angle):
-    """Mean, of an angle the circular one, and errors about it."""
-    if not is_angle:
-        mean = math.fsum(values) / len(values)
-        return mean, [value - mean for value in values]
-    mean = math.atan2(math.fsum(map(math.sin, values)), math.fsum(map(math.cos, values)))
-    return mean, [math.remainder(value - mean, 2 * math.pi) for value in values]
+def second_moments(errors):
+    return (errors**2).sum(axis=0) / (len(errors) - 1)
 
 
 class Files(ToolTest):
@@ -49,32 +38,33 @@ class Files(ToolTest):
     def test_posterior_json_agrees_with_the_draws(self):
         samples, document = self.run_to_files(*self.small_pair(), *FAST)
         posterior = document["posterior"]
-        draws = columns(samples)
+        draws = np.loadtxt(samples.splitlines(), delimiter=",", skiprows=1)[:, 2:]
+        mean = draws.mean(axis=0)
+        # The circular mean of the angles.
+        mean[3:] = np.arctan2(np.sin(draws).mean(axis=0), np.cos(draws).mean(axis=0))[3:]
+        errors = robot_formats.parameter_error(mean, draws)
+        coordinates = posterior["coordinates"]
+        units = ["m"] * 3 + ["rad"] * 3
+        self.assertEqual([c["name"] for c in coordinates], NAMES)
+        self.assertEqual([c["unit"] for c in coordinates], units)
+        expected = {
+            "mean": mean,
+            "median": mean + np.median(errors, axis=0),
+            "standard_deviation": np.sqrt(second_moments(errors)),
+        }
+        for key, values in expected.items():
+            self.assert_close([c[key] for c in coordinates], values, delta=1e-12)
+        keys = [f"{name}_{unit}" for name, unit in zip(NAMES, units)]
+        pose = np.array([posterior["mean"][key] for key in keys])
         covariance = posterior["covariances"][0]
         self.assertEqual(covariance["order"], NAMES)
-        for k, name in enumerate(NAMES):
-            unit = "m" if k < 3 else "rad"
-            coordinate = posterior["coordinates"][k]
-            self.assertEqual((coordinate["name"], coordinate["unit"]), (name, unit))
-            mean, errors = mean_and_errors(draws[f"{name}_{unit}"], is_angle=k >= 3)
-            deviation = math.sqrt(math.fsum(e * e for e in errors) / (len(errors) - 1))
-            self.assertAlmostEqual(coordinate["mean"], mean, delta=1e-12)
-            self.assertAlmostEqual(
-                coordinate["median"], mean + statistics.median(errors), delta=1e-12
-            )
-            self.assertAlmostEqual(coordinate["standard_deviation"], deviation, delta=1e-12)
-            # The covariance is about the mean pose.
-            shift = posterior["mean"][f"{name}_{unit}"] - mean
-            variance = math.fsum((e - shift) ** 2 for e in errors) / (len(errors) - 1)
-            self.assertAlmostEqual(covariance["matrix"][k][k], variance, delta=1e-12)
-        pose = [posterior["mean"][key] for key in list(posterior["mean"])[:6]]
-        poses = list(zip(*(draws[key] for key in list(posterior["mean"])[:6])))
-        twists = [sum(robot_formats.right_twist(pose, draw), []) for draw in poses]
-        for components in zip(*twists):
-            self.assertAlmostEqual(math.fsum(components) / len(twists), 0.0, delta=1e-11)
-        self.assert_close(
-            posterior["mean"]["T_target_source"], cloud_files.matrix_of(*pose), delta=1e-12
-        )
+        # The covariance is about the mean pose.
+        variances = second_moments(robot_formats.parameter_error(pose, draws))
+        self.assert_close(np.diag(covariance["matrix"]), variances, delta=1e-12)
+        twists = np.hstack(robot_formats.right_twist(pose, draws))
+        self.assert_close(twists.mean(axis=0), np.zeros(6), delta=1e-11)
+        matrix = cloud_files.matrix_of(*pose)
+        self.assert_close(posterior["mean"]["T_target_source"], matrix, delta=1e-12)
 
     def test_posterior_json_describes_itself(self):
         _, document = self.run_to_files(*self.small_pair(), *FAST)
@@ -189,7 +179,3 @@ class Printed(ToolTest):
         for a, b in zip(found, expected):
             a, b = (cloud_files.numbers(row, *"xyz") for row in (a, b))
             self.assertLess(math.dist(a, b), 1e-6)
-
-
-if __name__ == "__main__":
-    unittest.main()

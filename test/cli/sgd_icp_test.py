@@ -1,7 +1,6 @@
 """--method sgd-icp: a pose without a posterior, and the options it has and has not."""
 
 import math
-import unittest
 
 import cloud_files
 from cli_tool import SMALL_PAIR_POSE, ToolTest, run, strict_json
@@ -168,7 +167,3 @@ class SgdIcpRefusals(ToolTest):
             for part in ("--method NAME", "--optimizer NAME", "sgd_icp.json", "rmsprop 0.01"):
                 self.assertIn(part, result.stdout)
         self.assertEqual(run(*SGD, "--version").returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -8,7 +8,6 @@ import shutil
 import signal
 import subprocess
 import time
-import unittest
 
 from cli_tool import FAST, TOOL, strict_json
 from faults import (
@@ -260,7 +259,3 @@ class EndedBySignal(FaultTest):
                     codes = (130, 0) if names else (-number,)
                     self.assertIn(process.returncode, codes)
                     self.assertIn(names, (set(), whole))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import os
 import pathlib
 import re
 import shutil
-import unittest
 
 from cli_tool import DATA, FAST, TOOL, strict_json
 from faults import FaultTest, call, rows_of
@@ -121,7 +120,3 @@ class NoTemporaryFolder(FaultTest):
         output.mkdir()
         self.addCleanup(shutil.rmtree, output)
         self.check(output, hide)
-
-
-if __name__ == "__main__":
-    unittest.main()

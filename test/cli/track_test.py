@@ -1,7 +1,9 @@
 """pcl_bayesian_icp_track: a camera that moves about a table."""
 
 import random
-import unittest
+
+import numpy as np
+from numpy.linalg import inv
 
 import cloud_files
 from cli_tool import call, strict_json
@@ -10,10 +12,8 @@ from trajectories import (
     CHI2_HIGH,
     STUDENT_HIGH,
     TrajectoryTest,
-    composed,
     g2o_error,
-    inverse,
-    inverted,
+    pose_of,
     quadratic,
     read_graph,
     rows_of_file,
@@ -41,20 +41,19 @@ class TrackTest(TrajectoryTest):
 
 class TrackOfSimulatedScans(TrackTest):
     def check_truth(self, from_world):
-        truth = [composed(from_world[0], inverted(pose)) for pose in from_world]
+        truth = [from_world[0] @ inv(pose) for pose in from_world]
         vertices, edges = read_graph(self.track / "graph.g2o")
         self.assertEqual(sorted(vertices), [0, 1, 2, 3, 4])
         for (i, j), (pose, information) in edges.items():
-            true = composed(from_world[i], inverted(from_world[j]))
+            true = from_world[i] @ inv(from_world[j])
             self.assertLess(quadratic(g2o_error(pose, true), information), STUDENT_HIGH, (i, j))
         for k, line in enumerate(self.lines(), 1):
             self.assertEqual(line["scan"], k)
             # Rotations of right_se3 are whole angles, those of g2o half ones.
-            scale = [1.0, 1.0, 1.0, 0.5, 0.5, 0.5]
-            matrix = line["pose_in_scan_0"]["covariance"]["matrix"]
-            half = [[scale[i] * matrix[i][j] * scale[j] for j in range(6)] for i in range(6)]
+            scale = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
+            half = scale @ line["pose_in_scan_0"]["covariance"]["matrix"] @ scale
             error = g2o_error(vertices[k], truth[k])
-            self.assertLess(quadratic(error, inverse(half)), CHI2_HIGH[6], k)
+            self.assertLess(quadratic(error, inv(half)), CHI2_HIGH[6], k)
             self.assertLess(max(map(abs, error)), 0.01)
         return vertices
 
@@ -68,7 +67,7 @@ class TrackOfSimulatedScans(TrackTest):
         rows = rows_of_file(self.track / "trajectory_tum.txt")
         self.assertEqual(self.times(), [0.0, 0.2, 0.4, 0.6, 0.8])
         for k, row in enumerate(rows):
-            self.assert_same_pose(vertices[k], (row[1:4], tuple(row[4:8])))
+            self.assert_same_pose(vertices[k], pose_of(row[1:4], row[4:]))
         covariances = rows_of_file(self.track / "trajectory_covariance.txt")
         self.assertEqual({len(row) for row in covariances}, {37})
         traces = [sum(row[1 + 7 * i] for i in range(3)) for row in covariances]
@@ -162,7 +161,7 @@ class TrackWithUnseenMotions(TrackTest):
         for k, line in enumerate(self.lines(), 1):
             self.assertEqual((line["kind"], line["edge"]["num_unmeasured"]), ("registered", 3))
             matrix = line["pose_in_scan_0"]["covariance"]["matrix"]
-            across = sum(matrix[i][j] for i in range(3) for j in range(3)) / 3
+            across = np.sum(np.array(matrix)[:3, :3]) / 3
             along = (matrix[0][0] + matrix[1][1] - 2 * matrix[0][1]) / 2
             self.assertLess(across, 0.002**2)
             # The first motion is not seen, and the velocity does not change much.
@@ -186,7 +185,7 @@ class TrackWithBadScans(TrackTest):
         self.assertEqual([line["edge"]["target"] for line in self.lines()], [0, 1, 1, 1])
         vertices, edges = read_graph(self.track / "graph.g2o")
         self.assertEqual(sorted(edges), [(0, 1), (1, 2), (1, 3), (1, 4)])
-        true = composed(from_world[0], inverted(from_world[4]))
+        true = from_world[0] @ inv(from_world[4])
         self.assertLess(max(map(abs, g2o_error(vertices[4], true))), 0.01)
         self.assertIn("scan_3.pcd", (self.track / "report.html").read_text())
 
@@ -258,7 +257,3 @@ class TrackUsage(TrackTest):
                 self.assert_refused(code, self.run_track(*words), part)
         self.assert_refused(2, call(TRACK, *two), "--output")
         self.assert_refused(3, call(TRACK, *two, "-o", "/proc/none/t"), "/proc/none")
-
-
-if __name__ == "__main__":
-    unittest.main()

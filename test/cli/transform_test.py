@@ -3,7 +3,6 @@
 import math
 import random
 import struct
-import unittest
 
 import cloud_files
 from cli_tool import FAST, ToolTest, call, run, strict_json
@@ -218,7 +217,3 @@ class TransformRefusals(TransformTest):
         result = transform(source, output, "--pose", WORDS)
         self.assert_refused(3, result, f"{output}: cannot be written")
         self.assertFalse(output.exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 """The command line: what is understood, and how the rest is refused."""
 
 import re
-import unittest
 
 import cloud_files
 from cli_tool import FAST, SMALL_PAIR_POSE, ToolTest, run, strict_json
@@ -261,7 +260,3 @@ class GuessFiles(ToolTest):
 
     def test_missing_file(self):
         self.assert_refused(3, run("a", "b", "--guess", "no_such.txt"), "no_such.txt: no such file")
-
-
-if __name__ == "__main__":
-    unittest.main()

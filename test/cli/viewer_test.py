@@ -11,10 +11,11 @@ import tempfile
 import pathlib
 import unittest
 
+from PIL import Image
+
 import x_server
 from cli_tool import DATA, ToolTest, run
 from faults import VIEWER, call
-from png_file import read_png
 
 CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
 WIDTH, HEIGHT = 480, 360
@@ -43,11 +44,13 @@ def hue_of(pixel):
 
 class Picture:
     def __init__(self, path):
-        self.width, self.height, rows = read_png(path.read_bytes())
+        image = Image.open(path).convert("RGB")
+        self.width, self.height = image.size
+        self.pixels = list(image.getdata())
         self.rows = [
-            [tuple(row[x : x + 3]) for x in range(0, len(row), 3)] for row in rows
+            self.pixels[start : start + self.width]
+            for start in range(0, len(self.pixels), self.width)
         ]
-        self.pixels = [pixel for row in self.rows for pixel in row]
 
     def count(self, *colors):
         return sum(self.pixels.count(color) for color in colors)
@@ -300,7 +303,3 @@ class ViewerUsage(ViewerTest):
         words = ["--screenshot", self.folder / "picture.png"]
         self.refuse(1, *scans("mug"), *words, parts=["xvfb-run"], display=":98765")
         self.assertEqual(list(self.folder.iterdir()), [])
-
-
-if __name__ == "__main__":
-    unittest.main()
