@@ -62,6 +62,13 @@ class ToolTest(unittest.TestCase):
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return path
 
+    def start(self, *words, **options):
+        """A program that goes with the test at the latest."""
+        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, **options}
+        process = subprocess.Popen(list(map(str, words)), **options)
+        self.addCleanup(process.kill)
+        return process
+
     def small_pair(self, **writing):
         """A box and the same box moved, as two PCD files."""
         target = cloud_files.box_surface(seed=1)

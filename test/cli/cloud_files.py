@@ -137,26 +137,17 @@ def read_pcd(path):
         header[words[0]] = words[1:]
         at = end + 1
     sizes = [int(s) * int(c) for s, c in zip(header["SIZE"], header["COUNT"])]
-    num_points = int(header["POINTS"][0])
+    fields = list(zip(header["FIELDS"], sizes))
+    points = [{} for _ in range(int(header["POINTS"][0]))]
     body = content[at:]
     if header["DATA"] == ["binary"]:
-        return header, rows_of(body, header["FIELDS"], sizes, num_points)
-    compressed_size, _ = struct.unpack_from("<II", body)
-    body = lzf_decompressed(body[8 : 8 + compressed_size])
-    columns = []
-    for size in sizes:
-        columns.append([body[i * size : (i + 1) * size] for i in range(num_points)])
-        body = body[num_points * size :]
-    return header, [dict(zip(header["FIELDS"], row)) for row in zip(*columns)]
-
-
-def rows_of(body, names, sizes, num_points):
-    rows = []
+        places = [(point, field) for point in points for field in fields]
+    else:
+        compressed_size, _ = struct.unpack_from("<II", body)
+        body = lzf_decompressed(body[8 : 8 + compressed_size])
+        places = [(point, field) for field in fields for point in points]
     at = 0
-    for _ in range(num_points):
-        row = {}
-        for name, size in zip(names, sizes):
-            row[name] = body[at : at + size]
-            at += size
-        rows.append(row)
-    return rows
+    for point, (name, size) in places:
+        point[name] = body[at : at + size]
+        at += size
+    return header, points

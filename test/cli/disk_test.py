@@ -25,7 +25,6 @@ from faults import (
     call,
     limited,
     lock,
-    start,
     wait_for,
     waits_for_a_lock,
 )
@@ -34,18 +33,12 @@ PROGRAMS = [TOOL, BATCH, EVALUATE, POSE_GRAPH, SIMULATE, TRACK, TRANSFORM]
 PROGRAMS += [VIEWER] if VIEWER else []
 
 
-def name_of(program):
-    return pathlib.Path(program).name
-
-
 class FullDisk(FaultTest):
     def check(self, tool, output, **options):
         """A tool has no room for its files in \\p output, where there is an old one."""
         (output / "old.txt").write_text("old")
         command, _ = self.invocations(output)[tool]
-        result = call(*command, **options)
-        self.assertEqual(result.returncode, 3, result.stderr)
-        reason = self.last_words(name_of(command[0]), result.stderr)
+        reason = self.refusal(command, **options)
         self.assertIn(str(output), reason)
         self.assertIn("cannot be written", reason)
         self.assertTrue(self.names_in(output) <= {"old.txt", *GROWING})
@@ -102,9 +95,7 @@ class FullDisk(FaultTest):
                 pass
 
     def check_small_disk(self, command, output):
-        result = call(*command)
-        self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertIn("cannot be written", self.last_words(name_of(command[0]), result.stderr))
+        self.assertIn("cannot be written", self.refusal(command))
         self.assertTrue(self.names_in(output) <= {"filler", "more", *GROWING})
 
     def test_standard_output(self):
@@ -112,9 +103,8 @@ class FullDisk(FaultTest):
         for command in [table, *([program, "--help"] for program in PROGRAMS)]:
             with self.subTest(command=command):
                 with open("/dev/full", "w", encoding="ascii") as full:
-                    result = call(*command, stdout=full)
-                self.assertEqual(result.returncode, 3)
-                self.assertIn("standard output: cannot be written", result.stderr)
+                    reason = self.refusal(command, stdout=full)
+                self.assertIn("standard output: cannot be written", reason)
 
 
 class Unwritable(FaultTest):
@@ -133,10 +123,7 @@ class Unwritable(FaultTest):
         for place in (obstacle, pathlib.Path("/proc/no_such")):
             for tool, (command, _) in self.invocations(place).items():
                 with self.subTest(tool=tool, place=place):
-                    result = call(*command)
-                    self.assertEqual(result.returncode, 3, result.stderr)
-                    reason = self.last_words(name_of(command[0]), result.stderr)
-                    self.assertIn(str(place), reason)
+                    self.assertIn(str(place), self.refusal(command))
         self.assertEqual(obstacle.read_bytes(), b"")
 
     def test_folder_that_may_not_be_written(self):
@@ -146,10 +133,7 @@ class Unwritable(FaultTest):
                 output = self.new_folder()
                 command, _ = self.invocations(output)[tool]
                 output.chmod(0o555)
-                result = call(*rights, *command)
-                self.assertEqual(result.returncode, 3, result.stderr)
-                reason = self.last_words(name_of(command[0]), result.stderr)
-                self.assertIn("Permission denied", reason)
+                self.assertIn("Permission denied", self.refusal(command, rights))
                 self.assertEqual(self.names_in(output), set())
 
     def test_read_only_inputs(self):
@@ -182,8 +166,7 @@ class OneFolderForTwo(FaultTest):
         pair = self.small_pair()
         output = self.new_folder()
         taken = lock(output)
-        process = start(TOOL, *pair, *FAST, "--quiet", "-o", output)
-        self.addCleanup(process.kill)
+        process = self.start(TOOL, *pair, *FAST, "--quiet", "-o", output)
         wait_for(lambda: waits_for_a_lock(process), process)
         self.assertFalse({"posterior.json", "samples.csv"} & {p.name for p in output.iterdir()})
         os.close(taken)
@@ -201,7 +184,7 @@ class OneFolderForTwo(FaultTest):
         self.assertEqual(len(set(draws.values())), len(draws))
         output = self.new_folder()
         words = [TOOL, *pair, *FAST, "--quiet", "--no-report", "-o", output, "--seed"]
-        processes = [start(*words, seed) for seed in draws]
+        processes = [self.start(*words, seed) for seed in draws]
         for process in processes:
             process.communicate(timeout=120)
             self.assertIn(process.returncode, (0, 1))
@@ -221,7 +204,5 @@ class OneFolderForTwo(FaultTest):
                 [EVALUATE, "sbc", "--runs", 1, "--output", results],
                 [BATCH, manifest, *FAST, "--results", results],
             ):
-                result = call(*words)
-                self.assertEqual(result.returncode, 3, result.stderr)
-                self.assertIn("in use by another process", result.stderr)
+                self.assertIn("in use by another process", self.refusal(words))
         self.assertEqual(results.read_text(), "")

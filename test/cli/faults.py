@@ -8,7 +8,6 @@ import pathlib
 import re
 import resource
 import shutil
-import subprocess
 import tempfile
 import time
 import unittest.mock
@@ -43,11 +42,6 @@ TEMPORARY = re.compile(r"\.[A-Za-z0-9]{6}$")
 GROWING = {"coverage.csv", "edges.jsonl", "results.jsonl", "sbc.csv"}
 # Minutes of work, of which each chain keeps a draw about every 50 ms.
 ENDLESS = ["--preset", "paper", "--samples", "4000", "--thinning", "1000", "--step-size", "1e-6"]
-
-
-def start(*words):
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    return subprocess.Popen(list(map(str, words)), **pipes)
 
 
 def catches(process, signal_number):
@@ -159,6 +153,14 @@ class FaultTest(ToolTest):
             **(viewer if self.has_display() else {}),
         }
 
+    def run_whole(self, tool, output, **options):
+        """Runs a tool, which writes all that it should; its command line."""
+        command, names = self.invocations(output)[tool]
+        result = call(*command, **options)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertEqual(self.names_in(output), names)
+        return command
+
     def big_pair(self, num_points):
         """Two large boxes: numbers in memory, where small_pair() has none to speak of."""
         return tuple(
@@ -174,10 +176,12 @@ class FaultTest(ToolTest):
         self.assertFalse([name for name in names if TEMPORARY.search(name)], names)
         return names
 
-    def last_words(self, program, errors):
-        """What the program itself said last."""
-        last = errors.splitlines()[-1]
-        self.assertTrue(last.startswith(f"{program}: "), errors)
+    def refusal(self, command, launcher=(), **options):
+        """What a program itself said last that cannot read or write a file."""
+        result = call(*launcher, *command, **options)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        last = result.stderr.splitlines()[-1]
+        self.assertTrue(last.startswith(f"{pathlib.Path(command[0]).name}: "), result.stderr)
         return last
 
 

@@ -2,19 +2,20 @@
 times as large has exactly the draws of the plain run, four times as far apart."""
 
 import copy
-import csv
 import json
+
+import numpy as np
 
 import cloud_files
 from cli_tool import FAST, ToolTest, run
 from config_test import AUTHORS_CONFIG
 
 FACTOR = 4.0
-FACTORS = [FACTOR] * 3 + [1.0] * 3
+FACTORS = np.array([FACTOR] * 3 + [1.0] * 3)
 
 
-def rows_of(samples):
-    return [list(map(float, row[2:])) for row in list(csv.reader(samples.splitlines()))[1:]]
+def draws_of(samples):
+    return np.loadtxt(samples.splitlines(), delimiter=",", skiprows=1)[:, 2:]
 
 
 class Normalize(ToolTest):
@@ -34,24 +35,19 @@ class Normalize(ToolTest):
         """(draws, document) of the small pair and of the large one."""
         small = self.run_to_files(*self.pair(1.0), *plain)
         large = self.run_to_files(*self.pair(FACTOR), *normalised)
-        return rows_of(small[0]), small[1], rows_of(large[0]), large[1]
+        return draws_of(small[0]), small[1], draws_of(large[0]), large[1]
 
     def assert_scaled(self, small_draws, small, large_draws, large):
-        self.assertEqual(len(large_draws), len(small_draws))
-        for a, b in zip(small_draws, large_draws):
-            self.assertEqual([f * c for f, c in zip(FACTORS, a)], b)
+        np.testing.assert_array_equal(large_draws, small_draws * FACTORS)
         for name in ("final_transformation", "icp"):
-            a, b = (document[name]["T_target_source"] for document in (small, large))
-            self.assertEqual([FACTOR * row[3] for row in a[:3]], [row[3] for row in b[:3]])
-            self.assertEqual([row[:3] for row in a], [row[:3] for row in b])
+            a, b = (np.array(document[name]["T_target_source"]) for document in (small, large))
+            a[:3, 3] *= FACTOR
+            np.testing.assert_array_equal(b, a)
         a, b = (document["icp"]["mean_squared_distance_m2"] for document in (small, large))
         self.assertEqual(FACTOR**2 * a, b)
         small, large = small["posterior"], large["posterior"]
         for a, b in zip(small["covariances"], large["covariances"]):
-            for i in range(6):
-                for k in range(6):
-                    expected = FACTORS[i] * FACTORS[k] * a["matrix"][i][k]
-                    self.assertEqual(expected, b["matrix"][i][k])
+            np.testing.assert_array_equal(b["matrix"], a["matrix"] * np.outer(FACTORS, FACTORS))
         lengths = ["mean", "standard_deviation", "quantile_2.5_percent", "median"]
         lengths += ["quantile_97.5_percent", "mcse_of_mean"]
         for factor, a, b in zip(FACTORS, small["coordinates"], large["coordinates"]):

@@ -6,7 +6,6 @@ used the processor for long enough to have draws."""
 import os
 import shutil
 import signal
-import subprocess
 import time
 
 from cli_tool import FAST, TOOL, strict_json
@@ -28,7 +27,6 @@ from faults import (
     lock,
     processor_seconds,
     rows_of,
-    start,
     wait_for,
     waits_for_a_lock,
 )
@@ -47,7 +45,6 @@ DRAWING = {
 class EndedBySignal(FaultTest):
     def end(self, process, signal_number, seconds=ENOUGH_SECONDS):
         """(standard output, standard error) of a program that is sent a signal."""
-        self.addCleanup(process.kill)
         wait_for(
             lambda: catches(process, signal_number) and processor_seconds(process) >= seconds,
             process,
@@ -63,7 +60,7 @@ class EndedBySignal(FaultTest):
     def check_draws(self, preset, options, number):
         pair = self.small_pair()
         output = self.new_folder()
-        process = start(TOOL, *pair, *options, "-o", output, "--json")
+        process = self.start(TOOL, *pair, *options, "-o", output, "--json")
         text, errors = self.end(process, number)
         self.assertRegex(errors, r"^pcl_bayesian_icp: interrupted: .*\n$")
         self.assertEqual(process.returncode, 130)
@@ -95,7 +92,7 @@ class EndedBySignal(FaultTest):
             with self.subTest(preset=preset):
                 output = self.new_folder()
                 words = [*pair, *options, *far_off, "--quiet", "-o", output]
-                process = start(TOOL, *words)
+                process = self.start(TOOL, *words)
                 _, errors = self.end(process, number, seconds=0.0)
                 self.assertEqual(process.returncode, 130)
                 self.assertIn("there are no draws, so no files are written", errors)
@@ -118,7 +115,7 @@ class EndedBySignal(FaultTest):
         """Where the descent has come to, which never rests."""
         output = self.new_folder()
         words = ["--method", "sgd-icp", "--iterations", 1000000000, "--translation-epsilon", 0]
-        process = start(TOOL, *self.small_pair(), *words, "--quiet", "-o", output)
+        process = self.start(TOOL, *self.small_pair(), *words, "--quiet", "-o", output)
         _, errors = self.end(process, signal.SIGTERM, seconds=0.5)
         self.assertEqual(process.returncode, 130, errors)
         self.assertEqual(self.names_in(output), {"aligned.pcd", "sgd_icp.json"})
@@ -128,14 +125,9 @@ class EndedBySignal(FaultTest):
     def test_ignored_signal_stays_ignored(self):
         """As the shell wants it for jobs in the background."""
         pair = self.small_pair()
-        words = [TOOL, *map(str, pair), *ENDLESS, "--quiet"]
-        process = subprocess.Popen(
-            words,
-            stderr=subprocess.PIPE,
-            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
-            restore_signals=False,
-        )
-        self.addCleanup(process.kill)
+        ignore = lambda: signal.signal(signal.SIGINT, signal.SIG_IGN)
+        words = [TOOL, *pair, *ENDLESS, "--quiet"]
+        process = self.start(*words, preexec_fn=ignore, restore_signals=False)
         wait_for(lambda: catches(process, signal.SIGTERM), process)
         self.assertFalse(catches(process, signal.SIGINT))
         process.send_signal(signal.SIGINT)
@@ -149,8 +141,7 @@ class EndedBySignal(FaultTest):
             output = self.new_folder()
             taken = lock(output)
             self.addCleanup(os.close, taken)
-            process = start(TOOL, *self.small_pair(), *FAST, "--quiet", "-o", output)
-            self.addCleanup(process.kill)
+            process = self.start(TOOL, *self.small_pair(), *FAST, "--quiet", "-o", output)
             wait_for(lambda: waits_for_a_lock(process), process)
             process.send_signal(number)
             wait_for(lambda: not catches(process, number), process)
@@ -165,7 +156,7 @@ class EndedBySignal(FaultTest):
             with self.subTest(signal=number.name):
                 output = self.new_folder()
                 words = [POSE_GRAPH, *self.small_pair(), *ENDLESS, "-o", output / "g.g2o"]
-                process = start(*words)
+                process = self.start(*words)
                 self.end(process, number, seconds=0.0)
                 self.assertEqual(process.returncode, 130)
                 self.assertEqual(self.names_in(output), set())
@@ -178,7 +169,7 @@ class EndedBySignal(FaultTest):
             with self.subTest(signal=number.name):
                 output = self.new_folder()
                 edges = output / "edges.jsonl"
-                process = start(TRACK, *scans, "-o", output)
+                process = self.start(TRACK, *scans, "-o", output)
                 wait_for(lambda: self.num_lines(edges) > 1, process)
                 self.end(process, number, seconds=0.0)
                 self.assertEqual(process.returncode, 130)
@@ -201,8 +192,7 @@ class EndedBySignal(FaultTest):
             with self.subTest(command=command):
                 results = self.folder / f"{command}.csv"
                 study = [EVALUATE, command, *words, "--threads", 1, "--output"]
-                process = start(*study, results)
-                self.addCleanup(process.kill)
+                process = self.start(*study, results)
                 wait_for(lambda: self.num_lines(results) > 1, process)
                 process.send_signal(number)
                 process.communicate(timeout=60)
@@ -226,8 +216,7 @@ class EndedBySignal(FaultTest):
                     output = self.new_folder()
                     command, names = self.invocations(output)[tool]
                     taken = lock(output)
-                    process = start(*command)
-                    self.addCleanup(process.kill)
+                    process = self.start(*command)
                     wait_for(lambda: waits_for_a_lock(process), process)
                     self.assertTrue(catches(process, number))
                     process.send_signal(number)
@@ -249,8 +238,7 @@ class EndedBySignal(FaultTest):
                     ([*simulate, output / "pair"], SIMULATED),
                     ([*transform, output / "moved.pcd"], {"moved.pcd"}),
                 ):
-                    process = start(*words)
-                    self.addCleanup(process.kill)
+                    process = self.start(*words)
                     time.sleep(seconds)
                     process.send_signal(number)
                     process.communicate(timeout=60)

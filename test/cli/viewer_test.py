@@ -6,7 +6,6 @@ import colorsys
 import os
 import shutil
 import signal
-import subprocess
 import tempfile
 import pathlib
 import unittest
@@ -224,14 +223,7 @@ class WindowOnScreen(ScreenTest):
     """The window itself, until Ctrl-C or `kill`."""
 
     def interrupt(self, *arguments, by=signal.SIGINT):
-        process = subprocess.Popen(
-            [VIEWER, *map(str, arguments)],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            env=environment(self.display),
-        )
-        self.addCleanup(process.kill)
+        process = self.start(VIEWER, *arguments, env=environment(self.display))
         self.assertIn("press h", process.stdout.readline())
         process.send_signal(by)
         _, errors = process.communicate(timeout=60)
