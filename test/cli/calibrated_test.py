@@ -3,18 +3,12 @@
 import re
 
 import cloud_files
-from cli_tool import DATA, ToolTest, run, strict_json
-
-PRESET = ["--preset=calibrated", "--prior-frame=source-centroid"]
-
-
-def scans(name):
-    return [DATA / name / "source.pcd", DATA / name / "target.pcd"]
+from cli_tool import CALIBRATED, DATA, ToolTest, run, scans, strict_json
 
 
 class CalibratedScans(ToolTest):
     def test_posterior_can_be_trusted_and_holds_the_truth(self):
-        result = run(*scans("mug"), *PRESET, "--json")
+        result = run(*scans("mug"), *CALIBRATED, "--json")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         document = strict_json(result.stdout)
         self.assertEqual(document["status"]["name"], "ok")
@@ -25,7 +19,7 @@ class CalibratedScans(ToolTest):
     def test_a_table_top_slides_on_the_table(self):
         """In its plane a bare plate is held by the prior alone: two translations and the turn
         about the normal are the last three directions."""
-        result = run(*scans("table_top"), *PRESET, "--json")
+        result = run(*scans("table_top"), *CALIBRATED, "--json")
         self.assertIn(result.returncode, (0, 1), result.stderr)
         directions = strict_json(result.stdout)["data"]["directions"]
         self.assertEqual(len(directions), 6)
@@ -57,8 +51,8 @@ class DataSection(ToolTest):
     }
 
     def test_table_and_json_agree(self):
-        result = run(*scans("can"), *PRESET)
-        data = strict_json(run(*scans("can"), *PRESET, "--json").stdout)["data"]
+        result = run(*scans("can"), *CALIBRATED)
+        data = strict_json(run(*scans("can"), *CALIBRATED, "--json").stdout)["data"]
         self.assertEqual(set(data), self.KEYS)
         pattern = r"^ +(\S+) +(\S+) +(\S+)  (data|weak|prior) +(\w+ (?:along|about) .*)$"
         rows = re.findall(pattern, result.stdout, re.MULTILINE)
@@ -93,23 +87,23 @@ class DataSection(ToolTest):
         source = [cloud_files.numbers(point, *"xyz") for point in points]
         elsewhere = [(x + far, y, z) for x, y, z in source for far in (1, 2, 3)]
         file = self.file("source.pcd", cloud_files.pcd_bytes(source[::2] + elsewhere))
-        result = run(file, target, *PRESET, "--json")
+        result = run(file, target, *CALIBRATED, "--json")
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"^pcl_bayesian_icp: doubtful: .*, but only \d+ % of .*\n$")
         document = strict_json(result.stdout)
         self.assertEqual(document["status"]["name"], "doubtful")
         self.assertTrue(document["data"]["flags"]["low_support"])
         self.assertEqual(len(document["data"]["flag_messages"]), 1)
-        table = run(file, target, *PRESET).stdout
+        table = run(file, target, *CALIBRATED).stdout
         self.assertIn("Flags:   low support\n", table)
 
 
 class CalibratedOptions(ToolTest):
     def test_options_are_obeyed(self):
         pair = scans("mug")
-        plain, _ = self.run_to_files(*pair, *PRESET)
+        plain, _ = self.run_to_files(*pair, *CALIBRATED)
         words = ["--calibrated-points=1000", "--mode-points=200", "--seed=2"]
         words += ["--prior-variance=0.01", "--chains=3", "--samples=1000"]
         for word in words:
-            samples, _ = self.run_to_files(*pair, *PRESET, word)
+            samples, _ = self.run_to_files(*pair, *CALIBRATED, word)
             self.assertNotEqual(samples, plain, word)

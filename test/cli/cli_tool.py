@@ -17,6 +17,7 @@ SANITIZER = os.environ.get("PCL_BAYESIAN_ICP_SANITIZER")
 
 # The pose that brings the source of small_pair() onto its target.
 SMALL_PAIR_POSE = (0.01, -0.02, 0.015, 0.05, -0.04, 0.08)
+CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
 FAST = ["--preset", "paper", "--samples", "60", "--chains", "2", "--step-size", "1e-6"]
 
 
@@ -39,6 +40,11 @@ def strict_json(text):
         raise ValueError(f"{constant} in JSON")
 
     return json.loads(text, parse_constant=refuse)
+
+
+def scans(name):
+    """Source and target of a committed pair."""
+    return [DATA / name / "source.pcd", DATA / name / "target.pcd"]
 
 
 def true_translation(folder):

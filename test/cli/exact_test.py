@@ -5,9 +5,8 @@ import random
 import re
 
 import cloud_files
-from cli_tool import DATA, ToolTest, run, strict_json
+from cli_tool import DATA, ToolTest, run, scans, strict_json
 
-MUG = [DATA / "mug" / "source.pcd", DATA / "mug" / "target.pcd"]
 SENSOR = ["--sigma=0.005", "--effective-points=300", "--prior-frame=source-centroid"]
 NAMES = ["x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"]
 PERIOD = 0.1
@@ -40,7 +39,7 @@ class ExactTest(ToolTest):
 
 class Mug(ExactTest):
     def test_posterior_can_be_trusted_and_holds_the_truth(self):
-        result = run(*MUG, "--preset", "exact", *SENSOR, "--json")
+        result = run(*scans("mug"), "--preset", "exact", *SENSOR, "--json")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         document = strict_json(result.stdout)
         self.assertEqual(document["status"]["name"], "ok")

@@ -10,10 +10,9 @@ from scipy.spatial.transform import Rotation
 
 import cloud_files
 import robot_formats as formats
-from cli_tool import DATA, FAST, ToolTest, run, strict_json
+from cli_tool import FAST, ToolTest, run, scans, strict_json
 
-MUG = [DATA / "mug" / "source.pcd", DATA / "mug" / "target.pcd"]
-GOOD = [*MUG, "--preset=exact", "--sigma=0.005", "--effective-points=300"]
+GOOD = [*scans("mug"), "--preset=exact", "--sigma=0.005", "--effective-points=300"]
 GOOD += ["--prior-frame=source-centroid"]
 TIME = "1700000000.123456789"
 OPTIONS = ["--timestamp", TIME, "--target-frame=map/0", "--source-frame=scan_1", "--vertices=3,8"]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.linalg import inv
 
 import cloud_files
-from cli_tool import DATA, PROGRAMS, ToolTest, call
+from cli_tool import DATA, PROGRAMS, ToolTest, call, scans
 from trajectories import (
     CHI2_HIGH,
     CHI2_LOW,
@@ -30,8 +30,7 @@ SCAN_LINE = re.compile(
 class KalmanFusion(ToolTest):
     def test_each_direction_from_who_knows_it(self):
         """A can turns about its axis unseen: the odometry says how far."""
-        folder = DATA / "can"
-        true = np.loadtxt(folder / "T_target_source.txt")
+        true = np.loadtxt(DATA / "can" / "T_target_source.txt")
         # Errors of the odometry of about its standard deviation, 0.02. Of four or five odometries,
         # one makes noise of the clouds seem to say a little of the turn; this is one of the
         # others.
@@ -40,7 +39,7 @@ class KalmanFusion(ToolTest):
         odometry = true @ inv(pose_of(error[:3], [*error[3:], w]))
         matrix = self.folder / "odometry.txt"
         np.savetxt(matrix, odometry)
-        result = call(KALMAN_FUSION, folder / "source.pcd", folder / "target.pcd", matrix)
+        result = call(KALMAN_FUSION, *scans("can"), matrix)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("directions that they do not see: 1", result.stdout)
         fused = result.stdout[result.stdout.index("fused") :]

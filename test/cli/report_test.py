@@ -5,7 +5,7 @@ import re
 import subprocess
 import unittest
 
-from cli_tool import DATA, FAST, ToolTest, run, strict_json
+from cli_tool import CALIBRATED, FAST, ToolTest, run, scans, strict_json
 from html_page import Browser, Page, find_browser
 
 NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
@@ -17,10 +17,6 @@ FIGURES = (
     + [PAIRS]
     + [f"chains-{name}" for name in NAMES]
 )
-MUG, CAN = (
-    [DATA / name / f"{role}.pcd" for role in ("source", "target")] for name in ("mug", "can")
-)
-CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
 MAX_SIZE = 2_000_000
 
 
@@ -60,7 +56,7 @@ class ReportPage(ReportTest):
 
     def test_all_figures_and_nothing_from_elsewhere(self):
         for pair, options, more in (
-            (MUG, CALIBRATED, ["directions"]),
+            (scans("mug"), CALIBRATED, ["directions"]),
             (self.small_pair(), FAST, []),
             (self.small_pair(), ["--preset=paper", "--chains=1", "--samples=1"], []),
         ):
@@ -129,7 +125,7 @@ class ReportPage(ReportTest):
     def test_motions_that_the_clouds_do_not_hold(self):
         """A can looks the same turned about its axis."""
         # With one seed of ten the noise of the clouds holds the turn a little.
-        _, text = self.report_of(*CAN, *CALIBRATED)
+        _, text = self.report_of(*scans("can"), *CALIBRATED)
         verdict = self.verdict_of(text)
         self.assertIn("1 of 6 motions cannot be observed", verdict)
         self.assertIn("held by the prior alone: rotation about", verdict)
@@ -195,7 +191,7 @@ class ReportInBrowser(ReportTest):
     def setUp(self):
         super().setUp()
         self.browser = Browser()
-        self.file_of_report, _ = self.report_of(*MUG, *CALIBRATED)
+        self.file_of_report, _ = self.report_of(*scans("mug"), *CALIBRATED)
         self.figures = sorted(FIGURES + ["directions"])
 
     def test_nothing_on_the_console(self):

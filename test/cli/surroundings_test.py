@@ -6,7 +6,7 @@ import pathlib
 import re
 import shutil
 
-from cli_tool import DATA, FAST, TOOL, strict_json
+from cli_tool import FAST, TOOL, scans, strict_json
 from faults import FaultTest, call, rows_of
 
 ODD_NAME = "Größe 1,5 m & 'Tee' \"$HOME\" 日本"
@@ -91,8 +91,7 @@ class NoTemporaryFolder(FaultTest):
     """Nothing needs /tmp, or what TMPDIR names: also gnuplot's figures do not."""
 
     def check(self, output, launcher=(), **options):
-        pair = [DATA / "can" / name for name in ("source.pcd", "target.pcd")]
-        words = [*launcher, TOOL, *pair, *FAST, "--quiet", "-o", output]
+        words = [*launcher, TOOL, *scans("can"), *FAST, "--quiet", "-o", output]
         result = call(*words, **options)
         self.assertIn(result.returncode, (0, 1), result.stderr)
         self.assertEqual(len(result.stderr.splitlines()), 1)  # the status

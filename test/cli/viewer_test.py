@@ -13,15 +13,10 @@ import unittest
 from PIL import Image
 
 import x_server
-from cli_tool import DATA, ToolTest, run
+from cli_tool import CALIBRATED, DATA, ToolTest, run, scans
 from faults import VIEWER, call
 
-CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
 WIDTH, HEIGHT = 480, 360
-
-
-def scans(name):
-    return [DATA / name / "source.pcd", DATA / name / "target.pcd"]
 
 
 def environment(display):
