@@ -160,17 +160,10 @@ public:
   show(const BatchResult& result)
   {
     ++num_done_;
-    num_not_ok_ += result.status != toString(Status::Ok) ? 1 : 0;
     if (is_wanted_)
       std::cerr << start_ + io::textOf(num_done_) + '/' + io::textOf(num_pairs_) + ' ' +
                        result.pair.name + ": " + result.status + " (" +
                        io::fixedTextOf(result.seconds, 1) + " s)\n";
-  }
-
-  std::size_t
-  numNotOk() const
-  {
-    return num_not_ok_;
   }
 
 private:
@@ -178,7 +171,6 @@ private:
   std::size_t num_pairs_;
   bool is_wanted_;
   std::size_t num_done_ = 0;
-  std::size_t num_not_ok_ = 0;
 };
 
 int
@@ -199,11 +191,13 @@ runToStandardOutput(const Request& request,
                     const std::vector<BatchPair>& pairs)
 {
   ProgressLines progress(ranks, pairs.size(), !request.is_quiet);
+  bool are_all_ok = true;
   runBatch(pairs, runOptionsOf(request), [&](const BatchResult& result) {
     io::print(batchLine(result) + '\n');
     progress.show(result);
+    are_all_ok &= result.status == toString(Status::Ok);
   });
-  return exitCodeOf(progress.numNotOk() == 0);
+  return exitCodeOf(are_all_ok);
 }
 
 /** This process's part of the pairs at \p positions. */
@@ -280,15 +274,10 @@ runTool(int argc, char** argv, const Ranks& ranks)
 int
 main(int argc, char** argv)
 {
-  using namespace bayesian_icp::app;
-  const Ranks ranks;
-  bayesian_icp::io::takeSizeLimitAsFullDisk();
-  try {
-    return runTool(argc, argv, ranks);
-  }
-  catch (...) {
-    const int exit_code = bayesian_icp::io::explainFailure("pcl_bayesian_icp_batch");
-    ranks.abort(exit_code);
-    return exit_code;
-  }
+  using namespace bayesian_icp;
+  const app::Ranks ranks;
+  return io::runProgram(
+      "pcl_bayesian_icp_batch",
+      [&] { return app::runTool(argc, argv, ranks); },
+      [&](int exit_code) { ranks.abort(exit_code); });
 }

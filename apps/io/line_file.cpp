@@ -22,50 +22,35 @@ reasonOf(int error)
   return "cannot be written: " + std::generic_category().message(error);
 }
 
-/** A descriptor that is closed if something goes wrong on the way. */
-struct Descriptor {
-  int value = -1;
-
-  ~Descriptor()
-  {
-    if (value >= 0)
-      close(value);
-  }
-
-  int
-  release()
-  {
-    const int released = value;
-    value = -1;
-    return released;
-  }
-};
-
 int
-openLocked(const std::string& name)
+openToAppend(const std::string& name)
 {
   makeFolder(folderOf(name));
-  Descriptor file;
-  file.value = open(name.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (file.value < 0)
+  const int descriptor =
+      open(name.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor < 0)
     throw FileError(name, reasonOf(errno));
-  struct stat status = {};
-  if (fstat(file.value, &status) != 0 || !S_ISREG(status.st_mode))
-    throw FileError(name, "is not a regular file");
-  // Other errors are of file systems without locks.
-  if (flock(file.value, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    throw FileError(name, "is in use by another process");
-  return file.release();
+  return descriptor;
 }
 
 } // namespace
 
+LineFile::LineFile(const std::string& name, int descriptor)
+: name_(name)
+, descriptor_(descriptor)
+{}
+
+// Delegates, so that the destructor closes the file if something goes wrong here.
 LineFile::LineFile(const std::string& name,
                    const std::function<void(const std::string& line)>& read_line)
-: name_(name)
+: LineFile(name, openToAppend(name))
 {
-  Descriptor file{openLocked(name)};
-  descriptor_ = file.value;
+  struct stat status = {};
+  if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode))
+    throw FileError(name, "is not a regular file");
+  // Other errors are of file systems without locks.
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw FileError(name, "is in use by another process");
   std::ifstream stream(name, std::ios::binary);
   if (!stream)
     throw FileError(name, "cannot be read");
@@ -79,7 +64,6 @@ LineFile::LineFile(const std::string& name,
   if (is_new_ && !line.empty())
     throw FileError(name, "has no complete line: it is not a file of results");
   cutTo(complete_size);
-  file.release();
 }
 
 LineFile::~LineFile() { close(descriptor_); }

@@ -38,12 +38,14 @@ public:
   add(const std::string& line) const;
 
 private:
+  LineFile(const std::string& name, int descriptor);
+
   /** Remove what follows the first \p size bytes. */
   void
   cutTo(long size) const;
 
   std::string name_;
-  int descriptor_ = -1;
+  int descriptor_;
   bool is_new_ = false;
 };
 

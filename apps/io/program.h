@@ -7,6 +7,7 @@
 #include "io/errors.h"
 
 #include <csignal>
+#include <functional>
 #include <iostream>
 #include <new>
 #include <string>
@@ -21,14 +22,6 @@ print(const std::string& text)
   std::cout << text << std::flush;
   if (!std::cout)
     throw FileError("standard output", "cannot be written");
-}
-
-/** \brief From now on a file that would grow beyond the limit on the size of files
- * (`ulimit -f`) is an error as on a full disk, not a signal that kills. */
-inline void
-takeSizeLimitAsFullDisk()
-{
-  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 /** \brief Say on standard error why \p program ends. To be called in a `catch (...)`.
@@ -60,18 +53,25 @@ explainFailure(const std::string& program)
   }
 }
 
-/** \brief What `main` does: run \p work.
- * \return its exit code, or that of its failure, which is explained */
+/** \brief What `main` does: run \p work. A file that would grow beyond the limit on the
+ * size of files (`ulimit -f`) is an error as on a full disk, not a signal that kills.
+ * \param[in] on_failure told the exit code of a failure that has been explained
+ * \return exit code of \p work, or that of its failure, which is explained */
 template <typename Work>
 int
-runProgram(const std::string& program, const Work& work)
+runProgram(
+    const std::string& program,
+    const Work& work,
+    const std::function<void(int exit_code)>& on_failure = [](int) {})
 {
-  takeSizeLimitAsFullDisk();
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return work();
   }
   catch (...) {
-    return explainFailure(program);
+    const int exit_code = explainFailure(program);
+    on_failure(exit_code);
+    return exit_code;
   }
 }
 

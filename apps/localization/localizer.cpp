@@ -4,7 +4,6 @@
 #include "io/field_triple.h"
 #include "io/numbers.h"
 #include "register/configure.h"
-#include "register/normalization.h"
 
 #include <bayesian_icp/measurement.h>
 #include <bayesian_icp/summary.h>
@@ -157,7 +156,7 @@ LocalizerOptions::validate() const
     if (!(floor >= 0.0) || !std::isfinite(floor))
       return "a floor of the prior is " + io::textOf(floor) +
              ", but must be finite and not negative (m, rad)";
-  if (isNormalized(settings) || settings.are_lengths_scaled ||
+  if (settings.isNormalized() || settings.are_lengths_scaled ||
       settings.is_step_size_times_points || settings.is_effective_points_source_size)
     return "settings must not be in units of a cloud's size or number of points";
   return settings.validate();

@@ -39,8 +39,8 @@ describeExportOptions(ExportRequest& exports)
 {
   ExportOptions& options = exports.options;
   const std::string formats =
-      "Export the posterior mean and covariance for other software: " +
-      exportFormatNames() +
+      std::string("Export the posterior mean and covariance for other software: ") +
+      export_format_names +
       ", separated by commas. With --output, each format becomes a file in that "
       "folder; without it, give one format, which is printed instead of the table. "
       "docs/exports.md has the conventions. Without --export nothing is exported.";

@@ -40,12 +40,6 @@ filesOf(const std::string& format)
 
 } // namespace
 
-std::string
-exportFormatNames()
-{
-  return "ros, g2o, gtsam, tum or csv";
-}
-
 std::vector<std::string>
 readExportFormats(const std::string& list)
 {
@@ -54,7 +48,7 @@ readExportFormats(const std::string& list)
     const std::string format(item);
     if (filesOf(format).empty())
       throw io::UsageError("--export: " + io::inQuotes(format) + " is not " +
-                           exportFormatNames());
+                           export_format_names);
     if (std::find(formats.begin(), formats.end(), format) == formats.end())
       formats.push_back(format);
   }

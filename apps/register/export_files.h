@@ -18,9 +18,7 @@ struct ExportRequest {
   ExportOptions options;
 };
 
-/** \brief "ros, g2o, gtsam, tum or csv". */
-std::string
-exportFormatNames();
+constexpr const char* export_format_names = "ros, g2o, gtsam, tum or csv";
 
 /** \brief The formats of a list with commas, each once.
  * \throws io::UsageError if there is another name in it */

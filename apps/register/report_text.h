@@ -1,5 +1,5 @@
 /** \file
- * \brief The table that pcl_bayesian_icp prints.
+ * \brief The table that pcl_bayesian_icp prints, and its parts, columns and lines.
  */
 #pragma once
 
@@ -70,5 +70,26 @@ holderOf(Observability observability);
  * translation. */
 double
 angularDeviation(const DataDirection& direction);
+
+/** \brief \p text with blanks behind it, \p width characters or more. */
+std::string
+leftAligned(std::string text, std::size_t width);
+
+/** \brief \p text with at least one blank before it, \p width characters or more. */
+std::string
+rightAligned(const std::string& text, std::size_t width);
+
+/** \brief A number in full if it is below 1e9.
+ * \param[in] unknown stands for numbers that are not finite */
+std::string
+numberText(double value, int num_decimals, const std::string& unknown);
+
+/** \brief A number, right aligned; "-" if it is not finite. */
+std::string
+cell(double value, int num_decimals, std::size_t width);
+
+/** \brief Lines of at most 88 characters, those after the first indented. */
+std::string
+wrapped(const std::string& text);
 
 } // namespace bayesian_icp::app

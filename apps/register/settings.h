@@ -28,8 +28,9 @@ struct Settings {
   bool use_mean = false;
 
   /** Whether both clouds are scaled so that their largest |x|, |y|, |z| is 1 before
-   * they are registered (preset `paper`). measurement_sigma, step_size and lambda_rms
-   * are then in scaled units; all other lengths here stay in metres. */
+   * they are registered, as the paper's authors' program can (preset `paper`).
+   * measurement_sigma, step_size and lambda_rms are then in scaled units; all other
+   * lengths here stay in metres. */
   bool is_normalized = false;
 
   /** \brief Set by the authors' configuration files with normalize-cloud: guess, prior,
@@ -39,6 +40,14 @@ struct Settings {
    * by the number of finite source points, which effective_points is to become. */
   bool is_step_size_times_points = false;
   bool is_effective_points_source_size = false;
+
+  /** \brief Whether the clouds are to be scaled: preset `paper` alone has a scale of
+   * its own, 1 m, that this changes. */
+  bool
+  isNormalized() const
+  {
+    return is_normalized && options.preset == Preset::Paper;
+  }
 
   /** \brief Carry out what the flags above say.
    * \param[in] num_points finite points of the source

@@ -16,95 +16,73 @@ using io::JsonNode;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-/** Reads one value. */
-class ValueReader {
-public:
-  ValueReader(const Field& field, const JsonNode& value) : field_(field), value_(value)
-  {}
+double
+numberOf(const Field& field, const JsonNode& node)
+{
+  return field.is_nullable ? node.numberOr(field.null_value) : node.number();
+}
 
-  void
-  read(bool& value) const
-  {
-    if (!value_.json().is_boolean())
-      value_.refuse("true or false");
-    value = value_.json().get<bool>();
+/** Reads a value of any type. */
+template <typename T>
+void
+read(const Field& field, const JsonNode& node, T& value)
+{
+  const json& given = node.json();
+  if constexpr (std::is_same_v<T, bool>) {
+    if (!given.is_boolean())
+      node.refuse("true or false");
+    value = given.get<bool>();
   }
-
-  void
-  read(double& value) const
-  {
-    value = numberOf(value_);
-  }
-
-  void
-  read(int& value) const
-  {
-    const double number = value_.json().is_number() ? value_.number() : 0.5;
+  else if constexpr (std::is_same_v<T, double>)
+    value = numberOf(field, node);
+  else if constexpr (std::is_same_v<T, int>) {
+    const double number = given.is_number() ? node.number() : 0.5;
     if (number != std::floor(number) ||
         std::abs(number) > std::numeric_limits<int>::max())
-      value_.refuse("a whole number in its range");
+      node.refuse("a whole number in its range");
     value = static_cast<int>(number);
   }
-
-  void
-  read(std::uint64_t& value) const
-  {
-    if (!value_.json().is_number_unsigned())
-      value_.refuse("a whole number in its range");
-    value = value_.json().get<std::uint64_t>();
+  else if constexpr (std::is_same_v<T, std::uint64_t>) {
+    if (!given.is_number_unsigned())
+      node.refuse("a whole number in its range");
+    value = given.get<std::uint64_t>();
   }
+  else if (!given.is_string() || !readChoice(node.text(), value))
+    node.refuse(namesOfChoices(value));
+}
 
-  void
-  read(Vector6d& value) const
-  {
-    if (value_.json().is_null() && field_.is_nullable) {
-      value.setConstant(field_.null_value);
-      return;
-    }
-    value_.requireList(6);
-    for (std::size_t k = 0; k < 6; ++k)
-      value[static_cast<Eigen::Index>(k)] = numberOf(value_[k]);
+void
+read(const Field& field, const JsonNode& node, Vector6d& value)
+{
+  if (node.json().is_null() && field.is_nullable) {
+    value.setConstant(field.null_value);
+    return;
   }
+  node.requireList(6);
+  for (std::size_t k = 0; k < 6; ++k)
+    value[static_cast<Eigen::Index>(k)] = numberOf(field, node[k]);
+}
 
-  template <typename T>
-  void
-  read(Automatic<T>& value) const
-  {
-    value = automatic;
-    if (value_.json() == "automatic")
-      return;
-    T given = T();
-    read(given);
-    value = given;
-  }
+void
+read(const Field&, const JsonNode& node, Eigen::Matrix4d& value)
+{
+  value = node.matrix<Eigen::Matrix4d>();
+  const std::string complaint = io::complaintAboutMotion(value);
+  if (!complaint.empty())
+    node.refuse("a rigid motion: " + complaint);
+}
 
-  void
-  read(Eigen::Matrix4d& value) const
-  {
-    value = value_.matrix<Eigen::Matrix4d>();
-    const std::string complaint = io::complaintAboutMotion(value);
-    if (!complaint.empty())
-      value_.refuse("a rigid motion: " + complaint);
-  }
-
-  template <typename Choice>
-  std::enable_if_t<std::is_enum_v<Choice>>
-  read(Choice& value) const
-  {
-    if (!value_.json().is_string() || !readChoice(value_.text(), value))
-      value_.refuse(namesOfChoices(value));
-  }
-
-private:
-  double
-  numberOf(const JsonNode& value) const
-  {
-    return field_.is_nullable ? value.numberOr(field_.null_value) : value.number();
-  }
-
-  const Field& field_;
-  const JsonNode& value_;
-};
+template <typename T>
+void
+read(const Field& field, const JsonNode& node, Automatic<T>& value)
+{
+  value = automatic;
+  if (node.json() == "automatic")
+    return;
+  T given = T();
+  read(field, node, given);
+  value = given;
+}
 
 struct JsonReader {
   const JsonNode document;
@@ -121,7 +99,7 @@ struct JsonReader {
       return;
     document[field.group].requireObject();
     if (document[field.group].has(field.key))
-      ValueReader(field, document[field.group][field.key]).read(value);
+      read(field, document[field.group][field.key], value);
   }
 
   void

@@ -9,7 +9,6 @@
 #include "register/posterior_files.h"
 #include "register/progress_bar.h"
 #include "register/report_text.h"
-#include "register/text_layout.h"
 
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/tree_search.h>

@@ -4,7 +4,6 @@
 #include "io/numbers.h"
 #include "register/report_text.h"
 #include "register/settings_json.h"
-#include "register/text_layout.h"
 #include "report/charts.h"
 #include "report/verdict.h"
 

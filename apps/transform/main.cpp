@@ -24,34 +24,21 @@ namespace {
 namespace fs = std::filesystem;
 namespace po = boost::program_options;
 
-/** Which of the poses of a posterior.json. */
-enum class PoseChoice { Final, Mean };
-
 /** What the user asks for. */
 struct Request {
   std::string input_file;
   std::string output_file;
   /** Six numbers, or the name of a matrix file or of a posterior.json. */
   std::string pose;
-  PoseChoice choice = PoseChoice::Final;
+  /** The mean of a posterior.json, not its final transformation. */
+  bool use_mean = false;
   bool is_inverse = false;
   bool may_overwrite_input = false;
 };
 
-void
-takeChoice(const std::string& name, PoseChoice& choice)
-{
-  if (name != "final" && name != "mean")
-    io::refuseValue(name, "final or mean");
-  choice = name == "mean" ? PoseChoice::Mean : PoseChoice::Final;
-}
-
 po::options_description
 describeOptions(Request& request)
 {
-  const auto choice = [&request](const std::string& name) {
-    takeChoice(name, request.choice);
-  };
   po::options_description options("Options");
   // clang-format off
   options.add_options()
@@ -61,7 +48,11 @@ describeOptions(Request& request)
      "Motion to apply: x,y,z,roll,pitch,yaw [m, rad] with R = Rz(yaw) Ry(pitch) "
      "Rx(roll); a text file with the 4x4 matrix; or a posterior.json (a name that ends "
      "in .json), whose pose maps source points into the target frame. (required)")
-    ("use", io::taken("NAME", choice),
+    ("use", io::taken("NAME", [&request](const std::string& name) {
+       if (name != "final" && name != "mean")
+         io::refuseValue(name, "final or mean");
+       request.use_mean = name == "mean";
+     }),
      "Pose to take from a posterior.json: final is the program's final transformation, "
      "mean is the posterior mean. (default final)")
     ("inverse", io::flag(request.is_inverse),
@@ -130,8 +121,8 @@ motionOf(const Request& request)
   if (fs::path(request.pose).extension() != ".json")
     return io::readMotion("pose", request.pose);
   const io::PosteriorFile posterior = io::readPosterior(request.pose);
-  Eigen::Matrix4d motion = request.choice == PoseChoice::Mean ? matrixOf(posterior.mean)
-                                                              : posterior.final_matrix;
+  Eigen::Matrix4d motion =
+      request.use_mean ? matrixOf(posterior.mean) : posterior.final_matrix;
   const std::string complaint = io::complaintAboutMotion(motion);
   if (!complaint.empty())
     throw io::FileError(request.pose, complaint);
