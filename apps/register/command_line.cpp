@@ -97,19 +97,6 @@ checkExports(const Request& request)
         "--export without --output excludes --json and --quiet, because it prints");
 }
 
-const char* const about_exact = R"(
-Preset exact needs the truth about the sensor: --sigma, and --effective-points,
-the number of independent measurements in the source.
-)";
-
-const char* const about_calibrated = R"(
-Preset calibrated needs no truth about the sensor. It measures distances to the
-target's surface in units of the noise that it finds there, and it accounts for
-correlations between neighbouring points. It reports how well the clouds
-determine the pose in each direction. Directions that they do not determine
-stay at the prior, which has to be finite.
-)";
-
 std::string
 helpText(const po::options_description& options)
 {
@@ -122,7 +109,16 @@ quantiles, draws. Clouds are .pcd or .ply files in metres. Options begin with
 one or two dashes; their values follow a space or '='.
 )" << options
        << '\n'
-       << describeSgdOptions() << about_exact << about_calibrated << aboutSgdIcp()
+       << describeSgdOptions() << R"(
+Preset exact needs the truth about the sensor: --sigma, and --effective-points,
+the number of independent measurements in the source.
+
+Preset calibrated needs no truth about the sensor. It measures distances to the
+target's surface in units of the noise that it finds there, and it accounts for
+correlations between neighbouring points. It reports how well the clouds
+determine the pose in each direction. Directions that they do not determine
+stay at the prior, which has to be finite.
+)" << aboutSgdIcp()
        << R"(
 Exit codes:
   0    there is a posterior, and it can be trusted
