@@ -15,21 +15,6 @@ namespace bayesian_icp::viewer {
 
 namespace {
 
-constexpr int num_colors = 256;
-
-vtkSmartPointer<vtkLookupTable>
-tableUpTo(double maximum)
-{
-  auto table = vtkSmartPointer<vtkLookupTable>::New();
-  table->SetNumberOfTableValues(num_colors);
-  table->SetTableRange(0.0, maximum);
-  for (int i = 0; i < num_colors; ++i) {
-    const Color color = mapColor(double(i) / (num_colors - 1));
-    table->SetTableValue(i, color[0], color[1], color[2]);
-  }
-  return table;
-}
-
 int
 fontSizeFor(const Eigen::Vector2i& size)
 {
@@ -92,8 +77,12 @@ void
 addColorBar(double maximum, const Color& text_color, int viewport, Window& window)
 {
   const LengthUnit unit = unitFor(maximum);
+  auto colors = vtkSmartPointer<vtkLookupTable>::New();
+  pcl::visualization::getColormapLUT(pcl::visualization::PCL_VISUALIZER_LUT_VIRIDIS,
+                                     colors);
+  colors->SetTableRange(0.0, maximum / unit.in_metres);
   auto bar = vtkSmartPointer<vtkScalarBarActor>::New();
-  bar->SetLookupTable(tableUpTo(maximum / unit.in_metres));
+  bar->SetLookupTable(colors);
   bar->SetTitle((std::string("sd [") + unit.name + "]").c_str());
   bar->SetNumberOfLabels(6);
   bar->SetLabelFormat("%-#.3g");

@@ -6,58 +6,42 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <vtkActor.h>
+#include <vtkProperty.h>
+
 #include <algorithm>
-#include <cmath>
 
 namespace bayesian_icp::viewer {
 
 namespace {
 
-using Cloud = pcl::PointCloud<pcl::PointXYZRGB>;
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+namespace visualization = pcl::visualization;
 
 /** As light as a few scans, and not so dense that nothing else is seen. */
 constexpr Eigen::Index max_points_of_draws = 15000;
 
-pcl::PointXYZRGB
-pointOf(const Eigen::Vector3d& position, const Color& color)
-{
-  const auto byte = [](double part) {
-    return static_cast<std::uint8_t>(std::lround(255.0 * part));
-  };
-  const Eigen::Vector3f p = position.cast<float>();
-  pcl::PointXYZRGB point(byte(color[0]), byte(color[1]), byte(color[2]));
-  point.x = p.x();
-  point.y = p.y();
-  point.z = p.z();
-  return point;
-}
-
-/** \p colors is one for all or one for each. */
 Cloud::Ptr
-cloudOf(const Eigen::Matrix3Xd& points, const std::vector<Color>& colors)
+cloudOf(const Eigen::Matrix3Xd& points)
 {
   Cloud::Ptr cloud(new Cloud);
   cloud->reserve(static_cast<std::size_t>(points.cols()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    cloud->push_back(pointOf(
-        points.col(i), colors[colors.size() == 1 ? 0 : static_cast<std::size_t>(i)]));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3f point = points.col(i).cast<float>();
+    cloud->push_back({point.x(), point.y(), point.z()});
+  }
   return cloud;
 }
 
 void
-addCloud(const Cloud::Ptr& cloud,
-         int point_size,
-         double opacity,
-         const std::string& id,
-         int viewport,
-         Window& window)
+setSizeAndOpacity(
+    int size, double opacity, const std::string& id, int viewport, Window& window)
 {
   auto& visualizer = window.visualizer();
-  visualizer.addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport);
   visualizer.setPointCloudRenderingProperties(
-      pcl::visualization::PCL_VISUALIZER_POINT_SIZE, point_size, id, viewport);
+      visualization::PCL_VISUALIZER_POINT_SIZE, size, id, viewport);
   visualizer.setPointCloudRenderingProperties(
-      pcl::visualization::PCL_VISUALIZER_OPACITY, opacity, id, viewport);
+      visualization::PCL_VISUALIZER_OPACITY, opacity, id, viewport);
 }
 
 /** Draws the layers of one panel. */
@@ -81,14 +65,14 @@ public:
     const auto add = [&](const Eigen::Matrix3Xd& points, const PointStyle& style) {
       addPoints(points, style, id, viewport_, window_);
     };
-    const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
     switch (layer) {
     case Layer::Source:
-      return add(movedPoints(scene_.guess, scene_.source), styleOf(layer, options_));
+      return add(Eigen::Affine3d(scene_.guess) * scene_.source,
+                 styleOf(layer, options_));
     case Layer::Target:
-      return add(movedPoints(identity, scene_.target), styleOf(layer, options_));
+      return add(scene_.target, styleOf(layer, options_));
     case Layer::Aligned:
-      return add(movedPoints(scene_.final_matrix, scene_.source),
+      return add(Eigen::Affine3d(scene_.final_matrix) * scene_.source,
                  styleOf(layer, options_));
     case Layer::Deviation:
       return addDeviations(id);
@@ -96,7 +80,7 @@ public:
       return add(pointsAtDraws(scene_, max_points_of_draws),
                  {colorOf(layer, options_), 2, 0.35});
     case Layer::Position:
-      return addMesh(positionEllipsoid(scene_), colorOf(layer, options_), 0.7, id);
+      return addEllipsoid(id);
     case Layer::Rotation:
       return addCones(id);
     }
@@ -107,20 +91,48 @@ private:
   addDeviations(const std::string& id)
   {
     const Uncertainty& uncertainty = *scene_.uncertainty;
-    const double maximum = niceMaximum(uncertainty.largest_point_deviation);
-    std::vector<Color> colors;
-    for (const double deviation : uncertainty.point_deviations)
-      if (std::isfinite(deviation))
-        colors.push_back(mapColor(deviation / maximum));
+    const Eigen::Matrix3Xf points =
+        (Eigen::Affine3d(uncertainty.spread.meanMatrix()) * scene_.source)
+            .cast<float>();
+    pcl::PointCloud<pcl::PointXYZI>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZI>);
+    for (Eigen::Index i = 0; i < points.cols(); ++i)
+      cloud->push_back({points(0, i),
+                        points(1, i),
+                        points(2, i),
+                        static_cast<float>(uncertainty.point_deviations[i])});
+    const double maximum = niceMaximum(uncertainty.point_deviations.maxCoeff());
     const PointStyle style = styleOf(Layer::Aligned, options_);
-    addCloud(
-        cloudOf(movedPoints(uncertainty.spread.meanMatrix(), scene_.source), colors),
-        style.size + 1,
-        style.opacity,
+    auto& visualizer = window_.visualizer();
+    visualizer.addPointCloud<pcl::PointXYZI>(
+        cloud,
+        visualization::PointCloudColorHandlerGenericField<pcl::PointXYZI>(cloud,
+                                                                          "intensity"),
         id,
-        viewport_,
-        window_);
+        viewport_);
+    visualizer.setPointCloudRenderingProperties(
+        visualization::PCL_VISUALIZER_LUT,
+        visualization::PCL_VISUALIZER_LUT_VIRIDIS,
+        id,
+        viewport_);
+    visualizer.setPointCloudRenderingProperties(
+        visualization::PCL_VISUALIZER_LUT_RANGE, 0.0, maximum, id, viewport_);
+    setSizeAndOpacity(style.size + 1, style.opacity, id, viewport_, window_);
     addColorBar(maximum, textColorOn(options_.background), viewport_, window_);
+  }
+
+  void
+  addEllipsoid(const std::string& id)
+  {
+    const Eigen::Affine3d ball = positionEllipsoid(scene_);
+    auto& visualizer = window_.visualizer();
+    visualizer.addEllipsoid(
+        Eigen::Isometry3d(ball.matrix()), 1.0, 1.0, 1.0, id, viewport_);
+    // PCL's way to set the colour of a shape would take its shading away.
+    vtkProperty& look =
+        *vtkActor::SafeDownCast((*visualizer.getShapeActorMap())[id])->GetProperty();
+    const auto [red, green, blue] = colorOf(Layer::Position, options_);
+    look.SetColor(red, green, blue);
+    look.SetOpacity(0.7);
   }
 
   void
@@ -142,10 +154,16 @@ private:
       for (int k = 0; k < 3; ++k)
         triangles[i].vertices.push_back(mesh.triangles(k, i));
     auto& visualizer = window_.visualizer();
-    visualizer.addPolygonMesh<pcl::PointXYZRGB>(
-        cloudOf(mesh.vertices, {color}), triangles, id, viewport_);
+    visualizer.addPolygonMesh<pcl::PointXYZ>(
+        cloudOf(mesh.vertices), triangles, id, viewport_);
+    visualizer.setPointCloudRenderingProperties(visualization::PCL_VISUALIZER_COLOR,
+                                                color[0],
+                                                color[1],
+                                                color[2],
+                                                id,
+                                                viewport_);
     visualizer.setPointCloudRenderingProperties(
-        pcl::visualization::PCL_VISUALIZER_OPACITY, opacity, id, viewport_);
+        visualization::PCL_VISUALIZER_OPACITY, opacity, id, viewport_);
   }
 
   const Scene& scene_;
@@ -162,17 +180,13 @@ addAxes(double scale, Window& window)
   for (std::size_t k = 0; k < 3; ++k) {
     Color color = {0.0, 0.0, 0.0};
     color[k] = 1.0;
-    const Eigen::Vector3d end =
-        scale * Eigen::Vector3d::Unit(static_cast<Eigen::Index>(k));
+    pcl::PointXYZ end(0.0F, 0.0F, 0.0F);
+    end.data[k] = static_cast<float>(scale);
     const std::string id = "axes/" + std::to_string(k);
-    visualizer.addLine(pointOf(Eigen::Vector3d::Zero(), color),
-                       pointOf(end, color),
-                       color[0],
-                       color[1],
-                       color[2],
-                       id);
+    visualizer.addLine(
+        pcl::PointXYZ(0.0F, 0.0F, 0.0F), end, color[0], color[1], color[2], id);
     visualizer.setShapeRenderingProperties(
-        pcl::visualization::PCL_VISUALIZER_LINE_WIDTH, 4, id);
+        visualization::PCL_VISUALIZER_LINE_WIDTH, 4, id);
   }
 }
 
@@ -197,8 +211,12 @@ addPoints(const Eigen::Matrix3Xd& points,
           int viewport,
           Window& window)
 {
-  addCloud(
-      cloudOf(points, {style.color}), style.size, style.opacity, id, viewport, window);
+  auto& visualizer = window.visualizer();
+  visualizer.addPointCloud<pcl::PointXYZ>(cloudOf(points), id, viewport);
+  const auto [red, green, blue] = style.color;
+  visualizer.setPointCloudRenderingProperties(
+      visualization::PCL_VISUALIZER_COLOR, red, green, blue, id, viewport);
+  setSizeAndOpacity(style.size, style.opacity, id, viewport, window);
 }
 
 void
@@ -223,10 +241,8 @@ drawScene(const Scene& scene, const ViewOptions& options, Window& window)
       {scene.status + ": " + scene.status_message, textColorOn(options.background)},
       viewports.front(),
       window);
-  const Eigen::Matrix3Xd target =
-      movedPoints(Eigen::Matrix4d::Identity(), scene.target);
   window.lookAt(shownPoints(scene, shown),
-                defaultView(target, scene.sensor_origin),
+                defaultView(scene.target, scene.sensor_origin),
                 areaBeside(num_lines, shown.count(Layer::Deviation) > 0, window));
 }
 

@@ -18,9 +18,9 @@ constexpr std::array<Color, 6> default_colors = {{{0.34, 0.71, 0.91},
                                                   {0.86, 0.35, 0.67}}};
 
 std::string
-pointsText(const Eigen::Matrix3Xf& points)
+pointsText(Eigen::Index num_points)
 {
-  return " (" + std::to_string(points.cols()) + " points)";
+  return " (" + std::to_string(num_points) + " points)";
 }
 
 std::string
@@ -29,9 +29,9 @@ textOf(Layer layer, const Scene& scene)
   const std::optional<Uncertainty>& uncertainty = scene.uncertainty;
   switch (layer) {
   case Layer::Source:
-    return "source, at the guess" + pointsText(scene.source);
+    return "source, at the guess" + pointsText(scene.num_source_points);
   case Layer::Target:
-    return "target" + pointsText(scene.target);
+    return "target" + pointsText(scene.num_target_points);
   case Layer::Aligned:
     return "source, aligned";
   case Layer::Deviation:

@@ -27,8 +27,8 @@ constexpr std::array<Color, 6> chain_colors = {{{0.90, 0.62, 0.00},
                                                 {0.84, 0.37, 0.00},
                                                 {0.34, 0.71, 0.91}}};
 
-Eigen::Matrix3Xf
-someOf(const Eigen::Matrix3Xf& points)
+Eigen::Matrix3Xd
+someOf(const Eigen::Matrix3Xd& points)
 {
   Random random(1, 0);
   return points(Eigen::all, randomChoice(points.cols(), max_points_of_chain, random));
@@ -49,19 +49,13 @@ public:
   LiveDrawing(const Scene& scene, const ViewOptions& options, Window& window)
   : options_(options)
   , window_(window)
-  , chain_points_(movedPoints(Eigen::Matrix4d::Identity(), someOf(scene.source)))
+  , chain_points_(someOf(scene.source))
   {
     window.makePanels(1);
-    const Eigen::Matrix4d identity = Eigen::Matrix4d::Identity();
-    const Eigen::Matrix3Xd target = movedPoints(identity, scene.target);
-    addPoints(target, styleOf(Layer::Target, options), "target", 0, window);
-    addPoints(movedPoints(identity, scene.source),
-              styleOf(Layer::Source, options),
-              "icp",
-              0,
-              window);
+    addPoints(scene.target, styleOf(Layer::Target, options), "target", 0, window);
+    addPoints(scene.source, styleOf(Layer::Source, options), "icp", 0, window);
     window.lookAt(shownPoints(scene, {Layer::Source, Layer::Target}),
-                  defaultView(target, scene.sensor_origin),
+                  defaultView(scene.target, scene.sensor_origin),
                   areaBeside(3, false, window));
   }
 
@@ -133,7 +127,7 @@ registerLive(const Scene& scene,
              Window& window,
              app::Run& run)
 {
-  LiveState state(centroidOf(scene.source));
+  LiveState state(scene.source.rowwise().mean());
   LiveDrawing drawing(scene, options, window);
   auto registration = std::async(std::launch::async, [&state, &run] {
     app::registerClouds(

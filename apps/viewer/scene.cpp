@@ -2,8 +2,6 @@
 
 #include <bayesian_icp/random.h>
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
 
 namespace bayesian_icp::viewer {
@@ -17,6 +15,13 @@ append(const Eigen::Matrix3Xd& more, Eigen::Matrix3Xd& points)
   points.rightCols(more.cols()) = more;
 }
 
+/** Length of the box of \p points from corner to corner [m]. */
+double
+sizeOf(const Eigen::Matrix3Xd& points)
+{
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
 } // namespace
 
 std::optional<Uncertainty>
@@ -25,18 +30,15 @@ uncertaintyOf(const Scene& scene, const ViewOptions& options)
   if (scene.draws.rows() < 2)
     return std::nullopt;
   Uncertainty result;
-  const Eigen::Vector3d reference = options.reference == Reference::Centroid
-                                        ? centroidOf(scene.source)
-                                        : Eigen::Vector3d::Zero();
+  Eigen::Vector3d reference = Eigen::Vector3d::Zero();
+  if (options.reference == Reference::Centroid)
+    reference = scene.source.rowwise().mean();
   result.spread = spreadAt(reference, scene.draws);
   result.point_deviations = pointDeviations(scene.source, scene.draws);
-  for (const double deviation : result.point_deviations) // NaN is not larger
-    if (deviation > result.largest_point_deviation)
-      result.largest_point_deviation = deviation;
   result.magnification =
       options.magnification > 0.0
           ? options.magnification
-          : niceMagnification(std::max(result.largest_point_deviation,
+          : niceMagnification(std::max(result.point_deviations.maxCoeff(),
                                        result.spread.positionDeviations()[0]),
                               sizeOf(scene.source));
   for (const Eigen::Index draw : evenlySpaced(scene.draws.rows(), options.num_draws))
@@ -46,28 +48,20 @@ uncertaintyOf(const Scene& scene, const ViewOptions& options)
 }
 
 Eigen::Matrix3Xd
-movedPoints(const Eigen::Matrix4d& T_target_source, const Eigen::Matrix3Xf& points)
-{
-  Eigen::Matrix3Xd moved(3, points.cols());
-  Eigen::Index num_finite = 0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite())
-      moved.col(num_finite++) =
-          (T_target_source * points.col(i).cast<double>().homogeneous()).head<3>();
-  moved.conservativeResize(3, num_finite);
-  return moved;
-}
-
-Eigen::Matrix3Xd
 shownPoints(const Scene& scene, const Layers& layers)
 {
-  Eigen::Matrix3Xd points = movedPoints(scene.final_matrix, scene.source);
+  Eigen::Matrix3Xd points = Eigen::Affine3d(scene.final_matrix) * scene.source;
   if (layers.count(Layer::Target) > 0)
-    append(movedPoints(Eigen::Matrix4d::Identity(), scene.target), points);
+    append(scene.target, points);
   if (layers.count(Layer::Source) > 0)
-    append(movedPoints(scene.guess, scene.source), points);
-  if (scene.uncertainty && layers.count(Layer::Position) > 0)
-    append(positionEllipsoid(scene).vertices, points);
+    append(Eigen::Affine3d(scene.guess) * scene.source, points);
+  if (scene.uncertainty && layers.count(Layer::Position) > 0) {
+    const Eigen::Vector3d ones = Eigen::Vector3d::Ones();
+    const Eigen::AlignedBox3d box(-ones, ones);
+    for (int i = 0; i < 8; ++i)
+      append(positionEllipsoid(scene) * box.corner(Eigen::AlignedBox3d::CornerType(i)),
+             points);
+  }
   if (scene.uncertainty && layers.count(Layer::Rotation) > 0)
     for (const Mesh& cone : rotationCones(scene))
       append(cone.vertices, points);
@@ -94,14 +88,15 @@ rotationCones(const Scene& scene)
   return cones;
 }
 
-Mesh
+Eigen::Affine3d
 positionEllipsoid(const Scene& scene)
 {
   const PoseSpread& spread = scene.uncertainty->spread;
-  return ellipsoidMesh(spread.position(),
-                       scene.uncertainty->magnification *
-                           regionAxes(spread.covariance.topLeftCorner<3, 3>(),
-                                      chi_squared_95_percent_3_dof));
+  Eigen::Affine3d ellipsoid(Eigen::Translation3d(spread.position()));
+  ellipsoid.linear() =
+      scene.uncertainty->magnification *
+      regionAxes(spread.covariance.topLeftCorner<3, 3>(), chi_squared_95_percent_3_dof);
+  return ellipsoid;
 }
 
 Eigen::Matrix3Xd
@@ -113,20 +108,11 @@ pointsAtDraws(const Scene& scene, Eigen::Index max_points)
   Random random(1, 0);
   Eigen::Matrix3Xd all(3, 0);
   for (const Eigen::Matrix4d& draw : draws) {
-    const Eigen::Matrix3Xf chosen =
+    const Eigen::Matrix3Xd chosen =
         scene.source(Eigen::all, randomChoice(scene.source.cols(), wanted, random));
-    append(movedPoints(draw, chosen), all);
+    append(Eigen::Affine3d(draw) * chosen, all);
   }
   return all;
-}
-
-double
-sizeOf(const Eigen::Matrix3Xf& points)
-{
-  const Eigen::Matrix3Xd finite = movedPoints(Eigen::Matrix4d::Identity(), points);
-  if (finite.cols() == 0)
-    return 0.0;
-  return (finite.rowwise().maxCoeff() - finite.rowwise().minCoeff()).norm();
 }
 
 } // namespace bayesian_icp::viewer

@@ -7,6 +7,8 @@
 #include "viewer/geometry/shapes.h"
 #include "viewer/view_options.h"
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <optional>
 #include <string>
@@ -17,9 +19,8 @@ namespace bayesian_icp::viewer {
 /** \brief What the draws of a scene say, ready to be drawn. */
 struct Uncertainty {
   PoseSpread spread;
-  /** Of each source point [m]; NaN where the point is. */
+  /** Of each source point [m]. */
   Eigen::VectorXd point_deviations;
-  double largest_point_deviation = 0.0;
   /** Factor by which deviations from the mean are magnified. */
   double magnification = 1.0;
   /** T_target_source of the chosen draws, magnified. */
@@ -28,9 +29,12 @@ struct Uncertainty {
 
 /** \brief A registration and its posterior. Matrices are T_target_source. */
 struct Scene {
-  /** x, y, z [m], each column is one point, points that are not finite included. */
-  Eigen::Matrix3Xf source;
-  Eigen::Matrix3Xf target;
+  /** The finite points: x, y, z [m], one in each column. */
+  Eigen::Matrix3Xd source;
+  Eigen::Matrix3Xd target;
+  /** Of the clouds, points that are not finite included. */
+  Eigen::Index num_source_points = 0;
+  Eigen::Index num_target_points = 0;
   /** Where the target's sensor stood, target frame [m]. */
   Eigen::Vector3d sensor_origin = Eigen::Vector3d::Zero();
   Eigen::Matrix4d guess = Eigen::Matrix4d::Identity();
@@ -51,10 +55,6 @@ struct Scene {
 std::optional<Uncertainty>
 uncertaintyOf(const Scene& scene, const ViewOptions& options);
 
-/** \brief The finite \p points, moved [m]. */
-Eigen::Matrix3Xd
-movedPoints(const Eigen::Matrix4d& T_target_source, const Eigen::Matrix3Xf& points);
-
 /** \brief The whole of what the layers show, as points that the picture has to hold. */
 Eigen::Matrix3Xd
 shownPoints(const Scene& scene, const Layers& layers);
@@ -64,17 +64,14 @@ shownPoints(const Scene& scene, const Layers& layers);
 std::array<Mesh, 3>
 rotationCones(const Scene& scene);
 
-/** \brief The ellipsoid of 95 % (3 degrees of freedom) of the position, magnified. */
-Mesh
+/** \brief Makes the unit ball the ellipsoid of 95 % (3 degrees of freedom) of the
+ * position, magnified. */
+Eigen::Affine3d
 positionEllipsoid(const Scene& scene);
 
 /** \brief Points of the source at all shown draws, a random choice of at most
  * \p max_points in all [m]. */
 Eigen::Matrix3Xd
 pointsAtDraws(const Scene& scene, Eigen::Index max_points);
-
-/** \brief Length of the box of the finite \p points from corner to corner [m]. */
-double
-sizeOf(const Eigen::Matrix3Xf& points);
 
 } // namespace bayesian_icp::viewer

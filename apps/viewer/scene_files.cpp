@@ -12,8 +12,10 @@ namespace {
 void
 takeClouds(const io::CloudFile& source, const io::CloudFile& target, Scene& scene)
 {
-  scene.source = source.points;
-  scene.target = target.points;
+  scene.source = io::finitePoints(source).cast<double>();
+  scene.target = io::finitePoints(target).cast<double>();
+  scene.num_source_points = source.points.cols();
+  scene.num_target_points = target.points.cols();
   scene.sensor_origin = target.sensor_origin.head<3>().cast<double>();
   scene.source_file = source.file;
   scene.target_file = target.file;

@@ -14,7 +14,6 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <limits>
 
 namespace bayesian_icp::viewer {
 namespace {
@@ -44,13 +43,13 @@ randomDraws(Eigen::Index n, const Vector6d& deviations, const Vector6d& mean)
   return draws;
 }
 
-Eigen::Matrix3Xf
+Eigen::Matrix3Xd
 somePoints()
 {
-  Eigen::Matrix3Xf points(3, 4);
-  points << 0.3F, 0.0F, -0.1F, 2.0F, //
-      0.4F, 0.0F, 0.2F, -1.0F,       //
-      1.0F, -2.0F, 0.5F, 0.25F;
+  Eigen::Matrix3Xd points(3, 4);
+  points << 0.3, 0.0, -0.1, 2.0, //
+      0.4, 0.0, 0.2, -1.0,       //
+      1.0, -2.0, 0.5, 0.25;
   return points;
 }
 
@@ -71,7 +70,7 @@ TEST(PointDeviations, OfAFullTurnAreTheDistancesFromTheAxis)
   constexpr Eigen::Index n = 720;
   const Eigen::VectorXd deviations = pointDeviations(somePoints(), fullTurn(n));
   for (Eigen::Index i = 0; i < 4; ++i) {
-    const double radius = somePoints().col(i).head<2>().cast<double>().norm();
+    const double radius = somePoints().col(i).head<2>().norm();
     EXPECT_NEAR(deviations[i], radius * std::sqrt(n / (n - 1.0)), 1e-7);
   }
 }
@@ -84,8 +83,7 @@ TEST(PointDeviations, AreThoseOfTheMovedPoints)
   const PoseMatrix draws = randomDraws(500, deviations, mean);
   const Eigen::VectorXd found = pointDeviations(somePoints(), draws);
   for (Eigen::Index i = 0; i < 4; ++i)
-    EXPECT_NEAR(
-        found[i], deviationOf(somePoints().col(i).cast<double>(), draws), rounding);
+    EXPECT_NEAR(found[i], deviationOf(somePoints().col(i), draws), rounding);
 }
 
 TEST(PointDeviations, KeepTheirDigitsFarFromTheOrigin)
@@ -99,9 +97,9 @@ TEST(PointDeviations, KeepTheirDigitsFarFromTheOrigin)
     pose.head<3>() = far - rotationOf(pose) * far;
     draws.row((sign + 1) / 2) = pose.transpose();
   }
-  Eigen::Matrix3Xf points(3, 2);
-  points.col(0) = (far + Eigen::Vector3d(1.0, 0.0, 0.0)).cast<float>();
-  points.col(1) = (far - Eigen::Vector3d(1.0, 0.0, 0.0)).cast<float>();
+  Eigen::Matrix3Xd points(3, 2);
+  points.col(0) = far + Eigen::Vector3d::UnitX();
+  points.col(1) = far - Eigen::Vector3d::UnitX();
   // Distance of the two images of a point at radius 1 m: 2 sin(1e-3); sd = that /
   // sqrt 2. The translations of 1e5 m are rounded to 1.5e-11 m.
   const double expected = 2.0 * std::sin(1e-3) / std::sqrt(2.0);
@@ -110,14 +108,10 @@ TEST(PointDeviations, KeepTheirDigitsFarFromTheOrigin)
   EXPECT_NEAR(found[1], expected, 1e-10);
 }
 
-TEST(PointDeviations, OfPointsThatAreNotFiniteAreNaN)
+TEST(PointDeviations, OfDrawsThatAreAllAlikeAreZero)
 {
-  Eigen::Matrix3Xf points = somePoints();
-  points(1, 2) = std::numeric_limits<float>::quiet_NaN();
-  const Eigen::VectorXd found = pointDeviations(points, fullTurn(10));
-  EXPECT_TRUE(std::isnan(found[2]));
-  EXPECT_TRUE(std::isfinite(found[0]));
-  EXPECT_TRUE(pointDeviations(points, PoseMatrix::Zero(5, 6))[0] == 0.0);
+  EXPECT_EQ(pointDeviations(somePoints(), PoseMatrix::Zero(5, 6)),
+            Eigen::VectorXd::Zero(4));
 }
 
 TEST(PoseSpread, SeesAnotherPointOfTheSource)
@@ -182,36 +176,17 @@ TEST(Shapes, EllipsoidIsTheSetOfOneMahalanobisDistance)
       1.0, 0.5, 0.0,     //
       -2.0, 0.3, 0.01;
   const Eigen::Matrix3d covariance = root * root.transpose();
-  const Eigen::Vector3d centre(1.0, 2.0, 3.0);
   const Eigen::Matrix3d axes = regionAxes(covariance, 7.8);
   EXPECT_GT(axes.col(0).norm(), axes.col(1).norm());
   EXPECT_GT(axes.col(1).norm(), axes.col(2).norm());
   EXPECT_NEAR(axes.col(0).dot(axes.col(1)), 0.0, 1e-10);
-  const Mesh mesh = ellipsoidMesh(centre, axes);
-  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+  Random random(4, 0);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Eigen::Vector3d unit = random.normal6().head<3>().normalized();
     const Eigen::Vector3d whitened =
-        root.triangularView<Eigen::Lower>().solve(mesh.vertices.col(i) - centre);
+        root.triangularView<Eigen::Lower>().solve(axes * unit);
     EXPECT_NEAR(whitened.squaredNorm(), 7.8, 1e-6);
   }
-  EXPECT_GE(mesh.triangles.minCoeff(), 0);
-  EXPECT_LT(mesh.triangles.maxCoeff(), mesh.vertices.cols());
-}
-
-TEST(Shapes, TrianglesCloseTheEllipsoid)
-{
-  // Volume of a closed surface by the divergence theorem; inscribed in the sphere, it
-  // is smaller by at most the square of the largest angle between vertices.
-  const Mesh mesh =
-      ellipsoidMesh(Eigen::Vector3d(5.0, 0.0, 0.0), Eigen::Matrix3d::Identity());
-  double volume = 0.0;
-  for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
-    const Eigen::Vector3i corners = mesh.triangles.col(i);
-    const Eigen::Vector3d a = mesh.vertices.col(corners[0]);
-    volume += a.dot(mesh.vertices.col(corners[1]).cross(mesh.vertices.col(corners[2])));
-  }
-  volume = std::abs(volume) / 6.0;
-  EXPECT_LT(volume, 4.0 / 3.0 * pi);
-  EXPECT_GT(volume, 4.0 / 3.0 * pi * (1.0 - std::pow(2.0 * pi / 48.0, 2)));
 }
 
 TEST(Shapes, AxisIsTippedByTurnsAcrossItOnly)
@@ -251,19 +226,6 @@ TEST(Shapes, ConeWithoutSpreadIsALine)
                              2.0);
   for (Eigen::Index i = 1; i < cone.vertices.cols(); ++i)
     EXPECT_EQ(cone.vertices.col(i), Eigen::Vector3d(2.0, 0.0, 0.0));
-}
-
-TEST(ColorMap, GrowsBrighterFromEndToEnd)
-{
-  double last = -1.0;
-  for (int i = 0; i <= 100; ++i) {
-    const Color color = mapColor(i / 100.0);
-    const double lightness = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
-    EXPECT_GT(lightness, last);
-    last = lightness;
-  }
-  EXPECT_EQ(mapColor(-3.0), mapColor(0.0));
-  EXPECT_EQ(mapColor(7.0), mapColor(1.0));
 }
 
 TEST(ColorMap, ScalesAreNice)

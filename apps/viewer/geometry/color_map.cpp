@@ -10,17 +10,6 @@ namespace bayesian_icp::viewer {
 
 namespace {
 
-/** viridis at multiples of 1/8. */
-constexpr std::array<Color, 9> viridis = {{{68, 1, 84},
-                                           {71, 44, 122},
-                                           {59, 81, 139},
-                                           {44, 113, 142},
-                                           {33, 144, 141},
-                                           {39, 173, 129},
-                                           {92, 200, 99},
-                                           {170, 220, 50},
-                                           {253, 231, 37}}};
-
 std::string
 textOf(const Eigen::Vector3d& values)
 {
@@ -29,20 +18,6 @@ textOf(const Eigen::Vector3d& values)
 }
 
 } // namespace
-
-Color
-mapColor(double fraction)
-{
-  constexpr double num_pieces = viridis.size() - 1;
-  const double position = num_pieces * std::clamp(fraction, 0.0, 1.0);
-  const auto piece = static_cast<std::size_t>(std::min(position, num_pieces - 1.0));
-  const double share = position - static_cast<double>(piece);
-  Color color{};
-  for (std::size_t k = 0; k < 3; ++k)
-    color[k] =
-        ((1.0 - share) * viridis[piece][k] + share * viridis[piece + 1][k]) / 255.0;
-  return color;
-}
 
 double
 niceMaximum(double value)

@@ -13,11 +13,6 @@ namespace bayesian_icp::viewer {
 /** \brief Red, green, blue in [0, 1]. */
 using Color = std::array<double, 3>;
 
-/** \brief Colour of \p fraction in [0, 1] (others are clamped), from dark violet over
- * green to yellow: matplotlib's viridis, whose lightness grows evenly. */
-Color
-mapColor(double fraction);
-
 /** \brief The smallest of 1, 1.5, 2, 3, 4, 5, 6, 8 times a power of ten that is
  * not less than \p value; 1e-6 for what is not positive. */
 double

@@ -57,19 +57,6 @@ posesAt(const Eigen::Vector3d& reference, const PoseMatrix& draws)
 } // namespace
 
 Eigen::Vector3d
-centroidOf(const Eigen::Matrix3Xf& points)
-{
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  long num_finite = 0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i)
-    if (points.col(i).allFinite()) {
-      sum += points.col(i).cast<double>();
-      ++num_finite;
-    }
-  return num_finite > 0 ? Eigen::Vector3d(sum / static_cast<double>(num_finite)) : sum;
-}
-
-Eigen::Vector3d
 PoseSpread::positionDeviations() const
 {
   return principalDeviations(covariance.topLeftCorner<3, 3>());
@@ -109,11 +96,11 @@ magnified(const Vector6d& draw, const PoseSpread& spread, double factor)
 }
 
 Eigen::VectorXd
-pointDeviations(const Eigen::Matrix3Xf& points, const PoseMatrix& draws)
+pointDeviations(const Eigen::Matrix3Xd& points, const PoseMatrix& draws)
 {
   // A draw moves q = (s - centroid, 1) to A q. The summed variances are the mean of
   // |(A - mean A) q|^2, a quadratic form of q whose matrix is the same for all points.
-  const Eigen::Vector3d centroid = centroidOf(points);
+  const Eigen::Vector3d centroid = points.rowwise().mean();
   const PoseMatrix poses = posesAt(centroid, draws);
   Matrix34d mean = Matrix34d::Zero();
   for (Eigen::Index i = 0; i < poses.rows(); ++i)
@@ -125,10 +112,8 @@ pointDeviations(const Eigen::Matrix3Xf& points, const PoseMatrix& draws)
   }
   Eigen::VectorXd deviations(points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector4d q = (points.col(i).cast<double>() - centroid).homogeneous();
-    const double variance = q.dot(form * q);
-    // Not max(): a NaN stays one.
-    deviations[i] = variance < 0.0 ? 0.0 : std::sqrt(variance);
+    const Eigen::Vector4d q = (points.col(i) - centroid).homogeneous();
+    deviations[i] = std::sqrt(std::max(0.0, q.dot(form * q)));
   }
   return deviations;
 }

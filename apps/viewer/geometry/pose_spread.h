@@ -16,10 +16,6 @@ namespace bayesian_icp::viewer {
 /** \brief chi^2 quantile of 95 % for 3 degrees of freedom. */
 constexpr double chi_squared_95_percent_3_dof = 7.814727903251179;
 
-/** \brief Mean of the finite columns of \p points [m]; zero if there are none. */
-Eigen::Vector3d
-centroidOf(const Eigen::Matrix3Xf& points);
-
 /** \brief Mean and covariance of draws at a reference point. */
 struct PoseSpread {
   /** Source frame [m]. */
@@ -61,11 +57,11 @@ Eigen::Matrix4d
 magnified(const Vector6d& draw, const PoseSpread& spread, double factor);
 
 /** \brief Standard deviation of each point under the draws: root of the summed
- * variances of its three coordinates [m], exact for all draws; NaN where the point is.
+ * variances of its three coordinates [m], exact for all draws.
  * \param[in] points source frame [m], one in each column
  * \param[in] draws at least two */
 Eigen::VectorXd
-pointDeviations(const Eigen::Matrix3Xf& points, const PoseMatrix& draws);
+pointDeviations(const Eigen::Matrix3Xd& points, const PoseMatrix& draws);
 
 /** \brief At most \p wanted of the indices 0 ... \p count - 1, evenly spaced: of chains
  * one after the other, each chain gets its share. */

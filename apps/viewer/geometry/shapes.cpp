@@ -12,8 +12,6 @@ namespace bayesian_icp::viewer {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
-constexpr int num_meridians = 48;
-constexpr int num_parallels = 24;
 constexpr int num_rim_points = 96;
 
 template <int size>
@@ -34,31 +32,6 @@ Eigen::Matrix3d
 regionAxes(const Eigen::Matrix3d& covariance, double level)
 {
   return scaledEigenvectors<3>(covariance, level);
-}
-
-Mesh
-ellipsoidMesh(const Eigen::Vector3d& centre, const Eigen::Matrix3d& axes)
-{
-  Mesh mesh;
-  mesh.vertices.resize(3, num_meridians * (num_parallels + 1));
-  mesh.triangles.resize(3, 2 * num_meridians * num_parallels);
-  Eigen::Index num_triangles = 0;
-  for (int i = 0; i <= num_parallels; ++i)
-    for (int j = 0; j < num_meridians; ++j) {
-      const double polar = pi * i / num_parallels;
-      const double azimuth = 2.0 * pi * j / num_meridians;
-      const Eigen::Vector3d unit(std::sin(polar) * std::cos(azimuth),
-                                 std::sin(polar) * std::sin(azimuth),
-                                 std::cos(polar));
-      mesh.vertices.col(i * num_meridians + j) = centre + axes * unit;
-      if (i == num_parallels)
-        continue;
-      const int next = (j + 1) % num_meridians;
-      const int row = i * num_meridians, below = row + num_meridians;
-      mesh.triangles.col(num_triangles++) << row + j, below + j, below + next;
-      mesh.triangles.col(num_triangles++) << row + j, below + next, row + next;
-    }
-  return mesh;
 }
 
 Eigen::Matrix<double, 3, 2>

@@ -21,10 +21,6 @@ struct Mesh {
 Eigen::Matrix3d
 regionAxes(const Eigen::Matrix3d& covariance, double level);
 
-/** \brief The ellipsoid centre + axes u for unit vectors u. */
-Mesh
-ellipsoidMesh(const Eigen::Vector3d& centre, const Eigen::Matrix3d& axes);
-
 /** \brief What a body axis sweeps within a region of rotations.
  *
  * A small rotation w (about fixed axes, R = exp(w) R_mean) tips the unit vector
