@@ -20,6 +20,19 @@ isAngle(int coordinate)
   return coordinate >= 3;
 }
 
+/** \brief The unit in which lengths of a size are written. */
+struct LengthUnit {
+  const char* name;
+  double per_metre;
+};
+
+/** \brief Metres from 0.1 m on, millimetres below, and for NaN. */
+constexpr LengthUnit
+unitFor(double length)
+{
+  return length >= 0.1 ? LengthUnit{"m", 1.0} : LengthUnit{"mm", 1e3};
+}
+
 /** \brief Its key in the files: "x_m", "yaw_rad". */
 inline std::string
 coordinateKey(std::size_t coordinate)

@@ -75,6 +75,25 @@ words(std::string_view text, std::string_view separators = " \t\r\n\v\f")
   return found;
 }
 
+/** \brief Lines of at most \p width characters, broken at blanks where there are any;
+ * those after the first begin with \p indent. */
+inline std::string
+wrapped(std::string_view text, std::size_t width, const std::string& indent = "")
+{
+  std::string lines, line;
+  for (const std::string_view word : words(text, " ")) {
+    const bool is_first = line.size() <= indent.size();
+    if (!is_first && line.size() + 1 + word.size() > width) {
+      lines += line + '\n';
+      line = indent;
+    }
+    else if (!is_first)
+      line += ' ';
+    line += word;
+  }
+  return lines + line;
+}
+
 /** \brief The pieces of \p text between separators, empty ones included. */
 inline std::vector<std::string_view>
 splitAt(char separator, std::string_view text)

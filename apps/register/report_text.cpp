@@ -271,18 +271,7 @@ cell(double value, int num_decimals, std::size_t width)
 std::string
 wrapped(const std::string& text)
 {
-  constexpr std::size_t max_length = 88;
-  const std::string indent(8, ' ');
-  std::string lines, line;
-  for (const auto word : io::words(text, " ")) {
-    if (line.size() + 1 + word.size() > max_length) {
-      lines += line + '\n';
-      line = indent + std::string(word);
-    }
-    else
-      line += (line.empty() ? "" : " ") + std::string(word);
-  }
-  return lines + line + '\n';
+  return io::wrapped(text, 88, std::string(8, ' ')) + '\n';
 }
 
 } // namespace bayesian_icp::app

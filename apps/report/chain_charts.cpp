@@ -1,3 +1,4 @@
+#include "io/picture_numbers.h"
 #include "report/charts.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ traceBlock(const std::string& name,
            Eigen::Index max_rows)
 {
   std::string lines;
-  for (const Eigen::Index row : evenlySpaced(errors.size(), max_rows))
+  for (const Eigen::Index row : io::evenlySpaced(errors.size(), max_rows))
     lines += plotLine({static_cast<double>(row), errors[row]});
   return plot::dataBlock(name, lines);
 }
@@ -78,7 +79,8 @@ chainScript(const DrawSet& draws, int k)
   }
   return blocks + chart_style + "set multiplot\n" + placedAt(0.22, 0.96, 0.6, 0.97) +
          "set xlabel 'draw of the chain' offset 0, 0.4\nset xtics " +
-         plotNumber(std::max(1.0, roundStep(static_cast<double>(longest - 1), 0.2))) +
+         plotNumber(
+             std::max(1.0, io::roundedUp(0.2 * static_cast<double>(longest - 1)))) +
          "\nset xrange [0:" + std::to_string(longest - 1) +
          "]\nset ylabel offset 0.6, 0 " +
          plot::quotedForGnuplot(differenceLabel(axis)) + "\nplot " + trace_plots +

@@ -73,18 +73,6 @@ plotRange(double low, double high)
   return '[' + plotNumber(low) + ':' + plotNumber(high) + ']';
 }
 
-/** \brief A round number between \p share and 1.5 times \p share of \p span. */
-inline double
-roundStep(double span, double share)
-{
-  const double least = share * span;
-  const double decade = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double step : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
-    if (step * decade >= least)
-      return step * decade;
-  return 10.0 * decade;
-}
-
 /** \brief The style that all charts begin with: thin axes without a box. */
 inline constexpr const char* chart_style = "unset key\nset border 3 linewidth 0.8\n"
                                            "set tics nomirror scale 0.5\n"

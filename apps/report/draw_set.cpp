@@ -10,8 +10,6 @@ namespace bayesian_icp::app {
 
 namespace {
 
-/** Standard deviations below this are shown in millimetres [m]. */
-constexpr double small_deviation = 0.1;
 /** Differences below this are none [m, rad]. */
 constexpr double rounding = 1e-12;
 
@@ -20,9 +18,9 @@ axisOf(int k, const CoordinateSummary& coordinate)
 {
   Axis axis;
   axis.name = coordinate_names[static_cast<std::size_t>(k)];
-  const bool is_large = coordinate.standard_deviation >= small_deviation;
-  axis.unit = isAngle(k) ? "°" : is_large ? "m" : "mm";
-  axis.factor = isAngle(k) ? degrees_per_radian : is_large ? 1.0 : 1e3;
+  const LengthUnit unit = unitFor(coordinate.standard_deviation);
+  axis.unit = isAngle(k) ? "°" : unit.name;
+  axis.factor = isAngle(k) ? degrees_per_radian : unit.per_metre;
   axis.standard_deviation = axis.factor * coordinate.standard_deviation;
   axis.quantile_2_5 = axis.factor * (coordinate.quantile_2_5 - coordinate.mean);
   axis.quantile_97_5 = axis.factor * (coordinate.quantile_97_5 - coordinate.mean);
@@ -90,16 +88,6 @@ pooledErrors(const DrawSet& draws, int coordinate)
     filled += chain.errors.rows();
   }
   return errors;
-}
-
-std::vector<Eigen::Index>
-evenlySpaced(Eigen::Index num_rows, Eigen::Index max_rows)
-{
-  const Eigen::Index num = std::min(num_rows, std::max<Eigen::Index>(max_rows, 1));
-  std::vector<Eigen::Index> rows(static_cast<std::size_t>(num));
-  for (Eigen::Index i = 0; i < num; ++i)
-    rows[static_cast<std::size_t>(i)] = i * num_rows / num;
-  return rows;
 }
 
 std::vector<Eigen::VectorXd>

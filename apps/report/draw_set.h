@@ -54,11 +54,6 @@ drawSetOf(const RegistrationResult& result);
 Eigen::VectorXd
 pooledErrors(const DrawSet& draws, int coordinate);
 
-/** \brief At most \p max_rows of the rows, evenly over all of them, in their order;
- * the first one is among them. */
-std::vector<Eigen::Index>
-evenlySpaced(Eigen::Index num_rows, Eigen::Index max_rows);
-
 /** \brief Ranks of one coordinate's draws among those of all chains, 0 for the
  * smallest, ties in the middle of theirs: a vector for each chain. */
 std::vector<Eigen::VectorXd>

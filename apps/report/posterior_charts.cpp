@@ -1,3 +1,4 @@
+#include "io/picture_numbers.h"
 #include "report/charts.h"
 
 #include <bayesian_icp/diagnostics.h>
@@ -24,7 +25,7 @@ drawsBlock(const DrawSet& draws, Eigen::Index max_rows, const char* separator)
   const Eigen::Index share = std::max<Eigen::Index>(
       1, max_rows / static_cast<Eigen::Index>(draws.chains.size()));
   for (const ChainDraws& chain : draws.chains) {
-    for (const Eigen::Index row : evenlySpaced(chain.errors.rows(), share))
+    for (const Eigen::Index row : io::evenlySpaced(chain.errors.rows(), share))
       lines += plotLine(chain.errors.row(row));
     lines += separator;
   }
@@ -129,7 +130,7 @@ axisScript(const std::string& which, const Axis& axis, double reach, bool has_la
 {
   constexpr double share = 0.27;
   return "set " + which + "range " + plotRange(-reach, reach) + "\nset " + which +
-         "tics " + plotNumber(roundStep(2.0 * reach, share)) +
+         "tics " + plotNumber(io::roundedUp(2.0 * reach * share)) +
          (has_labels ? " format '%g' font ',10'\nset " + which + "label '" + axis.name +
                            " [" + axis.unit + "]'\n"
                      : " format ''\nunset " + which + "label\n");

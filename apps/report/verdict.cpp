@@ -11,9 +11,6 @@ namespace bayesian_icp::app {
 
 namespace {
 
-constexpr double millimetres_per_metre = 1e3;
-/** Standard deviations below this are told in millimetres [m]. */
-constexpr double small_deviation = 0.1;
 /** Digits of means whose standard deviation is not known, or zero. */
 constexpr int default_decimals = 4;
 
@@ -45,12 +42,10 @@ deviationText(double deviation, bool is_angle)
 {
   if (!std::isfinite(deviation))
     return plus_minus + "unknown";
-  const bool is_small = !is_angle && deviation < small_deviation;
-  const double shown = is_small ? millimetres_per_metre * deviation : deviation;
+  const LengthUnit unit = unitFor(deviation);
+  const double shown = is_angle ? deviation : unit.per_metre * deviation;
   return plus_minus + roundedTo(shown, deviation > 0.0 ? decimalsFor(shown) : 0) +
-         (is_angle   ? degree
-          : is_small ? space + "mm"
-                     : space + "m");
+         (is_angle ? degree : space + unit.name);
 }
 
 std::string

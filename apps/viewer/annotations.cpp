@@ -1,5 +1,8 @@
 #include "viewer/annotations.h"
 
+#include "io/coordinates.h"
+#include "io/numbers.h"
+
 #include <pcl/visualization/pcl_visualizer.h>
 
 #include <vtkLookupTable.h>
@@ -66,7 +69,7 @@ addStatus(const LegendLine& status, int viewport, Window& window)
   const Eigen::Vector2i size = window.panelSize();
   const int font_size = fontSizeFor(size);
   const auto width = static_cast<std::size_t>(size.x() / (0.55 * font_size));
-  write({wrapped(status.text, width), status.color},
+  write({io::wrapped(status.text, width), status.color},
         font_size,
         "status",
         viewport,
@@ -76,11 +79,11 @@ addStatus(const LegendLine& status, int viewport, Window& window)
 void
 addColorBar(double maximum, const Color& text_color, int viewport, Window& window)
 {
-  const LengthUnit unit = unitFor(maximum);
+  const app::LengthUnit unit = app::unitFor(maximum);
   auto colors = vtkSmartPointer<vtkLookupTable>::New();
   pcl::visualization::getColormapLUT(pcl::visualization::PCL_VISUALIZER_LUT_VIRIDIS,
                                      colors);
-  colors->SetTableRange(0.0, maximum / unit.in_metres);
+  colors->SetTableRange(0.0, unit.per_metre * maximum);
   auto bar = vtkSmartPointer<vtkScalarBarActor>::New();
   bar->SetLookupTable(colors);
   bar->SetTitle((std::string("sd [") + unit.name + "]").c_str());

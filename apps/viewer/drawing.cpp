@@ -1,5 +1,6 @@
 #include "viewer/drawing.h"
 
+#include "io/picture_numbers.h"
 #include "viewer/annotations.h"
 
 #include <pcl/visualization/pcl_visualizer.h>
@@ -100,7 +101,7 @@ private:
                         points(1, i),
                         points(2, i),
                         static_cast<float>(uncertainty.point_deviations[i])});
-    const double maximum = niceMaximum(uncertainty.point_deviations.maxCoeff());
+    const double maximum = io::roundedUp(uncertainty.point_deviations.maxCoeff());
     const PointStyle style = styleOf(Layer::Aligned, options_);
     auto& visualizer = window_.visualizer();
     visualizer.addPointCloud<pcl::PointXYZI>(

@@ -1,5 +1,6 @@
 #include "viewer/legend.h"
 
+#include "io/coordinates.h"
 #include "io/numbers.h"
 
 #include <cmath>
@@ -21,6 +22,13 @@ std::string
 pointsText(Eigen::Index num_points)
 {
   return " (" + std::to_string(num_points) + " points)";
+}
+
+std::string
+textOf(const Eigen::Vector3d& values)
+{
+  return io::textOf(values[0], 3) + ", " + io::textOf(values[1], 3) + ", " +
+         io::textOf(values[2], 3);
 }
 
 std::string
@@ -103,23 +111,16 @@ legendOf(const Panel& panel,
 }
 
 std::string
-wrapped(const std::string& text, std::size_t width)
+textOfLengths(const Eigen::Vector3d& lengths)
 {
-  std::string result;
-  std::size_t column = 0;
-  for (const std::string_view word : io::words(text, " ")) {
-    if (column > 0 && column + 1 + word.size() > width) {
-      result += '\n';
-      column = 0;
-    }
-    if (column > 0) {
-      result += ' ';
-      ++column;
-    }
-    result += word;
-    column += word.size();
-  }
-  return result;
+  const app::LengthUnit unit = app::unitFor(lengths.maxCoeff());
+  return textOf(unit.per_metre * lengths) + " " + unit.name;
+}
+
+std::string
+textOfAngles(const Eigen::Vector3d& angles)
+{
+  return textOf(app::degrees_per_radian * angles) + " deg";
 }
 
 } // namespace bayesian_icp::viewer

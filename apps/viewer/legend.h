@@ -33,9 +33,12 @@ legendOf(const Panel& panel,
          const ViewOptions& options,
          bool shows_keys);
 
-/** \brief Lines of at most \p width characters, broken at blanks where there are any.
- */
+/** \brief Three lengths [m] in one unit with three digits: "1.2, 0.8, 0.04 mm". */
 std::string
-wrapped(const std::string& text, std::size_t width);
+textOfLengths(const Eigen::Vector3d& lengths);
+
+/** \brief Three angles [rad] in degrees with three digits: "20, 0.1, 0.09 deg". */
+std::string
+textOfAngles(const Eigen::Vector3d& angles);
 
 } // namespace bayesian_icp::viewer

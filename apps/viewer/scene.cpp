@@ -1,5 +1,7 @@
 #include "viewer/scene.h"
 
+#include "io/picture_numbers.h"
+
 #include <bayesian_icp/random.h>
 
 #include <algorithm>
@@ -24,6 +26,17 @@ sizeOf(const Eigen::Matrix3Xd& points)
 
 } // namespace
 
+double
+niceMagnification(double largest_deviation, double size)
+{
+  constexpr double largest_share = 0.05;
+  double best = 1.0;
+  for (const double factor : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0})
+    if (factor * largest_deviation <= largest_share * size)
+      best = factor;
+  return best;
+}
+
 std::optional<Uncertainty>
 uncertaintyOf(const Scene& scene, const ViewOptions& options)
 {
@@ -41,7 +54,8 @@ uncertaintyOf(const Scene& scene, const ViewOptions& options)
           : niceMagnification(std::max(result.point_deviations.maxCoeff(),
                                        result.spread.positionDeviations()[0]),
                               sizeOf(scene.source));
-  for (const Eigen::Index draw : evenlySpaced(scene.draws.rows(), options.num_draws))
+  for (const Eigen::Index draw :
+       io::evenlySpaced(scene.draws.rows(), options.num_draws))
     result.shown_draws.push_back(magnified(
         scene.draws.row(draw).transpose(), result.spread, result.magnification));
   return result;

@@ -51,6 +51,12 @@ struct Scene {
   std::string status_message;
 };
 
+/** \brief How many times larger deviations are to be drawn so that the largest is at
+ * most a twentieth of \p size: the largest of 1, 2, 5, 10, ... 1000 that does it, or 1.
+ * \param[in] largest_deviation, size [m] */
+double
+niceMagnification(double largest_deviation, double size);
+
 /** \brief Empty if there are fewer than two draws. */
 std::optional<Uncertainty>
 uncertaintyOf(const Scene& scene, const ViewOptions& options);

@@ -2,7 +2,6 @@
 add_library(
   bayesian_icp_viewer_scene STATIC
   viewer/geometry/camera.cpp
-  viewer/geometry/color_map.cpp
   viewer/geometry/pose_spread.cpp
   viewer/geometry/shapes.cpp
   viewer/legend.cpp

@@ -3,14 +3,15 @@
  */
 #pragma once
 
-#include "viewer/geometry/color_map.h"
-
 #include <array>
 #include <set>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::viewer {
+
+/** \brief Red, green, blue in [0, 1]. */
+using Color = std::array<double, 3>;
 
 /** \brief From Deviation on they are about the posterior, so that there must be draws.
  */

@@ -1,12 +1,14 @@
 // The report's verdict in words, its escaping, and what its charts are given.
 #include "html/escape.h"
 #include "html/inline_svg.h"
+#include "io/picture_numbers.h"
 #include "report/draw_set.h"
 #include "report/verdict.h"
 #include "summary/estimates.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -278,12 +280,26 @@ TEST(DrawSet, KernelIsAsNarrowAsTheChainsAreNotAsTheirDistance)
   EXPECT_EQ(kernelWidth(near, 0), 0.0);
 }
 
-TEST(EvenlySpaced, CoversAllAndStaysWithin)
+TEST(EvenlySpaced, CoversAllAndGivesEachChainItsShare)
 {
-  EXPECT_EQ(evenlySpaced(3, 10), (std::vector<Eigen::Index>{0, 1, 2}));
-  EXPECT_EQ(evenlySpaced(10, 4), (std::vector<Eigen::Index>{0, 2, 5, 7}));
-  EXPECT_EQ(evenlySpaced(10, 0), (std::vector<Eigen::Index>{0}));
-  EXPECT_TRUE(evenlySpaced(0, 4).empty());
+  using Indices = std::vector<Eigen::Index>;
+  EXPECT_EQ(io::evenlySpaced(3, 10), (Indices{0, 1, 2}));
+  EXPECT_EQ(io::evenlySpaced(10, 4), (Indices{0, 2, 5, 7}));
+  EXPECT_EQ(io::evenlySpaced(10, 0), (Indices{0}));
+  EXPECT_TRUE(io::evenlySpaced(0, 4).empty());
+  std::array<int, 4> of_chain{};
+  for (const Eigen::Index index : io::evenlySpaced(2000, 20))
+    ++of_chain[static_cast<std::size_t>(index / 500)];
+  EXPECT_EQ(of_chain, (std::array<int, 4>{5, 5, 5, 5}));
+}
+
+TEST(RoundedUp, IsTheNextRoundNumber)
+{
+  for (const auto& [value, expected] :
+       {std::pair(0.0123, 0.015), {0.015, 0.015}, {0.9, 1.0}, {1.0, 1.0}, {21.0, 25.0}})
+    EXPECT_DOUBLE_EQ(io::roundedUp(value), expected);
+  EXPECT_GT(io::roundedUp(0.0), 0.0);
+  EXPECT_GT(io::roundedUp(unknown), 0.0);
 }
 
 } // namespace

@@ -1,7 +1,6 @@
 // The viewer's figures against closed forms: spread at a point, standard deviation of
-// each point, ellipsoid, cones, colours, camera.
+// each point, ellipsoid, cones, camera.
 #include "viewer/geometry/camera.h"
-#include "viewer/geometry/color_map.h"
 #include "viewer/geometry/pose_spread.h"
 #include "viewer/geometry/shapes.h"
 
@@ -151,17 +150,6 @@ TEST(PoseSpread, MagnifiesDeviationsOnly)
                   .isApprox(3.0 * turnOf(matrixOf(draw)), 1e-9));
 }
 
-TEST(EvenlySpaced, GivesEachChainItsShare)
-{
-  EXPECT_EQ(evenlySpaced(8, 4), (std::vector<Eigen::Index>{1, 3, 5, 7}));
-  EXPECT_EQ(evenlySpaced(3, 10), (std::vector<Eigen::Index>{0, 1, 2}));
-  EXPECT_TRUE(evenlySpaced(0, 5).empty());
-  std::array<int, 4> of_chain{};
-  for (const Eigen::Index index : evenlySpaced(2000, 20))
-    ++of_chain[static_cast<std::size_t>(index / 500)];
-  EXPECT_EQ(of_chain, (std::array<int, 4>{5, 5, 5, 5}));
-}
-
 TEST(Shapes, LevelIsThatOf95PercentAnd3DegreesOfFreedom)
 {
   const boost::math::chi_squared_distribution<> distribution(3);
@@ -226,22 +214,6 @@ TEST(Shapes, ConeWithoutSpreadIsALine)
                              2.0);
   for (Eigen::Index i = 1; i < cone.vertices.cols(); ++i)
     EXPECT_EQ(cone.vertices.col(i), Eigen::Vector3d(2.0, 0.0, 0.0));
-}
-
-TEST(ColorMap, ScalesAreNice)
-{
-  EXPECT_DOUBLE_EQ(niceMaximum(0.0123), 0.015);
-  EXPECT_DOUBLE_EQ(niceMaximum(0.015), 0.015);
-  EXPECT_DOUBLE_EQ(niceMaximum(0.9), 1.0);
-  EXPECT_DOUBLE_EQ(niceMaximum(1.0), 1.0);
-  EXPECT_GT(niceMaximum(0.0), 0.0);
-  EXPECT_GT(niceMaximum(std::nan("")), 0.0);
-  EXPECT_EQ(niceMagnification(0.001, 1.0), 50.0);
-  EXPECT_EQ(niceMagnification(0.2, 1.0), 1.0);
-  EXPECT_EQ(niceMagnification(0.0, 1.0), 1000.0);
-  EXPECT_EQ(textOfLengths({0.0123, 0.001, 2e-5}), "12.3, 1, 0.02 mm");
-  EXPECT_EQ(textOfLengths({1.234, 0.5, 0.0}), "1.23, 0.5, 0 m");
-  EXPECT_EQ(textOfAngles({pi / 2.0, pi / 180.0, 0.0}), "90, 1, 0 deg");
 }
 
 TEST(Camera, IsAsNearAsTheAreaAllows)

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace bayesian_icp::viewer {
 namespace {
 
@@ -39,6 +41,13 @@ TEST(Scene, ShowsTheDrawsAskedFor)
             0.045);
   options.magnification = 3.0;
   EXPECT_EQ(uncertaintyOf(stick(0.001), options)->magnification, 3.0);
+}
+
+TEST(Scene, MagnificationMakesDeviationsATwentiethAtMost)
+{
+  EXPECT_EQ(niceMagnification(0.001, 1.0), 50.0);
+  EXPECT_EQ(niceMagnification(0.2, 1.0), 1.0);
+  EXPECT_EQ(niceMagnification(0.0, 1.0), 1000.0);
 }
 
 TEST(Scene, ReferenceIsTheCentroidOrTheOrigin)
@@ -112,6 +121,14 @@ TEST(Legend, HasUnitsAndTheMagnification)
   EXPECT_EQ(lines[0].color, (Color{1.0, 1.0, 1.0}));
   options.background = {1.0, 1.0, 1.0};
   EXPECT_EQ(legendOf(panel, scene, options, true)[0].color, (Color{}));
+}
+
+TEST(Legend, WritesLengthsAndAngles)
+{
+  EXPECT_EQ(textOfLengths({0.0123, 0.001, 2e-5}), "12.3, 1, 0.02 mm");
+  EXPECT_EQ(textOfLengths({1.234, 0.5, 0.0}), "1.23, 0.5, 0 m");
+  EXPECT_EQ(textOfAngles({std::acos(0.0), std::acos(-1.0) / 180.0, 0.0}),
+            "90, 1, 0 deg");
 }
 
 TEST(Keys, AreAllDifferentAndNotPclViewers)

@@ -118,14 +118,4 @@ pointDeviations(const Eigen::Matrix3Xd& points, const PoseMatrix& draws)
   return deviations;
 }
 
-std::vector<Eigen::Index>
-evenlySpaced(Eigen::Index count, Eigen::Index wanted)
-{
-  const Eigen::Index size = std::max<Eigen::Index>(0, std::min(count, wanted));
-  std::vector<Eigen::Index> indices;
-  for (Eigen::Index i = 0; i < size; ++i)
-    indices.push_back((2 * i + 1) * count / (2 * size));
-  return indices;
-}
-
 } // namespace bayesian_icp::viewer

@@ -9,8 +9,6 @@
 
 #include <bayesian_icp/pose.h>
 
-#include <vector>
-
 namespace bayesian_icp::viewer {
 
 /** \brief chi^2 quantile of 95 % for 3 degrees of freedom. */
@@ -62,10 +60,5 @@ magnified(const Vector6d& draw, const PoseSpread& spread, double factor);
  * \param[in] draws at least two */
 Eigen::VectorXd
 pointDeviations(const Eigen::Matrix3Xd& points, const PoseMatrix& draws);
-
-/** \brief At most \p wanted of the indices 0 ... \p count - 1, evenly spaced: of chains
- * one after the other, each chain gets its share. */
-std::vector<Eigen::Index>
-evenlySpaced(Eigen::Index count, Eigen::Index wanted);
 
 } // namespace bayesian_icp::viewer
