@@ -8,25 +8,9 @@
 #include <pcl/visualization/pcl_visualizer.h>
 
 #include <iostream>
-#include <memory>
-#include <set>
 #include <sstream>
 
 namespace bayesian_icp::viewer {
-
-namespace {
-
-/** Switches what has a name that begins so. */
-void
-toggle(const std::string& prefix, std::set<std::string>& hidden, Window& window)
-{
-  const bool was_hidden = hidden.erase(prefix) > 0;
-  if (!was_hidden)
-    hidden.insert(prefix);
-  window.setVisible(prefix, was_hidden);
-}
-
-} // namespace
 
 std::string
 keysText()
@@ -43,19 +27,18 @@ void
 handleKeys(Window& window)
 {
   pcl::console::setVerbosityLevel(pcl::console::L_INFO);
-  auto hidden = std::make_shared<std::set<std::string>>();
   window.visualizer().registerKeyboardCallback(
-      [&window, hidden](const pcl::visualization::KeyboardEvent& event) {
+      [&window](const pcl::visualization::KeyboardEvent& event) {
         if (!event.keyDown() || event.isCtrlPressed() || event.isAltPressed())
           return;
         const unsigned char key = event.getKeyCode();
         if (key == 'h' || key == 'H')
           std::cout << keysText() << std::flush;
         if (key == 'k')
-          toggle("legend", *hidden, window);
+          window.toggle("legend");
         for (const LayerName& name : layer_names)
           if (key == static_cast<unsigned char>(name.key))
-            toggle(std::string(name.name) + "/", *hidden, window);
+            window.toggle(std::string(name.name) + "/");
       });
 }
 

@@ -9,15 +9,6 @@ namespace bayesian_icp::viewer {
 
 namespace {
 
-/** Apart for all kinds of colour vision (Okabe and Ito 2008), in the order of Layer;
- * the deviations have a map, the rotation's cones the colours of the axes. */
-constexpr std::array<Color, 6> default_colors = {{{0.34, 0.71, 0.91},
-                                                  {0.62, 0.62, 0.62},
-                                                  {0.90, 0.62, 0.00},
-                                                  {0.90, 0.62, 0.00},
-                                                  {0.94, 0.89, 0.26},
-                                                  {0.86, 0.35, 0.67}}};
-
 std::string
 pointsText(Eigen::Index num_points)
 {
@@ -74,7 +65,7 @@ colorOf(Layer layer, const ViewOptions& options)
 {
   const auto index = static_cast<std::size_t>(layer);
   return index < 3 && index < options.foregrounds.size() ? options.foregrounds[index]
-                                                         : default_colors[index];
+                                                         : nameOf(layer).color;
 }
 
 Color

@@ -63,7 +63,8 @@ public:
   draw(const LiveSnapshot& state)
   {
     moveCloud("icp", state.icp_matrix);
-    window_.setVisible("icp", state.total_steps == 0);
+    window_.visualizer().getCloudActorMap()->at("icp").actor->SetVisibility(
+        state.total_steps == 0);
     for (std::size_t i = 0; i < state.chains.size(); ++i)
       if (!state.chains[i].trace.empty())
         drawChain(state.chains[i], i);
@@ -88,11 +89,13 @@ private:
     if (!visualizer.contains(cloud))
       addPoints(chain_points_, {color, 3, 0.5}, cloud, 0, window_);
     moveCloud(cloud, matrixOf(track.pose));
-    Eigen::Matrix3Xd points(3, track.trace.size());
-    for (std::size_t i = 0; i < track.trace.size(); ++i)
-      points.col(static_cast<Eigen::Index>(i)) = track.trace[i];
     visualizer.removePointCloud(trace);
-    addPoints(points, {color, 3, 1.0}, trace, 0, window_);
+    addPoints(Eigen::Map<const Eigen::Matrix3Xd>(
+                  track.trace.front().data(), 3, Eigen::Index(track.trace.size())),
+              {color, 3, 1.0},
+              trace,
+              0,
+              window_);
   }
 
   void

@@ -17,32 +17,50 @@ using Color = std::array<double, 3>;
  */
 enum class Layer { Source, Target, Aligned, Deviation, Draws, Position, Rotation };
 
-/** \brief How users call a layer. */
+/** \brief How users call a layer, and how they see it. */
 struct LayerName {
   Layer layer;
   const char* name;
   /** Switches it in the window; none of pcl_viewer's keys. */
   char key;
+  /** Apart for all kinds of colour vision (Okabe and Ito 2008). The deviations have a
+   * map instead, the rotation's cones the colours of the axes. */
+  Color color;
   const char* help;
 };
 
 constexpr std::array<LayerName, 7> layer_names = {
-    {{Layer::Source, "source", 'b', "the source at the guess (before)"},
-     {Layer::Target, "target", 't', "the target"},
-     {Layer::Aligned, "aligned", 'a', "the source, moved by the final transformation"},
+    {{Layer::Source,
+      "source",
+      'b',
+      {0.34, 0.71, 0.91},
+      "the source at the guess (before)"},
+     {Layer::Target, "target", 't', {0.62, 0.62, 0.62}, "the target"},
+     {Layer::Aligned,
+      "aligned",
+      'a',
+      {0.90, 0.62, 0.00},
+      "the source, moved by the final transformation"},
      {Layer::Deviation,
       "deviation",
       'm',
+      {},
       "the source, moved by the posterior mean and coloured by the standard deviation "
       "of each point over all draws [mm or m]"},
-     {Layer::Draws, "draws", 'd', "the source, moved by some of the draws"},
+     {Layer::Draws,
+      "draws",
+      'd',
+      {0.94, 0.89, 0.26},
+      "the source, moved by some of the draws"},
      {Layer::Position,
       "position",
       'v',
+      {0.86, 0.35, 0.67},
       "the ellipsoid of 95 % (3 degrees of freedom) of the position, at the mean"},
      {Layer::Rotation,
       "rotation",
       'z',
+      {},
       "the cones that the source's axes x, y, z sweep within 95 % (3 degrees of "
       "freedom), at the mean"}}};
 

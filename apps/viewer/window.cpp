@@ -63,8 +63,6 @@ Window::Window(const ViewOptions& options, const std::vector<std::string>& cloud
       options.background[0], options.background[1], options.background[2]);
 }
 
-Window::~Window() = default;
-
 std::vector<int>
 Window::makePanels(std::size_t number)
 {
@@ -120,14 +118,16 @@ Window::lookAt(const Eigen::Matrix3Xd& points,
 }
 
 void
-Window::setVisible(const std::string& prefix, bool is_visible)
+Window::toggle(const std::string& prefix)
 {
+  const auto toggleIf = [&prefix](const std::string& name, vtkProp& prop) {
+    if (name.rfind(prefix, 0) == 0)
+      prop.SetVisibility(!prop.GetVisibility());
+  };
   for (auto& [name, cloud] : *visualizer_->getCloudActorMap())
-    if (name.rfind(prefix, 0) == 0)
-      cloud.actor->SetVisibility(is_visible);
+    toggleIf(name, *cloud.actor);
   for (auto& [name, shape] : *visualizer_->getShapeActorMap())
-    if (name.rfind(prefix, 0) == 0)
-      shape->SetVisibility(is_visible);
+    toggleIf(name, *shape);
 }
 
 void

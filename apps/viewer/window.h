@@ -27,7 +27,6 @@ public:
    * \param[in] cloud_files pcl_viewer keeps saved cameras (Ctrl-S) under their names
    * \throws io::UsageError if the options' camera cannot be understood */
   Window(const ViewOptions& options, const std::vector<std::string>& cloud_files);
-  ~Window();
   Window(const Window&) = delete;
   Window&
   operator=(const Window&) = delete;
@@ -54,9 +53,10 @@ public:
          const ViewDirection& view,
          const PictureArea& area);
 
-  /** \brief Show or hide everything whose name begins with \p prefix. */
+  /** \brief Hide what is seen, and show what is hidden, of everything whose name begins
+   * with \p prefix. */
   void
-  setVisible(const std::string& prefix, bool is_visible);
+  toggle(const std::string& prefix);
 
   /** \brief Draw, and handle what the user does, for at least so long [ms]. */
   void

@@ -1,8 +1,8 @@
 #include "viewer/geometry/pose_spread.h"
 
-#include <bayesian_icp/summary.h>
+#include "viewer/geometry/shapes.h"
 
-#include <Eigen/Eigenvalues>
+#include <bayesian_icp/summary.h>
 
 #include <algorithm>
 
@@ -11,14 +11,6 @@ namespace bayesian_icp::viewer {
 namespace {
 
 using Matrix34d = Eigen::Matrix<double, 3, 4>;
-
-/** Square roots of the eigenvalues, largest first. */
-Eigen::Vector3d
-principalDeviations(const Eigen::Matrix3d& covariance)
-{
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().reverse();
-}
 
 Matrix34d
 matrixOfRow(const PoseMatrix& poses, Eigen::Index row)
@@ -59,13 +51,13 @@ posesAt(const Eigen::Vector3d& reference, const PoseMatrix& draws)
 Eigen::Vector3d
 PoseSpread::positionDeviations() const
 {
-  return principalDeviations(covariance.topLeftCorner<3, 3>());
+  return regionAxes(covariance.topLeftCorner<3, 3>(), 1.0).colwise().norm();
 }
 
 Eigen::Vector3d
 PoseSpread::rotationDeviations() const
 {
-  return principalDeviations(covariance.bottomRightCorner<3, 3>());
+  return regionAxes(covariance.bottomRightCorner<3, 3>(), 1.0).colwise().norm();
 }
 
 Eigen::Matrix4d
