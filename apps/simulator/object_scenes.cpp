@@ -4,6 +4,7 @@
 #include "simulator/scene_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace bayesian_icp::simulator {
@@ -19,6 +20,34 @@ constexpr double can_height = 0.12;
 constexpr double mug_height = 0.10;
 constexpr double mug_radius = 0.04;
 constexpr double mug_wall = 0.004;
+
+/** Torus centred at the origin, its ring in the x-z plane. */
+double
+torusDistance(const Vector3d& point, double ring_radius, double tube_radius)
+{
+  const double from_ring = length(point.x(), point.z()) - ring_radius;
+  return length(from_ring, point.y()) - tube_radius;
+}
+
+/** Spherical shell with a round rim: the part below the plane z = \p rim_height of a
+ * sphere about the origin, thickened by \p half_thickness to both sides. */
+double
+sphericalBowlDistance(const Vector3d& point,
+                      double sphere_radius,
+                      double rim_height,
+                      double half_thickness)
+{
+  const double radial = length(point.x(), point.y());
+  const double rim_radius =
+      std::sqrt(sphere_radius * sphere_radius - rim_height * rim_height);
+  // Seen from the sphere's centre, points above the cone through the rim are nearest to
+  // the rim, the others to the sphere.
+  const bool nearest_to_rim = rim_height * radial < rim_radius * point.z();
+  const double middle_surface =
+      nearest_to_rim ? length(radial - rim_radius, point.z() - rim_height)
+                     : std::abs(length(radial, point.z()) - sphere_radius);
+  return middle_surface - half_thickness;
+}
 
 /** Bowl, 170 mm wide, with a round rim and a foot. */
 double
@@ -88,6 +117,15 @@ centred(double height, DistanceFunction distance)
   return movedTo({0.0, 0.0, -0.5 * height}, std::move(distance));
 }
 
+double
+cartonDistance(const Vector3d& point)
+{
+  const double outside = boxDistance(point, {-0.1, -0.075, 0.0}, {0.1, 0.075, 0.12});
+  const double inside =
+      boxDistance(point, {-0.096, -0.071, 0.005}, {0.096, 0.071, 0.175});
+  return std::max(outside, -inside);
+}
+
 } // namespace
 
 std::vector<Scene>
@@ -130,7 +168,30 @@ objectScenes()
           {"table",
            "a table, 1.2 m x 0.8 m, with a mug, a can, a bowl, a carton and a book",
            "nothing",
-           table}};
+           table},
+          {"box",
+           "a closed box, 100 mm x 200 mm x 140 mm",
+           "nothing",
+           {box("box", {-0.05, -0.1, 0.0}, {0.05, 0.1, 0.14})}},
+          {"bracket",
+           "an L-shaped bracket of 6 mm plate, 120 mm x 80 mm, 80 mm high",
+           "translation along its 120 mm edge: held by its ends only",
+           {box("foot", {-0.06, -0.04, 0.0}, {0.06, 0.04, 0.006}),
+            box("back", {-0.06, 0.034, 0.0}, {0.06, 0.04, 0.08})}},
+          {"carton",
+           "an open carton, 200 mm x 150 mm x 120 mm, walls of 4 mm",
+           "nothing",
+           {{"carton", cartonDistance}}},
+          {"cube",
+           "a cube of 0.1 m on a floor",
+           "nothing",
+           {floorPart(), box("cube", {-0.05, -0.05, 0.0}, {0.05, 0.05, 0.1})}},
+          {"tool",
+           "a hand tool, 160 mm long: handle, head and pommel",
+           "nothing",
+           {box("handle", {-0.08, -0.015, 0.0}, {0.08, 0.015, 0.025}),
+            box("head", {0.055, -0.045, 0.0}, {0.085, 0.045, 0.04}),
+            box("pommel", {-0.08, -0.012, 0.02}, {-0.06, 0.012, 0.04})}}};
 }
 
 } // namespace bayesian_icp::simulator

@@ -12,6 +12,26 @@ using Eigen::Vector3d;
 
 namespace {
 
+/** \brief Endless walls at both sides of the plane y = 0. */
+ScenePart
+wallsAlong(double half_width)
+{
+  return {"walls", [half_width](const Vector3d& point) {
+            return half_width - std::abs(point.y());
+          }};
+}
+
+/** \brief Floor, ceiling and walls of a hall about the z axis, seen from inside. */
+ScenePart
+hall(const std::string& name, const Vector3d& half_size)
+{
+  const Vector3d lower(-half_size.x(), -half_size.y(), 0.0);
+  const Vector3d upper(half_size.x(), half_size.y(), 2.0 * half_size.z());
+  return {name, [lower, upper](const Vector3d& point) {
+            return -boxDistance(point, lower, upper);
+          }};
+}
+
 /** \brief Plate on four square legs that stands on the floor: a table or a stool. */
 ScenePart
 plateOnLegs(const std::string& name,
@@ -21,8 +41,8 @@ plateOnLegs(const std::string& name,
 {
   const auto distance = [=](const Vector3d& point) {
     const Vector3d p = point - centre_of_plate;
-    const double plate = boxDistance(p - Vector3d(0.0, 0.0, -0.02),
-                                     Vector3d(half_length, half_width, 0.02));
+    const double plate = boxDistance(
+        p, {-half_length, -half_width, -0.04}, {half_length, half_width, 0.0});
     const Vector3d folded(std::abs(p.x()), std::abs(p.y()), p.z());
     const double leg = boxDistance(
         folded,
@@ -132,10 +152,8 @@ corridor()
 std::vector<ScenePart>
 corridorLoop()
 {
-  const Vector3d block(5.0, 3.0, 1.25), centre(0.0, 0.0, 1.25);
-  std::vector<ScenePart> parts = {
-      hall("outer walls", {7.0, 5.0, 1.25}),
-      {"block", [=](const Vector3d& p) { return boxDistance(p - centre, block); }}};
+  std::vector<ScenePart> parts = {hall("outer walls", {7.0, 5.0, 1.25}),
+                                  box("block", {-5.0, -3.0, 0.0}, {5.0, 3.0, 2.5})};
   for (const double x : {-4.2, -2.9, -1.1, 1.9, 4.3}) {
     parts.push_back(box("pillar", {x, -3.0 - 0.12, 0.0}, {x + 0.25, -3.0, 2.5}));
     parts.push_back(box("cupboard", {-x, 5.0 - 0.35, 0.0}, {-x + 0.9, 5.0, 1.9}));

@@ -18,13 +18,37 @@ allScenes()
 {
   static const std::vector<Scene> scenes = [] {
     std::vector<Scene> all;
-    for (const auto& scenes_of :
-         {objectScenes, workshopScenes, placeScenes, outdoorScenes, roadScenes})
+    for (const auto& scenes_of : {objectScenes, placeScenes, outdoorScenes})
       for (Scene& scene : scenes_of())
         all.push_back(std::move(scene));
     return all;
   }();
   return scenes;
+}
+
+bool
+meets(const Eigen::AlignedBox3d& box, const Ray& ray, double max_range)
+{
+  double enter = 0.0;
+  double leave = max_range;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double first = (box.min()[axis] - ray.origin[axis]) / ray.direction[axis];
+    const double second = (box.max()[axis] - ray.origin[axis]) / ray.direction[axis];
+    enter = std::max(enter, std::min(first, second));
+    leave = std::min(leave, std::max(first, second));
+  }
+  return enter <= leave;
+}
+
+/** \brief The parts that the ray may meet within a range [m]. */
+std::vector<const ScenePart*>
+partsAlong(const Scene& scene, const Ray& ray, double max_range)
+{
+  std::vector<const ScenePart*> parts;
+  for (const ScenePart& part : scene.parts)
+    if (meets(part.bounds, ray, max_range))
+      parts.push_back(&part);
+  return parts;
 }
 
 } // namespace
@@ -43,6 +67,38 @@ Scene::distance(const Vector3d& point) const
   for (const ScenePart& part : parts)
     nearest = part.distanceIfBelow(nearest, point);
   return nearest;
+}
+
+std::optional<double>
+Scene::castRay(const Ray& ray, double max_range) const
+{
+  constexpr double hit_distance = 1e-6;
+  // Grazing rays approach geometrically; a plane seen at 0.3 degrees takes 3000 steps.
+  constexpr int max_steps = 4000;
+  const std::vector<const ScenePart*> parts = partsAlong(*this, ray, max_range);
+  double range = 0.0;
+  for (int step = 0; step < max_steps && range <= max_range; ++step) {
+    const Vector3d point = ray.origin + range * ray.direction;
+    double clearance = std::numeric_limits<double>::infinity();
+    for (const ScenePart* part : parts)
+      clearance = part->distanceIfBelow(clearance, point);
+    if (clearance < hit_distance)
+      return range;
+    range += clearance;
+  }
+  return std::nullopt;
+}
+
+Vector3d
+Scene::surfaceNormal(const Vector3d& point) const
+{
+  constexpr double half_step = 1e-6;
+  Vector3d gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3d step = half_step * Vector3d::Unit(axis);
+    gradient[axis] = distance(point + step) - distance(point - step);
+  }
+  return gradient.normalized();
 }
 
 std::vector<std::string>

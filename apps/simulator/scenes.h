@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,13 @@ namespace bayesian_icp::simulator {
 
 /** \brief Signed distance [m] of a point of the world frame [m] to a surface. */
 using DistanceFunction = std::function<double(const Eigen::Vector3d&)>;
+
+/** \brief A half line in the world frame [m]. */
+struct Ray {
+  Eigen::Vector3d origin;
+  /** Unit vector. */
+  Eigen::Vector3d direction;
+};
 
 /** \brief All of space. */
 inline Eigen::AlignedBox3d
@@ -53,6 +61,16 @@ struct Scene {
   /** \brief Signed distance to the nearest part [m]; a lower bound outside. */
   double
   distance(const Eigen::Vector3d& point) const;
+
+  /** \brief Distance along the ray to the first surface [m], to about 1e-6 m, by sphere
+   * tracing.
+   * \return nothing if the ray meets no surface within \p max_range [m] */
+  std::optional<double>
+  castRay(const Ray& ray, double max_range) const;
+
+  /** \brief Unit normal of the surface at \p point (world frame), out of the solid. */
+  Eigen::Vector3d
+  surfaceNormal(const Eigen::Vector3d& point) const;
 };
 
 /** \brief The names that makeScene() knows, in the order in which they are listed. */

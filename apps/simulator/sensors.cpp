@@ -1,7 +1,6 @@
 #include "simulator/sensors.h"
 
 #include "simulator/noise_field.h"
-#include "simulator/rays.h"
 #include "threads/first_exception.h"
 
 #include <bayesian_icp/random.h>
@@ -143,10 +142,10 @@ private:
     const double length = direction.norm();
     const Ray ray{T_world_sensor.translation(),
                   T_world_sensor.linear() * (direction / length)};
-    const auto range = castRay(scene_, ray, options_.max_range * length);
+    const auto range = scene_.castRay(ray, options_.max_range * length);
     if (!range)
       return std::nullopt;
-    const Vector3d normal = surfaceNormal(scene_, ray.origin + *range * ray.direction);
+    const Vector3d normal = scene_.surfaceNormal(ray.origin + *range * ray.direction);
     const double cosine = std::clamp(-normal.dot(ray.direction), 0.0, 1.0);
     return Hit{*range / length, std::acos(cosine)};
   }

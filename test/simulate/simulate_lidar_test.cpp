@@ -3,7 +3,6 @@
  * and motion during a scan. Statistical bounds are two-sided at 1e-6, seeds fixed.
  */
 #include "simulate/simulate_helpers.h"
-#include "simulator/rays.h"
 
 #include <gtest/gtest.h>
 

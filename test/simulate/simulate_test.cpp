@@ -3,7 +3,6 @@
  * surfaces, in the right frames?
  */
 #include "simulate/simulate_helpers.h"
-#include "simulator/rays.h"
 
 #include <bayesian_icp/random.h>
 
@@ -41,7 +40,7 @@ TEST_P(EveryScene, DistanceNeverReachesBeyondASurface)
       continue;
     // In any direction, and by all of the distance straight towards the surface.
     const Vector3d aside = random.uniform() * distance * normals().normalized();
-    const Vector3d towards = -distance * surfaceNormal(scene, point);
+    const Vector3d towards = -distance * scene.surfaceNormal(point);
     EXPECT_GE(scene.distance(point + aside), -1e-12) << point.transpose();
     EXPECT_GE(scene.distance(point + towards), -1e-9) << point.transpose();
   }
