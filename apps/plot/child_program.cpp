@@ -5,7 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cstdio>
+#include <memory>
 #include <system_error>
 
 extern char** environ;
@@ -15,58 +18,33 @@ namespace bayesian_icp::plot {
 namespace {
 
 /** A file without a name, in memory. */
-class MemoryFile {
-public:
-  MemoryFile() : descriptor_(memfd_create("pcl_bayesian_icp", MFD_CLOEXEC))
-  {
-    if (descriptor_ < 0)
-      throw std::system_error(errno, std::generic_category());
-  }
-  ~MemoryFile() { close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile&
-  operator=(const MemoryFile&) = delete;
+using MemoryFile = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
 
-  int
-  descriptor() const
-  {
-    return descriptor_;
-  }
+/** To be read by another program from its begin. */
+MemoryFile
+memoryFileWith(const std::string& content)
+{
+  const int descriptor = memfd_create("pcl_bayesian_icp", MFD_CLOEXEC);
+  MemoryFile file(descriptor < 0 ? nullptr : fdopen(descriptor, "w+"), &std::fclose);
+  if (!file ||
+      std::fwrite(content.data(), 1, content.size(), file.get()) != content.size() ||
+      std::fflush(file.get()) != 0)
+    throw std::system_error(errno, std::generic_category());
+  std::rewind(file.get());
+  return file;
+}
 
-  /** To be read by another program from its begin. */
-  void
-  fill(const std::string& text) const
-  {
-    std::size_t num_written = 0;
-    while (num_written < text.size()) {
-      const ssize_t count =
-          write(descriptor_, text.data() + num_written, text.size() - num_written);
-      if (count < 0 && errno != EINTR)
-        throw std::system_error(errno, std::generic_category());
-      num_written += count > 0 ? static_cast<std::size_t>(count) : 0;
-    }
-    lseek(descriptor_, 0, SEEK_SET);
-  }
-
-  std::string
-  content() const
-  {
-    std::string text;
-    char buffer[1 << 16];
-    lseek(descriptor_, 0, SEEK_SET);
-    while (true) {
-      const ssize_t count = read(descriptor_, buffer, sizeof(buffer));
-      if (count < 0 && errno == EINTR)
-        continue;
-      if (count <= 0)
-        return text;
-      text.append(buffer, static_cast<std::size_t>(count));
-    }
-  }
-
-private:
-  int descriptor_;
-};
+/** What another program has written. */
+std::string
+contentOf(const MemoryFile& file)
+{
+  std::string content;
+  std::array<char, 1 << 16> buffer;
+  std::rewind(file.get());
+  while (const auto count = std::fread(buffer.data(), 1, buffer.size(), file.get()))
+    content.append(buffer.data(), count);
+  return content;
+}
 
 /** \return an error number, 0 if \p process has been started */
 int
@@ -82,7 +60,7 @@ start(const std::vector<std::string>& words,
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   for (int i = 0; i < 3; ++i)
-    posix_spawn_file_actions_adddup2(&actions, standard_files[i].descriptor(), i);
+    posix_spawn_file_actions_adddup2(&actions, fileno(standard_files[i].get()), i);
   // Of another group of processes: Ctrl-C at the terminal is for this program alone.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -112,15 +90,15 @@ runChildProgram(const std::vector<std::string>& words, const std::string& input)
 {
   ProgramResult result;
   try {
-    const MemoryFile standard_files[3];
-    standard_files[0].fill(input);
+    const MemoryFile standard_files[] = {
+        memoryFileWith(input), memoryFileWith(""), memoryFileWith("")};
     pid_t process = 0;
     const int error = start(words, standard_files, process);
     if (error != 0)
       throw std::system_error(error, std::generic_category());
     result.is_good = endsWell(process);
-    result.output = standard_files[1].content();
-    result.errors = standard_files[2].content();
+    result.output = contentOf(standard_files[1]);
+    result.errors = contentOf(standard_files[2]);
   }
   catch (const std::system_error& error) {
     result.errors = error.code().message();

@@ -51,7 +51,7 @@ rankBlock(const std::string& name,
 std::string
 chainScript(const DrawSet& draws, int k)
 {
-  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  const Axis& axis = draws.axes[k];
   const std::vector<Eigen::VectorXd> ranks = ranksOf(draws, k);
   Eigen::Index num_draws = 0, shortest = ranks.front().size(), longest = 2;
   for (const Eigen::VectorXd& of_chain : ranks) {
@@ -96,7 +96,7 @@ chainScript(const DrawSet& draws, int k)
 Chart
 chainChart(const DrawSet& draws, int k)
 {
-  const std::string& name = draws.axes[static_cast<std::size_t>(k)].name;
+  const std::string& name = draws.axes[k].name;
   return {"chains-" + name,
           "Chains of " + name,
           name + ": trace, and ranks.",

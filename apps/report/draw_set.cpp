@@ -17,7 +17,7 @@ Axis
 axisOf(int k, const CoordinateSummary& coordinate)
 {
   Axis axis;
-  axis.name = coordinate_names[static_cast<std::size_t>(k)];
+  axis.name = coordinate_names[k];
   const LengthUnit unit = unitFor(coordinate.standard_deviation);
   axis.unit = isAngle(k) ? "°" : unit.name;
   axis.factor = isAngle(k) ? degrees_per_radian : unit.per_metre;
@@ -32,7 +32,7 @@ meansOf(const Summary& summary)
 {
   Vector6d means;
   for (int k = 0; k < 6; ++k)
-    means[k] = summary.coordinates[static_cast<std::size_t>(k)].mean;
+    means[k] = summary.coordinates[k].mean;
   return means;
 }
 
@@ -44,9 +44,8 @@ errorsOf(const PoseMatrix& draws, const Vector6d& means, const DrawSet& set)
     const Vector6d error =
         poseError(draws.row(i).transpose(), means, CovarianceConvention::Parameters);
     for (int k = 0; k < 6; ++k)
-      errors(i, k) = std::abs(error[k]) < rounding
-                         ? 0.0
-                         : set.axes[static_cast<std::size_t>(k)].factor * error[k];
+      errors(i, k) =
+          std::abs(error[k]) < rounding ? 0.0 : set.axes[k].factor * error[k];
   }
   return errors;
 }
@@ -64,8 +63,7 @@ drawSetOf(const RegistrationResult& result)
 {
   DrawSet set;
   for (int k = 0; k < 6; ++k)
-    set.axes[static_cast<std::size_t>(k)] =
-        axisOf(k, result.summary.coordinates[static_cast<std::size_t>(k)]);
+    set.axes[k] = axisOf(k, result.summary.coordinates[k]);
   const Vector6d means = meansOf(result.summary);
   for (std::size_t i = 0; i < result.chains.size(); ++i) {
     const Chain& chain = result.chains[i];

@@ -71,7 +71,7 @@ intervalText(const Axis& axis)
 std::string
 densityScript(const DrawSet& draws, int k)
 {
-  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  const Axis& axis = draws.axes[k];
   const auto [low, high] = rangeOf(draws, k);
   const double width = kernelWidth(draws, k);
   std::string script = drawsBlock(draws, max_density_draws, "") + chart_style +
@@ -139,8 +139,8 @@ axisScript(const std::string& which, const Axis& axis, double reach, bool has_la
 std::string
 scatterPanel(const DrawSet& draws, const Vector6d& reaches, int row, int column)
 {
-  const Axis& x = draws.axes[static_cast<std::size_t>(column)];
-  const Axis& y = draws.axes[static_cast<std::size_t>(row)];
+  const Axis& x = draws.axes[column];
+  const Axis& y = draws.axes[row];
   const std::string script = "set border 15 linewidth 0.5\n" +
                              axisScript("x", x, reaches[column], row == 5) +
                              axisScript("y", y, reaches[row], column == 0);
@@ -155,12 +155,26 @@ scatterPanel(const DrawSet& draws, const Vector6d& reaches, int row, int column)
   return script + plots + '\n';
 }
 
+constexpr double millimetres_per_metre = 1e3;
+
+/** Lines "number, posterior, prior [mm]". */
+std::string
+directionsBlock(const std::vector<DataDirection>& directions)
+{
+  std::string lines;
+  for (std::size_t i = 0; i < directions.size(); ++i)
+    lines += plotLine({static_cast<double>(i + 1),
+                       millimetres_per_metre * directions[i].standard_deviation,
+                       millimetres_per_metre * directions[i].prior_standard_deviation});
+  return plot::dataBlock("directions", lines);
+}
+
 } // namespace
 
 Chart
 densityChart(const DrawSet& draws, int k)
 {
-  const Axis& axis = draws.axes[static_cast<std::size_t>(k)];
+  const Axis& axis = draws.axes[k];
   const std::string caption =
       axis.name + ": " +
       (std::isfinite(axis.quantile_2_5) ? intervalText(axis) : "no interval");
@@ -180,11 +194,10 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance)
   const Vector6d reaches = reachesOf(draws);
   for (int row = 0; row < 6; ++row)
     for (int column = 0; column < 6; ++column)
-      script +=
-          panelAt(row, column) +
-          (column == row ? textPanel(draws.axes[static_cast<std::size_t>(row)].name, 16)
-           : column > row ? correlationPanel(covariance, row, column)
-                          : scatterPanel(draws, reaches, row, column));
+      script += panelAt(row, column) +
+                (column == row  ? textPanel(draws.axes[row].name, 16)
+                 : column > row ? correlationPanel(covariance, row, column)
+                                : scatterPanel(draws, reaches, row, column));
   const std::string caption =
       "Each pair of coordinates, as differences from their means: up to " +
       io::textOf(max_pair_draws) +
@@ -196,6 +209,31 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance)
           caption,
           {860, 860, script + "unset multiplot\n"},
           html::FigureWidth::Scrolled};
+}
+
+Chart
+directionChart(const DataReport& report)
+{
+  const std::string caption =
+      "Standard deviation along each motion of the table: disc, in the posterior; "
+      "circle, in the prior. Where they meet the clouds say nothing.";
+  const std::string script =
+      directionsBlock(report.directions) + chart_style +
+      "set logscale x\nset format x '%g'\nset grid xtics linewidth 0.3\n"
+      "set yrange [6.6:0.4]\nset ytics 1\nset ylabel 'motion'\n"
+      "set xlabel 'standard deviation of the points [mm]'\n"
+      "set offsets graph 0.04, graph 0.04, 0, 0\n"
+      "plot $directions using 2:1:($3 - $2):(0) with vectors nohead linewidth 2" +
+      colouredAs(quiet_colour) +
+      ", $directions using 3:1 with points pointtype 6 pointsize 0.7 linewidth 2" +
+      colouredAs(chart_colours[1]) +
+      ", $directions using 2:1 with points pointtype 7 pointsize 0.6" +
+      colouredAs(chart_colours[0]) + '\n';
+  return {"directions",
+          "Standard deviation along each motion",
+          caption,
+          caption,
+          {420, 200, script}};
 }
 
 } // namespace bayesian_icp::app

@@ -62,7 +62,7 @@ poseText(const Summary& summary)
 {
   Vector6d mean, standard_deviations;
   for (int k = 0; k < 6; ++k) {
-    const auto& coordinate = summary.coordinates[static_cast<std::size_t>(k)];
+    const auto& coordinate = summary.coordinates[k];
     mean[k] = coordinate.mean;
     standard_deviations[k] = coordinate.standard_deviation;
   }
@@ -126,7 +126,7 @@ goodOpening(const DataReport& data, Preset preset)
 {
   using html::Tone;
   if (preset != Preset::Calibrated)
-    return {Tone::Good, "Good draws of the posterior that was stated", "", ""};
+    return {Tone::Good, "Good draws of the posterior that was stated"};
   const auto num_unobserved =
       std::count_if(data.directions.begin(),
                     data.directions.end(),
@@ -136,10 +136,8 @@ goodOpening(const DataReport& data, Preset preset)
   if (num_unobserved > 0)
     return {Tone::Caution,
             "Reliable, but " + io::textOf(num_unobserved) +
-                " of 6 motions cannot be observed",
-            "",
-            ""};
-  return {Tone::Good, "The pose and its ± can be relied on", "", ""};
+                " of 6 motions cannot be observed"};
+  return {Tone::Good, "The pose and its ± can be relied on"};
 }
 
 /** Tone, heading, and what the sentence begins with. */
@@ -151,33 +149,28 @@ opening(const Summary& summary, Preset preset)
   case Status::Ok:
     return goodOpening(summary.data, preset);
   case Status::Doubtful:
-    return {Tone::Caution, "Use with care: the clouds call for doubt", "", ""};
+    return {Tone::Caution, "Use with care: the clouds call for doubt"};
   case Status::NotMixed:
     return {Tone::Bad,
             // Particles have no R-hat, nor have chains of a few draws.
             std::isnan(summary.coordinates[0].rhat)
                 ? "Do not trust the ±: the draws have not converged"
                 : "Do not trust the ±: the chains have not mixed",
-            "Draws so far, which describe the chains rather than the posterior: ",
-            ""};
+            "Draws so far, which describe the chains rather than the posterior: "};
   case Status::SeveralModes:
     return {Tone::Bad,
             "Do not use one mean: " + io::textOf(summary.modes.size()) +
-                " different poses fit",
-            "",
-            ""};
+                " different poses fit"};
   case Status::Diverged:
     return {Tone::Bad,
             "Do not trust this posterior: " + divergedText(summary) + " diverged",
-            "Draws of the others: ",
-            ""};
+            "Draws of the others: "};
   case Status::Cancelled:
     return {Tone::Bad,
             "Interrupted: do not trust the ±",
-            "What was drawn until then, " + io::textOf(summary.num_draws) + " draws: ",
-            ""};
+            "What was drawn until then, " + io::textOf(summary.num_draws) + " draws: "};
   default:
-    return {Tone::Bad, "There is no posterior", "", ""};
+    return {Tone::Bad, "There is no posterior"};
   }
 }
 
@@ -200,7 +193,7 @@ uncertainText(int coordinate, double mean, double standard_deviation)
   const bool is_angle = isAngle(coordinate);
   const double factor = is_angle ? degrees_per_radian : 1.0;
   const double deviation = factor * standard_deviation;
-  const std::string name = coordinate_names[static_cast<std::size_t>(coordinate)];
+  const std::string name = coordinate_names[coordinate];
   if (!std::isfinite(mean))
     return name + space + "unknown";
   return name + space + roundedTo(factor * mean, decimalsFor(deviation)) +

@@ -19,9 +19,9 @@ struct Verdict {
   std::string heading;
   /** Why not, if so; the pose with ± one standard deviation for every axis, of each
    * mode if there are several; the motions that the clouds do not hold; flags. */
-  std::string sentence;
+  std::string sentence = {};
   /** What the ± mean with this preset; empty if that needs no words. */
-  std::string scale_note;
+  std::string scale_note = {};
 };
 
 /** \brief The verdict on a run's posterior. */
