@@ -18,7 +18,7 @@ namespace bayesian_icp::plot {
 namespace {
 
 /** A file without a name, in memory. */
-using MemoryFile = std::unique_ptr<std::FILE, decltype(&std::fclose)>;
+using MemoryFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 /** To be read by another program from its begin. */
 MemoryFile
