@@ -2,7 +2,6 @@
 
 #include "io/command_line.h"
 #include "register/settings_options.h"
-#include "viewer/keys.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,6 @@
 #include "viewer/command_line.h"
 #include "viewer/display.h"
 #include "viewer/drawing.h"
-#include "viewer/keys.h"
 #include "viewer/live_view.h"
 #include "viewer/scene_files.h"
 
@@ -44,7 +43,7 @@ registerWithoutWindow(bool is_quiet, app::Run& run)
 void
 letUserLook(Window& window)
 {
-  handleKeys(window);
+  window.handleKeys();
   while (!window.isClosed() && !io::wasInterrupted())
     window.spinOnce(50);
 }

@@ -31,7 +31,6 @@ if(BAYESIAN_ICP_BUILD_VIEWER)
     viewer/command_line.cpp
     viewer/display.cpp
     viewer/drawing.cpp
-    viewer/keys.cpp
     viewer/live_view.cpp
     viewer/main.cpp
     viewer/scene_files.cpp

@@ -27,6 +27,15 @@ leaveOutDraws(Layers& layers)
 
 } // namespace
 
+std::string
+keysText()
+{
+  std::string text = "Keys in addition to those of pcl_viewer (h lists all):\n";
+  for (const LayerName& name : layer_names)
+    text += std::string("  ") + name.key + "    " + name.name + " on/off\n";
+  return text + "  k    legend and colour bar on/off\n";
+}
+
 std::vector<Panel>
 ViewOptions::panels(bool has_draws) const
 {

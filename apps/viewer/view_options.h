@@ -78,6 +78,10 @@ nameOf(Layer layer)
   return layer_names[static_cast<std::size_t>(layer)];
 }
 
+/** \brief The viewer's keys in words; pcl_viewer prints its own itself. */
+std::string
+keysText();
+
 /** \brief The point of the source whose position's covariance is shown. */
 enum class Reference { Centroid, Origin };
 

@@ -3,6 +3,8 @@
 #include "io/errors.h"
 #include "io/output_folder.h"
 
+#include <pcl/console/print.h>
+#include <pcl/visualization/keyboard_event.h>
 #include <pcl/visualization/pcl_visualizer.h>
 
 #include <vtkCamera.h>
@@ -15,7 +17,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <cmath>
-#include <ostream>
+#include <iostream>
 
 namespace bayesian_icp::viewer {
 
@@ -128,6 +130,25 @@ Window::toggle(const std::string& prefix)
     toggleIf(name, *cloud.actor);
   for (auto& [name, shape] : *visualizer_->getShapeActorMap())
     toggleIf(name, *shape);
+}
+
+void
+Window::handleKeys()
+{
+  pcl::console::setVerbosityLevel(pcl::console::L_INFO);
+  visualizer_->registerKeyboardCallback(
+      [this](const pcl::visualization::KeyboardEvent& event) {
+        if (!event.keyDown() || event.isCtrlPressed() || event.isAltPressed())
+          return;
+        const unsigned char key = event.getKeyCode();
+        if (key == 'h' || key == 'H')
+          std::cout << keysText() << std::flush;
+        if (key == 'k')
+          toggle("legend");
+        for (const LayerName& name : layer_names)
+          if (key == static_cast<unsigned char>(name.key))
+            toggle(std::string(name.name) + "/");
+      });
 }
 
 void

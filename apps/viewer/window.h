@@ -53,10 +53,10 @@ public:
          const ViewDirection& view,
          const PictureArea& area);
 
-  /** \brief Hide what is seen, and show what is hidden, of everything whose name begins
-   * with \p prefix. */
+  /** \brief From now on keys switch layers and the legend; h prints keysText(), and
+   * lets PCL print its own. */
   void
-  toggle(const std::string& prefix);
+  handleKeys();
 
   /** \brief Draw, and handle what the user does, for at least so long [ms]. */
   void
@@ -72,6 +72,11 @@ public:
   save(const std::string& name, io::OutputFolder& folder);
 
 private:
+  /** Hides what is seen, and shows what is hidden, of everything whose name begins with
+   * \p prefix. */
+  void
+  toggle(const std::string& prefix);
+
   std::shared_ptr<pcl::visualization::PCLVisualizer> visualizer_;
   bool is_off_screen_;
   bool has_users_camera_ = false;
