@@ -16,26 +16,59 @@ namespace po = boost::program_options;
 
 namespace {
 
+/** Reads a number from \p lowest to \p highest. */
 template <typename Number>
-bool
-readBetween(std::string_view text, Number lowest, Number highest, Number& value)
+auto
+within(Number lowest, Number highest)
 {
-  return io::readNumber(text, value) && value >= lowest && value <= highest;
+  return [=](std::string_view text, Number& value) {
+    return io::readNumber(text, value) && value >= lowest && value <= highest;
+  };
+}
+
+/** Reads one of two names. */
+template <typename Value>
+auto
+oneOf(const char* first_name, Value first, const char* second_name, Value second)
+{
+  return [=](const std::string& text, Value& value) {
+    value = text == first_name ? first : second;
+    return text == first_name || text == second_name;
+  };
 }
 
 /** "r,g,b" in 0 ... 1, or in 0 ... 255 if one of them is above 1. */
-void
+bool
 readColor(const std::string& text, Color& color)
 {
   const auto items = io::splitAt(',', text);
-  bool is_good = items.size() == 3;
-  for (std::size_t k = 0; is_good && k < 3; ++k)
-    is_good = readBetween(items[k], 0.0, 255.0, color[k]);
-  if (!is_good)
-    io::refuseValue(text, "a colour r,g,b, each 0 to 1 or each 0 to 255");
+  const auto readPart = within(0.0, 255.0);
+  if (items.size() != 3 || !readPart(items[0], color[0]) ||
+      !readPart(items[1], color[1]) || !readPart(items[2], color[2]))
+    return false;
   if (*std::max_element(color.begin(), color.end()) > 1.0)
     for (double& part : color)
       part /= 255.0;
+  return true;
+}
+
+/** A positive number, or "auto", which is 0. */
+bool
+readMagnification(const std::string& text, double& factor)
+{
+  factor = 0.0;
+  return text == "auto" ||
+         (io::readNumber(text, factor) && std::isfinite(factor) && factor > 0.0);
+}
+
+bool
+readSize(const std::string& text, ViewOptions& view)
+{
+  const auto items = io::splitAt('x', text);
+  const auto readLength = within(64, 8192);
+  view.is_size_given = true;
+  return items.size() == 2 && readLength(items[0], view.width) &&
+         readLength(items[1], view.height);
 }
 
 /** Names of layers separated by commas, or "all". */
@@ -56,76 +89,29 @@ readLayers(const std::string& text, Layers& layers)
   }
 }
 
-/** A positive number, or "auto", which is 0. */
-void
-readMagnification(const std::string& text, double& factor)
-{
-  factor = 0.0;
-  if (text != "auto" &&
-      (!io::readNumber(text, factor) || !std::isfinite(factor) || factor <= 0.0))
-    io::refuseValue(text, "a positive number or auto");
-}
-
-/** Which of two names a text is. */
-bool
-isSecond(const std::string& text, const std::string& first, const std::string& second)
-{
-  if (text != first && text != second)
-    io::refuseValue(text, first + " or " + second);
-  return text == second;
-}
-
-void
-readSwitch(const std::string& text, bool& is_on)
-{
-  is_on = isSecond(text, "0", "1");
-}
-
-void
-readReference(const std::string& text, Reference& reference)
-{
-  reference =
-      isSecond(text, "centroid", "origin") ? Reference::Origin : Reference::Centroid;
-}
-
-void
-readSize(const std::string& text, ViewOptions& view)
-{
-  const auto items = io::splitAt('x', text);
-  if (items.size() != 2 || !readBetween(items[0], 64, 8192, view.width) ||
-      !readBetween(items[1], 64, 8192, view.height))
-    io::refuseValue(text, "WIDTHxHEIGHT in pixels, each 64 to 8192");
-  view.is_size_given = true;
-}
-
-/** Reads a number from \p lowest to \p highest. */
-template <typename Number>
-auto
-within(Number lowest, Number highest, const char* expected)
-{
-  return [=](const std::string& text, Number& value) {
-    if (!readBetween(text, lowest, highest, value))
-      io::refuseValue(text, expected);
-  };
-}
-
-/** An option with a value that \p read reads. */
+/** An option with a value that \p read reads if it is what is \p expected. */
 template <typename Read, typename Value>
 po::typed_value<std::string>*
-value(const char* placeholder, const Read& read, Value& value)
+value(const char* placeholder, const Read& read, Value& value, const char* expected)
 {
-  return io::taken(placeholder,
-                   [read, &value](const std::string& text) { read(text, value); });
+  return io::taken(placeholder, [=, &value](const std::string& text) {
+    if (!read(text, value))
+      io::refuseValue(text, expected);
+  });
 }
 
 /** The same, given up to once for each cloud. */
 template <typename Read, typename Value>
 po::typed_value<std::vector<std::string>>*
-oncePerCloud(const char* placeholder, const Read& read, std::vector<Value>& values)
+oncePerCloud(const char* placeholder,
+             const Read& read,
+             std::vector<Value>& values,
+             const char* expected)
 {
-  const auto take = [read, &values](const std::vector<std::string>& texts) {
+  const auto take = [=, &values](const std::vector<std::string>& texts) {
     for (const std::string& text : texts)
-      read(text, values.emplace_back());
+      if (!read(text, values.emplace_back()))
+        io::refuseValue(text, expected);
     if (values.size() > 3)
       throw io::BadValue(": given more than three times (source, target, aligned)");
   };
@@ -148,6 +134,7 @@ po::options_description
 describeOptions(Request& request)
 {
   constexpr double largest = std::numeric_limits<double>::max();
+  constexpr const char* color = "a colour r,g,b, each 0 to 1 or each 0 to 255";
   ViewOptions& view = request.view;
   po::options_description general("General");
   po::options_description pcl_viewers(
@@ -159,31 +146,39 @@ describeOptions(Request& request)
     ("version", "Show the version.")
     ("quiet", io::flag(request.is_quiet), "Print errors only, and show no progress bar.");
   pcl_viewers.add_options()
-    ("bc", value("R,G,B", readColor, view.background),
+    ("bc", value("R,G,B", readColor, view.background, color),
      "Background, each 0 to 1 or 0 to 255. (default 0,0,0)")
-    ("fc", oncePerCloud("R,G,B", readColor, view.foregrounds),
+    ("fc", oncePerCloud("R,G,B", readColor, view.foregrounds, color),
      "Colour of a cloud. (default depends on the cloud)")
-    ("ps", oncePerCloud("N", within(1, 64, "a point size, 1 to 64"), view.point_sizes),
+    ("ps", oncePerCloud("N", within(1, 64), view.point_sizes, "a point size, 1 to 64"),
      "Point size, 1 to 64. (default 3)")
-    ("opaque", oncePerCloud("X", within(0.0, 1.0, "an opacity, 0 to 1"), view.opacities),
+    ("opaque", oncePerCloud("X", within(0.0, 1.0), view.opacities, "an opacity, 0 to 1"),
      "Opacity, 0 to 1. (default 1)")
-    ("ax", value("X", within(0.0, largest, "a length [m]"), view.axes_scale),
+    ("ax", value("X", within(0.0, largest), view.axes_scale, "a length [m]"),
      "Length of the target frame's axes [m]. (default 0: none)")
     ("cam", io::fileName("CAMERA", view.camera),
      "Initial view: what key c prints, or a .cam file. (default: all in sight, from "
      "the sensor if it is away from the target, else obliquely from above)")
-    ("multiview", value("0|1", readSwitch, view.is_multiview),
+    ("multiview", value("0|1", oneOf("0", false, "1", true), view.is_multiview, "0 or 1"),
      "Show four pictures: before, after, likely poses, deviations. (default 0)");
   own.add_options()
-    ("show", value("LAYERS", readLayers, view.layers), layersHelp().c_str())
-    ("draws", value("N", within(1, 1000, "a number of draws, 1 to 1000"), view.num_draws),
+    ("show",
+     io::taken("LAYERS",
+               [&view](const std::string& text) { readLayers(text, view.layers); }),
+     layersHelp().c_str())
+    ("draws", value("N", within(1, 1000), view.num_draws, "a number of draws, 1 to 1000"),
      "Number of draws to show, spread evenly over the chains. (default 20)")
-    ("magnify", value("X", readMagnification, view.magnification),
+    ("magnify",
+     value("X", readMagnification, view.magnification, "a positive number or auto"),
      "Factor on the deviations from the mean in the layers draws, position and "
      "rotation. auto takes the largest of 1, 2, 5, 10, ... 1000 with which no standard "
      "deviation of a point exceeds a twentieth of the source. The picture states the "
      "factor. (default auto)")
-    ("reference", value("POINT", readReference, view.reference),
+    ("reference",
+     value("POINT",
+           oneOf("centroid", Reference::Centroid, "origin", Reference::Origin),
+           view.reference,
+           "centroid or origin"),
      "Point whose position is shown: the source's centroid, or the origin of the "
      "source frame, to which the covariances of posterior.json refer. (default "
      "centroid)")
@@ -193,7 +188,7 @@ describeOptions(Request& request)
     ("screenshot", io::fileName("FILE", view.screenshot_file),
      "Write a PNG file instead of opening a window. With --live, it shows the chains' "
      "last state.")
-    ("size", value("WxH", readSize, view),
+    ("size", value("WxH", readSize, view, "WIDTHxHEIGHT in pixels, each 64 to 8192"),
      "Size of window or picture [pixels]. (default 1280x960)");
   // clang-format on
   po::options_description all;
