@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
+#include <vector>
 
 namespace bayesian_icp::simulator {
 
@@ -190,23 +190,18 @@ private:
   const ScanState& state_;
 };
 
-/** \brief The points of one image row or ring, each with its column. */
-using ScanRow = std::vector<std::pair<int, Vector3d>>;
-
+/** \brief The points that there are.
+ * \param[in] points one for each ray */
 Scan
-joinRows(const std::vector<ScanRow>& rows, int rays_per_row)
+scanOf(const std::vector<std::optional<Vector3d>>& points)
 {
-  std::size_t num_points = 0;
-  for (const ScanRow& row : rows)
-    num_points += row.size();
   Scan scan;
-  scan.points.resize(3, static_cast<Eigen::Index>(num_points));
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    for (const auto& [column, point] : rows[row]) {
-      scan.points.col(static_cast<Eigen::Index>(scan.ray_indices.size())) = point;
-      scan.ray_indices.push_back(
-          static_cast<std::uint32_t>(row * rays_per_row + column));
-    }
+  for (std::size_t ray = 0; ray < points.size(); ++ray)
+    if (points[ray])
+      scan.ray_indices.push_back(static_cast<std::uint32_t>(ray));
+  scan.points.resize(3, static_cast<Eigen::Index>(scan.ray_indices.size()));
+  for (Eigen::Index i = 0; i < scan.points.cols(); ++i)
+    scan.points.col(i) = *points[scan.ray_indices[i]];
   return scan;
 }
 
@@ -270,7 +265,8 @@ scanScene(const Scene& scene,
       stateOf(options, T_world_sensor, sweep_motion, seed, scan_number);
   const Beams beams(scene, options, state);
   const NoiseField noise_field(options, seed, scan_number);
-  std::vector<ScanRow> rows(static_cast<std::size_t>(numRows(options)));
+  std::vector<std::optional<Vector3d>> points(
+      static_cast<std::size_t>(numRows(options)) * rays_per_row);
   FirstException failure;
 #pragma omp parallel for schedule(dynamic)
   for (int row = 0; row < numRows(options); ++row)
@@ -280,12 +276,12 @@ scanScene(const Scene& scene,
       for (int column = 0; column < rays_per_row; ++column) {
         RayDraws draws(random);
         draws.reading = noise_field.mixed(draws.reading, row, column);
-        if (const auto point = beams.measure(row, column, draws))
-          rows[row].emplace_back(column, *point);
+        points[std::size_t(row) * rays_per_row + column] =
+            beams.measure(row, column, draws);
       }
     });
   failure.rethrow();
-  return joinRows(rows, rays_per_row);
+  return scanOf(points);
 }
 
 } // namespace bayesian_icp::simulator

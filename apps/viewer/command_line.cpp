@@ -100,20 +100,21 @@ value(const char* placeholder, const Read& read, Value& value, const char* expec
   });
 }
 
-/** The same, given up to once for each cloud. */
+/** The same of the styles of the clouds, given up to once for each. */
 template <typename Read, typename Value>
 po::typed_value<std::vector<std::string>>*
 oncePerCloud(const char* placeholder,
              const Read& read,
-             std::vector<Value>& values,
+             Value PointStyle::*value,
+             ViewOptions& view,
              const char* expected)
 {
-  const auto take = [=, &values](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts)
-      if (!read(text, values.emplace_back()))
-        io::refuseValue(text, expected);
-    if (values.size() > 3)
+  const auto take = [=, &view](const std::vector<std::string>& texts) {
+    if (texts.size() > view.styles.size())
       throw io::BadValue(": given more than three times (source, target, aligned)");
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      if (!read(texts[i], view.styles[i].*value))
+        io::refuseValue(texts[i], expected);
   };
   return po::value<std::vector<std::string>>()
       ->composing()
@@ -148,11 +149,11 @@ describeOptions(Request& request)
   pcl_viewers.add_options()
     ("bc", value("R,G,B", readColor, view.background, color),
      "Background, each 0 to 1 or 0 to 255. (default 0,0,0)")
-    ("fc", oncePerCloud("R,G,B", readColor, view.foregrounds, color),
+    ("fc", oncePerCloud("R,G,B", readColor, &PointStyle::color, view, color),
      "Colour of a cloud. (default depends on the cloud)")
-    ("ps", oncePerCloud("N", within(1, 64), view.point_sizes, "a point size, 1 to 64"),
+    ("ps", oncePerCloud("N", within(1, 64), &PointStyle::size, view, "a point size, 1 to 64"),
      "Point size, 1 to 64. (default 3)")
-    ("opaque", oncePerCloud("X", within(0.0, 1.0), view.opacities, "an opacity, 0 to 1"),
+    ("opaque", oncePerCloud("X", within(0.0, 1.0), &PointStyle::opacity, view, "an opacity, 0 to 1"),
      "Opacity, 0 to 1. (default 1)")
     ("ax", value("X", within(0.0, largest), view.axes_scale, "a length [m]"),
      "Length of the target frame's axes [m]. (default 0: none)")

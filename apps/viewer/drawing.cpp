@@ -69,12 +69,12 @@ public:
     switch (layer) {
     case Layer::Source:
       return add(Eigen::Affine3d(scene_.guess) * scene_.source,
-                 styleOf(layer, options_));
+                 options_.styleOf(layer));
     case Layer::Target:
-      return add(scene_.target, styleOf(layer, options_));
+      return add(scene_.target, options_.styleOf(layer));
     case Layer::Aligned:
       return add(Eigen::Affine3d(scene_.final_matrix) * scene_.source,
-                 styleOf(layer, options_));
+                 options_.styleOf(layer));
     case Layer::Deviation:
       return addDeviations(id);
     case Layer::Draws:
@@ -102,7 +102,7 @@ private:
                         points(2, i),
                         static_cast<float>(uncertainty.point_deviations[i])});
     const double maximum = io::roundedUp(uncertainty.point_deviations.maxCoeff());
-    const PointStyle style = styleOf(Layer::Aligned, options_);
+    const PointStyle& style = options_.styleOf(Layer::Aligned);
     auto& visualizer = window_.visualizer();
     visualizer.addPointCloud<pcl::PointXYZI>(
         cloud,
@@ -192,18 +192,6 @@ addAxes(double scale, Window& window)
 }
 
 } // namespace
-
-PointStyle
-styleOf(Layer layer, const ViewOptions& options)
-{
-  const auto index = static_cast<std::size_t>(layer);
-  PointStyle style{colorOf(layer, options), layer == Layer::Target ? 2 : 3, 1.0};
-  if (index < options.point_sizes.size())
-    style.size = options.point_sizes[index];
-  if (index < options.opacities.size())
-    style.opacity = options.opacities[index];
-  return style;
-}
 
 void
 addPoints(const Eigen::Matrix3Xd& points,

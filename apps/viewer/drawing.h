@@ -12,17 +12,6 @@
 
 namespace bayesian_icp::viewer {
 
-/** \brief How points look. */
-struct PointStyle {
-  Color color = {1.0, 1.0, 1.0};
-  int size = 3;
-  double opacity = 1.0;
-};
-
-/** \brief Style of source, target or aligned source as the user wants it. */
-PointStyle
-styleOf(Layer layer, const ViewOptions& options);
-
 /** \brief Add points of one colour under the name \p id. */
 void
 addPoints(const Eigen::Matrix3Xd& points,

@@ -63,9 +63,7 @@ isMagnified(const Panel& panel, const std::optional<Uncertainty>& uncertainty)
 Color
 colorOf(Layer layer, const ViewOptions& options)
 {
-  const auto index = static_cast<std::size_t>(layer);
-  return index < 3 && index < options.foregrounds.size() ? options.foregrounds[index]
-                                                         : nameOf(layer).color;
+  return layer <= Layer::Aligned ? options.styleOf(layer).color : nameOf(layer).color;
 }
 
 Color

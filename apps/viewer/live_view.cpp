@@ -52,8 +52,8 @@ public:
   , chain_points_(someOf(scene.source))
   {
     window.makePanels(1);
-    addPoints(scene.target, styleOf(Layer::Target, options), "target", 0, window);
-    addPoints(scene.source, styleOf(Layer::Source, options), "icp", 0, window);
+    addPoints(scene.target, options.styleOf(Layer::Target), "target", 0, window);
+    addPoints(scene.source, options.styleOf(Layer::Source), "icp", 0, window);
     window.lookAt(shownPoints(scene, {Layer::Source, Layer::Target}),
                   defaultView(scene.target, scene.sensor_origin),
                   areaBeside(3, false, window));
@@ -101,10 +101,9 @@ private:
   void
   drawLegend(const LiveSnapshot& state)
   {
-    std::vector<LegendLine> lines = {
-        {"target", styleOf(Layer::Target, options_).color}};
+    std::vector<LegendLine> lines = {{"target", options_.styleOf(Layer::Target).color}};
     if (state.total_steps == 0)
-      lines.push_back({"source, moved by ICP", styleOf(Layer::Source, options_).color});
+      lines.push_back({"source, moved by ICP", options_.styleOf(Layer::Source).color});
     for (std::size_t i = 0; i < state.chains.size(); ++i)
       lines.push_back({"chain " + std::to_string(i) +
                            (i == 0 ? ": source now; dots: way of its centroid" : ""),

@@ -85,14 +85,21 @@ keysText();
 /** \brief The point of the source whose position's covariance is shown. */
 enum class Reference { Centroid, Origin };
 
+/** \brief How points look. */
+struct PointStyle {
+  Color color;
+  int size;
+  double opacity;
+};
+
 struct ViewOptions {
   /** \name As pcl_viewer's options
    * \{ */
   Color background = {0.0, 0.0, 0.0};
-  /** Of source, target and aligned source, as far as given. */
-  std::vector<Color> foregrounds;
-  std::vector<int> point_sizes;
-  std::vector<double> opacities;
+  /** Of source, target and aligned source. */
+  std::array<PointStyle, 3> styles = {{{nameOf(Layer::Source).color, 3, 1.0},
+                                       {nameOf(Layer::Target).color, 2, 1.0},
+                                       {nameOf(Layer::Aligned).color, 3, 1.0}}};
   /** Length of the target frame's axes [m]; 0 shows none. */
   double axes_scale = 0.0;
   /** What -cam says; empty if nothing. */
@@ -116,6 +123,13 @@ struct ViewOptions {
   isOffScreen() const
   {
     return !screenshot_file.empty();
+  }
+
+  /** \brief Of source, target or aligned source. */
+  const PointStyle&
+  styleOf(Layer layer) const
+  {
+    return styles[static_cast<std::size_t>(layer)];
   }
 
   /** \brief The pictures in the window: one of the chosen layers, or with -multiview
