@@ -26,27 +26,17 @@ removeAll(std::string& text, const std::string& begin, const std::string& end)
   text = kept.append(text, position);
 }
 
-/** What is between the opening and the closing tag. */
+/** What is between the first \p begin and the next \p end; empty if they are not there.
+ */
 std::string
-contentOf(const std::string& document)
+between(const std::string& text, const std::string& begin, const std::string& end)
 {
-  const auto begin = document.find('>', document.find("<svg"));
-  const auto end = document.rfind("</svg>");
-  if (begin > end || end == std::string::npos)
+  const auto from = text.find(begin);
+  const auto to =
+      from == std::string::npos ? from : text.find(end, from + begin.size());
+  if (to == std::string::npos)
     return "";
-  return document.substr(begin + 1, end - begin - 1);
-}
-
-/** The value of viewBox; empty if there is none. */
-std::string
-viewBoxOf(const std::string& document)
-{
-  const std::string name = "viewBox=\"";
-  const auto begin = document.find(name);
-  if (begin == std::string::npos)
-    return "";
-  const auto end = document.find('"', begin + name.size());
-  return document.substr(begin + name.size(), end - begin - name.size());
+  return text.substr(from + begin.size(), to - from - begin.size());
 }
 
 } // namespace
@@ -57,7 +47,8 @@ inlineSvg(const std::string& document,
           const std::string& title,
           const std::string& description)
 {
-  std::string content = contentOf(document);
+  std::string content = between(document, "<svg", "</svg>");
+  content.erase(0, content.find('>') + 1);
   // Titles within are tooltips with gnuplot's commands.
   removeAll(content, "<title>", "</title>");
   removeAll(content, "<desc>", "</desc>");
@@ -76,7 +67,7 @@ inlineSvg(const std::string& document,
   boost::replace_all(content, "\"black\"", "\"currentColor\"");
   boost::replace_all(content, "'black'", "'currentColor'");
   boost::replace_all(content, "\n\n", "\n");
-  return "<svg id=\"" + id + "\" viewBox=\"" + viewBoxOf(document) +
+  return "<svg id=\"" + id + "\" viewBox=\"" + between(document, "viewBox=\"", "\"") +
          "\" role=\"img\" aria-labelledby=\"" + id + "-title " + id +
          "-description\"><title id=\"" + id + "-title\">" + escaped(title) +
          "</title><desc id=\"" + id + "-description\">" + escaped(description) +

@@ -32,22 +32,6 @@ textOf(const Range& range)
   return text.str();
 }
 
-/** \brief Refuses a number outside the range of its option. */
-struct RangeCheck {
-  template <typename Value>
-  void
-  operator()(const OptionField& field, Value value) const
-  {
-    if constexpr (std::is_arithmetic_v<Value>) {
-      const auto number = static_cast<double>(value);
-      const Range& range = field.range;
-      if (!(number >= range.lowest && number <= range.highest) ||
-          (range.is_open && number == range.lowest))
-        refuse(field.name, number, textOf(range));
-    }
-  }
-};
-
 } // namespace
 
 SensorOptions
@@ -107,7 +91,15 @@ incidenceFactor(const SensorOptions& options, double angle_of_incidence)
 void
 validate(const SensorOptions& options)
 {
-  visitSensor(options, RangeCheck());
+  visitSensor(options, [](const OptionField& field, auto value) {
+    if constexpr (std::is_arithmetic_v<decltype(value)>) {
+      const auto number = static_cast<double>(value);
+      const Range& range = field.range;
+      if (!(number >= range.lowest && number <= range.highest) ||
+          (range.is_open && number == range.lowest))
+        refuse(field.name, number, textOf(range));
+    }
+  });
   if (options.quantisation == Quantisation::Step &&
       !(options.quantisation_step > 0.0 && std::isfinite(options.quantisation_step)))
     refuse("quantisation", options.quantisation_step, textOf(positive));

@@ -33,14 +33,6 @@ forCommonRays(const Scan& a,
   }
 }
 
-/** \brief Expect that \p sum_of_squares is chi-squared with \p n degrees of freedom. */
-void
-expectChiSquared(double sum_of_squares, double n)
-{
-  ASSERT_GT(n, 1000.0);
-  EXPECT_NEAR(sum_of_squares, n, bound_in_sigmas * std::sqrt(2.0 * n));
-}
-
 } // namespace
 
 TEST(SensorNoise, OfTheCameraIsThatOfAKinectTimesTheFactor)
@@ -97,11 +89,11 @@ TEST(SensorNoise, AcrossTheRayDisplacesThePixel)
   double sum = 0.0;
   double count = 0.0;
   const Scan scan = scanTarget(options);
-  for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
+  for (const Vector3d point : scan.points.colwise()) {
     // On the ground, one metre below, z (y + 1) sqrt(1/2) = 1 with y the slope
     // downwards: the depth tells which row of the image the ray went through.
-    const Vector3d ray = scan.points.col(i) / scan.points(2, i);
-    const double row_slope = std::sqrt(2.0) / scan.points(2, i) - 1.0;
+    const Vector3d ray = point / point.z();
+    const double row_slope = std::sqrt(2.0) / point.z() - 1.0;
     const double displacement = (row_slope - ray.y()) * focal_length;
     const double angle = std::acos(-up.dot(ray.normalized()));
     const double sigma = 2.0 * (0.8 + 0.035 * angle / (90.0 * degree - angle));
@@ -145,8 +137,7 @@ TEST(SensorErrors, ReadingsGetLostAtGrazingAngles)
   const Scan kept = scanTarget(options);
   double expected = 0.0;
   double variance = 0.0;
-  for (Eigen::Index i = 0; i < all.points.cols(); ++i) {
-    const Vector3d point = all.points.col(i);
+  for (const Vector3d point : all.points.colwise()) {
     const double angle = std::acos(-point.z() / point.norm()) / degree;
     const double lost = std::max(0.0, (angle - 60.0) / 30.0);
     expected += 1.0 - lost;
@@ -168,12 +159,12 @@ TEST(SensorErrors, QuantisationLeavesMultiples)
   options.sensor.quantisation = Quantisation::Kinect;
   const Scan disparities = scanTarget(options);
   ASSERT_GT(steps.points.cols(), 1000);
-  for (Eigen::Index i = 0; i < steps.points.cols(); ++i) {
-    const double multiple = steps.points(2, i) / 0.01;
+  for (const double depth : steps.points.row(2)) {
+    const double multiple = depth / 0.01;
     ASSERT_NEAR(multiple, std::round(multiple), 1e-9);
   }
-  for (Eigen::Index i = 0; i < disparities.points.cols(); ++i) {
-    const double disparity = 345.0 / disparities.points(2, i);
+  for (const double depth : disparities.points.row(2)) {
+    const double disparity = 345.0 / depth;
     ASSERT_NEAR(disparity, std::round(disparity), 1e-9);
   }
 }

@@ -5,6 +5,9 @@
 
 #include "simulator/simulation.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -13,6 +16,14 @@ constexpr double degree = 3.14159265358979323846 / 180.0;
 
 /** Standard normal quantile at 1 - 5e-7. */
 constexpr double bound_in_sigmas = 4.9;
+
+/** \brief Expect that \p sum_of_squares is chi-squared with \p n degrees of freedom. */
+inline void
+expectChiSquared(double sum_of_squares, double n)
+{
+  ASSERT_GT(n, 1000.0);
+  EXPECT_NEAR(sum_of_squares, n, bound_in_sigmas * std::sqrt(2.0 * n));
+}
 
 /** \brief Default options of a scene, without noise or offsets and with few rays. */
 inline bayesian_icp::simulator::SimulationOptions

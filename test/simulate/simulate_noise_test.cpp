@@ -141,7 +141,7 @@ TEST(SensorNoise, GrowsWithTheAngleOfIncidenceWhenAskedFor)
     sum += std::pow((noisy.points.col(i).norm() - range) / sigma, 2);
   }
   const auto count = static_cast<double>(clean.points.cols());
-  EXPECT_NEAR(sum, count, bound_in_sigmas * std::sqrt(2.0 * count));
+  expectChiSquared(sum, count);
   EXPECT_GT(num_capped, 300) << "no ray grazes the ground";
   EXPECT_GT(count - num_capped, 3000);
 }

@@ -61,10 +61,9 @@ TEST_P(EveryScene, CleanPointsLieOnTheSurfaceInBothFrames)
         T_world_target * T_target_source * pair.source.cast<double>();
     ASSERT_GT(target.cols(), 200);
     ASSERT_GT(source.cols(), 200);
-    for (Eigen::Index i = 0; i < target.cols(); ++i)
-      ASSERT_LT(std::abs(scene.distance(target.col(i))), 1e-4);
-    for (Eigen::Index i = 0; i < source.cols(); ++i)
-      ASSERT_LT(std::abs(scene.distance(source.col(i))), 1e-4);
+    for (const Eigen::Matrix3Xd& cloud : {target, source})
+      for (const Vector3d point : cloud.colwise())
+        ASSERT_LT(std::abs(scene.distance(point)), 1e-4);
   }
 }
 
@@ -121,8 +120,8 @@ TEST(SimulatedScenes, ShowTheHandleOfTheMugOrHideIt)
     const ScanPair pair = simulate(options);
     for (const Eigen::Matrix3Xf* cloud : {&pair.source, &pair.target}) {
       int handle_points = 0;
-      for (Eigen::Index i = 0; i < cloud->cols(); ++i) {
-        const Vector3d point = cloud->col(i).cast<double>();
+      for (const Eigen::Vector3f single : cloud->colwise()) {
+        const Vector3d point = single.cast<double>();
         handle_points += handle.distance(point) < body.distance(point);
       }
       if (name == "mug")
