@@ -3,6 +3,7 @@
 #include "io/picture_numbers.h"
 #include "viewer/annotations.h"
 
+#include <pcl/common/colors.h>
 #include <pcl/visualization/pcl_visualizer.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
@@ -11,6 +12,7 @@
 #include <vtkProperty.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace bayesian_icp::viewer {
 
@@ -95,28 +97,17 @@ private:
     const Eigen::Matrix3Xf points =
         (Eigen::Affine3d(uncertainty.spread.meanMatrix()) * scene_.source)
             .cast<float>();
-    pcl::PointCloud<pcl::PointXYZI>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZI>);
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      cloud->push_back({points(0, i),
-                        points(1, i),
-                        points(2, i),
-                        static_cast<float>(uncertainty.point_deviations[i])});
     const double maximum = io::roundedUp(uncertainty.point_deviations.maxCoeff());
+    pcl::PointCloud<pcl::PointXYZRGB>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZRGB>);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const double share = uncertainty.point_deviations[i] / maximum;
+      const pcl::RGB color =
+          pcl::ViridisLUT::at(std::lround(255.0 * std::min(share, 1.0)));
+      cloud->push_back(
+          {points(0, i), points(1, i), points(2, i), color.r, color.g, color.b});
+    }
+    window_.visualizer().addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport_);
     const PointStyle& style = options_.styleOf(Layer::Aligned);
-    auto& visualizer = window_.visualizer();
-    visualizer.addPointCloud<pcl::PointXYZI>(
-        cloud,
-        visualization::PointCloudColorHandlerGenericField<pcl::PointXYZI>(cloud,
-                                                                          "intensity"),
-        id,
-        viewport_);
-    visualizer.setPointCloudRenderingProperties(
-        visualization::PCL_VISUALIZER_LUT,
-        visualization::PCL_VISUALIZER_LUT_VIRIDIS,
-        id,
-        viewport_);
-    visualizer.setPointCloudRenderingProperties(
-        visualization::PCL_VISUALIZER_LUT_RANGE, 0.0, maximum, id, viewport_);
     setSizeAndOpacity(style.size + 1, style.opacity, id, viewport_, window_);
     addColorBar(maximum, textColorOn(options_.background), viewport_, window_);
   }
@@ -139,32 +130,27 @@ private:
   void
   addCones(const std::string& id)
   {
+    auto& visualizer = window_.visualizer();
     const std::array<Mesh, 3> cones = rotationCones(scene_);
     for (std::size_t k = 0; k < 3; ++k) {
       Color color = {0.15, 0.15, 0.15};
       color[k] = 0.9;
-      addMesh(cones[k], color, 0.6, id + "/" + std::to_string(k));
+      const std::string name = id + "/" + std::to_string(k);
+      std::vector<pcl::Vertices> triangles(cones[k].triangles.cols());
+      for (Eigen::Index i = 0; i < cones[k].triangles.cols(); ++i)
+        for (const int corner : cones[k].triangles.col(i))
+          triangles[i].vertices.push_back(corner);
+      visualizer.addPolygonMesh<pcl::PointXYZ>(
+          cloudOf(cones[k].vertices), triangles, name, viewport_);
+      visualizer.setPointCloudRenderingProperties(visualization::PCL_VISUALIZER_COLOR,
+                                                  color[0],
+                                                  color[1],
+                                                  color[2],
+                                                  name,
+                                                  viewport_);
+      visualizer.setPointCloudRenderingProperties(
+          visualization::PCL_VISUALIZER_OPACITY, 0.6, name, viewport_);
     }
-  }
-
-  void
-  addMesh(const Mesh& mesh, const Color& color, double opacity, const std::string& id)
-  {
-    std::vector<pcl::Vertices> triangles(mesh.triangles.cols());
-    for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i)
-      for (int k = 0; k < 3; ++k)
-        triangles[i].vertices.push_back(mesh.triangles(k, i));
-    auto& visualizer = window_.visualizer();
-    visualizer.addPolygonMesh<pcl::PointXYZ>(
-        cloudOf(mesh.vertices), triangles, id, viewport_);
-    visualizer.setPointCloudRenderingProperties(visualization::PCL_VISUALIZER_COLOR,
-                                                color[0],
-                                                color[1],
-                                                color[2],
-                                                id,
-                                                viewport_);
-    visualizer.setPointCloudRenderingProperties(
-        visualization::PCL_VISUALIZER_OPACITY, opacity, id, viewport_);
   }
 
   const Scene& scene_;

@@ -72,9 +72,10 @@ shownPoints(const Scene& scene, const Layers& layers)
   if (scene.uncertainty && layers.count(Layer::Position) > 0) {
     const Eigen::Vector3d ones = Eigen::Vector3d::Ones();
     const Eigen::AlignedBox3d box(-ones, ones);
+    Eigen::Matrix3Xd corners(3, 8);
     for (int i = 0; i < 8; ++i)
-      append(positionEllipsoid(scene) * box.corner(Eigen::AlignedBox3d::CornerType(i)),
-             points);
+      corners.col(i) = box.corner(Eigen::AlignedBox3d::CornerType(i));
+    append(positionEllipsoid(scene) * corners, points);
   }
   if (scene.uncertainty && layers.count(Layer::Rotation) > 0)
     for (const Mesh& cone : rotationCones(scene))
