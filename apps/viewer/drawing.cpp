@@ -131,17 +131,17 @@ private:
   addCones(const std::string& id)
   {
     auto& visualizer = window_.visualizer();
-    const std::array<Mesh, 3> cones = rotationCones(scene_);
+    const std::array<Eigen::Matrix3Xd, 3> cones = rotationCones(scene_);
     for (std::size_t k = 0; k < 3; ++k) {
       Color color = {0.15, 0.15, 0.15};
       color[k] = 0.9;
       const std::string name = id + "/" + std::to_string(k);
-      std::vector<pcl::Vertices> triangles(cones[k].triangles.cols());
-      for (Eigen::Index i = 0; i < cones[k].triangles.cols(); ++i)
-        for (const int corner : cones[k].triangles.col(i))
-          triangles[i].vertices.push_back(corner);
+      const auto last = static_cast<int>(cones[k].cols()) - 1;
+      std::vector<pcl::Vertices> triangles(last);
+      for (int i = 1; i <= last; ++i)
+        triangles[i - 1].vertices = {0, i, i % last + 1};
       visualizer.addPolygonMesh<pcl::PointXYZ>(
-          cloudOf(cones[k].vertices), triangles, name, viewport_);
+          cloudOf(cones[k]), triangles, name, viewport_);
       visualizer.setPointCloudRenderingProperties(visualization::PCL_VISUALIZER_COLOR,
                                                   color[0],
                                                   color[1],

@@ -78,27 +78,26 @@ shownPoints(const Scene& scene, const Layers& layers)
     append(positionEllipsoid(scene) * corners, points);
   }
   if (scene.uncertainty && layers.count(Layer::Rotation) > 0)
-    for (const Mesh& cone : rotationCones(scene))
-      append(cone.vertices, points);
+    for (const Eigen::Matrix3Xd& cone : rotationCones(scene))
+      append(cone, points);
   return points;
 }
 
-std::array<Mesh, 3>
+std::array<Eigen::Matrix3Xd, 3>
 rotationCones(const Scene& scene)
 {
   const PoseSpread& spread = scene.uncertainty->spread;
   const Eigen::Matrix3d R = rotationOf(spread.mean);
   const Eigen::Matrix3d covariance = spread.covariance.bottomRightCorner<3, 3>();
   const double length = 0.5 * sizeOf(scene.source);
-  std::array<Mesh, 3> cones;
+  std::array<Eigen::Matrix3Xd, 3> cones;
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Vector3d direction = R.col(static_cast<Eigen::Index>(k));
-    cones[k] =
-        coneMesh(spread.position(),
-                 direction,
-                 scene.uncertainty->magnification *
-                     tipAxes(covariance, direction, chi_squared_95_percent_3_dof),
-                 length);
+    cones[k] = coneOf(spread.position(),
+                      direction,
+                      scene.uncertainty->magnification *
+                          tipAxes(covariance, direction, chi_squared_95_percent_3_dof),
+                      length);
   }
   return cones;
 }

@@ -67,7 +67,7 @@ shownPoints(const Scene& scene, const Layers& layers);
 
 /** \brief What the source's axes sweep within 95 % (3 degrees of freedom), magnified;
  * three cones, as long as half the source. */
-std::array<Mesh, 3>
+std::array<Eigen::Matrix3Xd, 3>
 rotationCones(const Scene& scene);
 
 /** \brief Makes the unit ball the ellipsoid of 95 % (3 degrees of freedom) of the

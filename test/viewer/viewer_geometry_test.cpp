@@ -196,10 +196,10 @@ TEST(Shapes, ConeHasItsAngleAndEndsAtHalfATurn)
   for (const double angle : {0.1, 2.0, 10.0}) {
     Eigen::Matrix<double, 3, 2> tips = Eigen::Matrix<double, 3, 2>::Zero();
     tips(0, 0) = tips(1, 1) = angle;
-    const Mesh cone = coneMesh(apex, direction, tips, 0.5);
-    EXPECT_EQ(cone.vertices.col(0), apex);
-    for (Eigen::Index i = 1; i < cone.vertices.cols(); ++i) {
-      const Eigen::Vector3d rim = cone.vertices.col(i) - apex;
+    const Eigen::Matrix3Xd cone = coneOf(apex, direction, tips, 0.5);
+    EXPECT_EQ(cone.col(0), apex);
+    for (Eigen::Index i = 1; i < cone.cols(); ++i) {
+      const Eigen::Vector3d rim = cone.col(i) - apex;
       EXPECT_NEAR(rim.norm(), 0.5, rounding);
       EXPECT_NEAR(rim.z() / 0.5, std::cos(std::min(angle, pi)), rounding);
     }
@@ -208,12 +208,12 @@ TEST(Shapes, ConeHasItsAngleAndEndsAtHalfATurn)
 
 TEST(Shapes, ConeWithoutSpreadIsALine)
 {
-  const Mesh cone = coneMesh(Eigen::Vector3d::Zero(),
-                             Eigen::Vector3d::UnitX(),
-                             Eigen::Matrix<double, 3, 2>::Zero(),
-                             2.0);
-  for (Eigen::Index i = 1; i < cone.vertices.cols(); ++i)
-    EXPECT_EQ(cone.vertices.col(i), Eigen::Vector3d(2.0, 0.0, 0.0));
+  const Eigen::Matrix3Xd cone = coneOf(Eigen::Vector3d::Zero(),
+                                       Eigen::Vector3d::UnitX(),
+                                       Eigen::Matrix<double, 3, 2>::Zero(),
+                                       2.0);
+  for (Eigen::Index i = 1; i < cone.cols(); ++i)
+    EXPECT_EQ(cone.col(i), Eigen::Vector3d(2.0, 0.0, 0.0));
 }
 
 TEST(Camera, IsAsNearAsTheAreaAllows)

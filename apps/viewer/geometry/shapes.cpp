@@ -50,27 +50,23 @@ tipAxes(const Eigen::Matrix3d& rotation_covariance,
   return plane * scaledEigenvectors<2>(covariance, level);
 }
 
-Mesh
-coneMesh(const Eigen::Vector3d& apex,
-         const Eigen::Vector3d& direction,
-         const Eigen::Matrix<double, 3, 2>& tip_axes,
-         double length)
+Eigen::Matrix3Xd
+coneOf(const Eigen::Vector3d& apex,
+       const Eigen::Vector3d& direction,
+       const Eigen::Matrix<double, 3, 2>& tip_axes,
+       double length)
 {
-  Mesh mesh;
-  mesh.vertices.resize(3, num_rim_points + 1);
-  mesh.triangles.resize(3, num_rim_points);
-  mesh.vertices.col(0) = apex;
+  Eigen::Matrix3Xd cone(3, num_rim_points + 1);
+  cone.col(0) = apex;
   for (int i = 0; i < num_rim_points; ++i) {
     const double phase = 2.0 * pi * i / num_rim_points;
     const Eigen::Vector3d tip =
         tip_axes * Eigen::Vector2d(std::cos(phase), std::sin(phase));
     const double angle = std::min(tip.norm(), pi);
-    mesh.vertices.col(i + 1) =
-        apex + length * (std::cos(angle) * direction +
-                         std::sin(angle) * tip.stableNormalized());
-    mesh.triangles.col(i) << 0, i + 1, (i + 1) % num_rim_points + 1;
+    cone.col(i + 1) = apex + length * (std::cos(angle) * direction +
+                                       std::sin(angle) * tip.stableNormalized());
   }
-  return mesh;
+  return cone;
 }
 
 } // namespace bayesian_icp::viewer

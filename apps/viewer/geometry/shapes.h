@@ -1,19 +1,11 @@
 /** \file
- * \brief Regions of a Gaussian as surfaces of triangles.
+ * \brief Regions of a Gaussian as shapes.
  */
 #pragma once
 
 #include <Eigen/Core>
 
 namespace bayesian_icp::viewer {
-
-/** \brief A surface of triangles. */
-struct Mesh {
-  /** [m], one in each column. */
-  Eigen::Matrix3Xd vertices;
-  /** Indices of vertices, one triangle a column. */
-  Eigen::Matrix3Xi triangles;
-};
 
 /** \brief Semi-axes of the region (x - mean)^T covariance^-1 (x - mean) <= \p level:
  * the columns are orthogonal, longest first, in the unit of x. A direction without
@@ -33,13 +25,13 @@ tipAxes(const Eigen::Matrix3d& rotation_covariance,
         const Eigen::Vector3d& direction,
         double level);
 
-/** \brief The cone from \p apex whose rim is \p direction tipped along great circles by
- * the ellipse of \p tip_axes, half a turn at most; \p length [m] from apex to rim.
- * Where one of the axes is zero it is a fan. */
-Mesh
-coneMesh(const Eigen::Vector3d& apex,
-         const Eigen::Vector3d& direction,
-         const Eigen::Matrix<double, 3, 2>& tip_axes,
-         double length);
+/** \brief A cone: its \p apex, and points all around its rim, which is \p direction
+ * tipped along great circles by the ellipse of \p tip_axes, half a turn at most; \p
+ * length [m] from apex to rim. Where one of the axes is zero it is a fan. */
+Eigen::Matrix3Xd
+coneOf(const Eigen::Vector3d& apex,
+       const Eigen::Vector3d& direction,
+       const Eigen::Matrix<double, 3, 2>& tip_axes,
+       double length);
 
 } // namespace bayesian_icp::viewer
