@@ -1,6 +1,6 @@
 #include "calibrated/calibrated_report.h"
 #include "coverage/coverage_methods.h"
-#include "study/formatted_text.h"
+#include "study/text_table.h"
 
 #include <algorithm>
 

@@ -1,5 +1,4 @@
 #include "coverage/coverage_summary.h"
-#include "study/formatted_text.h"
 #include "study/text_table.h"
 
 #include <algorithm>

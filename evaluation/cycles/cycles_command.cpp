@@ -6,7 +6,7 @@
 #include "io/output_folder.h"
 #include "io/program.h"
 #include "study/csv_row.h"
-#include "study/formatted_text.h"
+#include "study/text_table.h"
 #include "study/option_values.h"
 
 #include <algorithm>

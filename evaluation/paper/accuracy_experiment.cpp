@@ -1,7 +1,7 @@
 #include "geometry/twist.h"
 #include "io/text_hash.h"
 #include "paper/accuracy_methods.h"
-#include "paper/median_table.h"
+#include "study/text_table.h"
 #include "paper/paper_runs.h"
 #include "paper/study_record.h"
 

@@ -1,5 +1,5 @@
 #include "paper/baseline_distance.h"
-#include "paper/median_table.h"
+#include "study/text_table.h"
 #include "paper/picture_data.h"
 #include "paper/study_record.h"
 

@@ -1,5 +1,5 @@
 #include "io/text_hash.h"
-#include "paper/median_table.h"
+#include "study/text_table.h"
 #include "paper/paper_methods.h"
 #include "paper/paper_runs.h"
 #include "paper/study_record.h"

@@ -1,12 +1,17 @@
-#include "samplers/gold_run.h"
+#include "samplers/gold_standard.h"
+
 #include "study/cpu_time.h"
 #include "study/draw_statistics.h"
 
 #include <bayesian_icp/diagnostics.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
+#include <limits>
+#include <memory>
 #include <sstream>
+#include <utility>
 
 namespace bayesian_icp::evaluate {
 
@@ -21,21 +26,181 @@ constexpr int num_components = 12;
 /** Draws of a chain that are kept in the end. */
 constexpr Eigen::Index max_kept_draws = 4000;
 
+/** Energies of the starts are this many temperatures above zero when cooling begins. */
+constexpr double hot_energy = 10.0;
+/** Of walks of mixed lengths, see GoldRun::advancedChain(). */
+constexpr double best_walk_acceptance = 0.35;
+/** Optimal scale of a random walk in six dimensions (Roberts et al. 1997). */
+const double walk_scale = 2.38 / std::sqrt(6.0);
+
+/** One of the runs behind a gold standard: chains that learn a walk together. */
+class GoldRun {
+public:
+  /** \param[in] target must outlive this object
+   * \param[in] run number of the run: its random numbers */
+  GoldRun(const GoldTarget& target, const GoldOptions& options, int run)
+  : options_(options)
+  , walk_factor_(0.3 * target.start_spread.asDiagonal())
+  , draws_(static_cast<std::size_t>(options.chains_per_run), PoseMatrix(0, 6))
+  {
+    for (int chain = 0; chain < options.chains_per_run; ++chain) {
+      Random random(options.seed, static_cast<std::uint64_t>(1000 * run + chain + 1));
+      const Vector6d start = target.draw_start(random);
+      chains_.emplace_back(start, target.make_energy(), random);
+    }
+  }
+
+  /** Random walks while the temperature falls to 1. */
+  void
+  anneal()
+  {
+    double temperature = 1.0;
+    for (const MetropolisState& chain : chains_)
+      temperature = std::max(temperature, chain.energy() / hot_energy);
+    const int num_steps = std::max(options_.steps_per_round / 5, 50);
+    for (bool done = false; !done; temperature = std::max(1.0, 0.5 * temperature)) {
+      done = temperature == 1.0;
+      learnWalk(advance(done ? 5 * num_steps : num_steps, temperature));
+    }
+  }
+
+  std::vector<MetropolisState>&
+  chains()
+  {
+    return chains_;
+  }
+
+  /** One round whose draws serve to fit proposals and are then forgotten; the walk
+   * learns from them here.
+   * \return positions of all chains, the first part of the round left out */
+  PoseMatrix
+  adapt()
+  {
+    // Chains that were just moved have to forget where.
+    advance(options_.steps_per_round / 2, 1.0);
+    const auto positions = advance(options_.steps_per_round, 1.0);
+    learnWalk(positions);
+    return pooled(positions);
+  }
+
+  /** Jump with these proposals from now on. */
+  void
+  setMixture(std::shared_ptr<const TMixture> mixture)
+  {
+    mixture_ = std::move(mixture);
+  }
+
+  /** One round with the frozen proposals. */
+  void
+  sample()
+  {
+    const auto positions = advance(options_.steps_per_round, 1.0);
+    for (std::size_t i = 0; i < draws_.size(); ++i)
+      draws_[i] = pooled({draws_[i], positions[i]});
+  }
+
+  /** Draws kept by sample(), a matrix a chain. */
+  const std::vector<PoseMatrix>&
+  draws() const
+  {
+    return draws_;
+  }
+
+  /** Share of accepted mixture proposals in sample(), over all rounds. */
+  double
+  acceptance() const
+  {
+    return counts_.jumps == 0 ? 0.0
+                              : static_cast<double>(counts_.accepted_jumps) /
+                                    static_cast<double>(counts_.jumps);
+  }
+
+private:
+  /** Proposals made and accepted, of each kind. */
+  struct Counts {
+    long walks = 0, accepted_walks = 0, jumps = 0, accepted_jumps = 0;
+  };
+
+  /** Positions after every second step of one stage. */
+  std::vector<PoseMatrix>
+  advance(int num_steps, double temperature)
+  {
+    const int num_rows = mixture_ ? num_steps / 2 : num_steps;
+    std::vector<PoseMatrix> positions(chains_.size(), PoseMatrix(num_rows, 6));
+    std::vector<Counts> counts(chains_.size());
+#pragma omp parallel for num_threads(options_.num_threads) schedule(static)
+    for (std::size_t i = 0; i < chains_.size(); ++i)
+      counts[i] = advancedChain(chains_[i], temperature, positions[i]);
+    for (const Counts& chain : counts) {
+      counts_.walks += chain.walks;
+      counts_.accepted_walks += chain.accepted_walks;
+      counts_.jumps += chain.jumps;
+      counts_.accepted_jumps += chain.accepted_jumps;
+    }
+    return positions;
+  }
+
+  Counts
+  advancedChain(MetropolisState& chain, double temperature, PoseMatrix& positions) const
+  {
+    Counts counts;
+    for (Eigen::Index row = 0; row < positions.rows(); ++row) {
+      // Short walks now and then: they are accepted where the density is rough.
+      const double length = chain.random().uniform() < 0.5 ? 1.0 : 0.3;
+      ++counts.walks;
+      counts.accepted_walks +=
+          chain.walk(walk_scale_ * length * walk_factor_, temperature);
+      if (mixture_) {
+        ++counts.jumps;
+        counts.accepted_jumps += chain.jump(*mixture_);
+      }
+      positions.row(row) = chain.position().transpose();
+    }
+    return counts;
+  }
+
+  void
+  learnWalk(const std::vector<PoseMatrix>& positions)
+  {
+    const double acceptance = static_cast<double>(counts_.accepted_walks) /
+                              static_cast<double>(counts_.walks);
+    counts_ = Counts();
+    walk_scale_ *= std::exp(2.0 * (acceptance - best_walk_acceptance));
+    // Within the chains: modes that are apart do not widen it.
+    Matrix6d covariance = Matrix6d::Zero();
+    for (const PoseMatrix& chain : positions)
+      covariance += momentsOf(chain).covariance;
+    const Eigen::LLT<Matrix6d> llt(covariance / static_cast<double>(positions.size()));
+    // Too few moves teach no shape.
+    if (acceptance < 0.1 || llt.info() != Eigen::Success)
+      return;
+    walk_factor_ = walk_scale * Matrix6d(llt.matrixL());
+  }
+
+  GoldOptions options_;
+  std::vector<MetropolisState> chains_;
+  Matrix6d walk_factor_;
+  double walk_scale_ = 1.0;
+  std::shared_ptr<const TMixture> mixture_;
+  std::vector<PoseMatrix> draws_;
+  Counts counts_;
+};
+
 void
 leaveWorseModes(std::vector<GoldRun>& runs)
 {
-  double best_energy = runs[0].meanEnergies()[0];
-  Vector6d best = runs[0].position(0);
-  for (const GoldRun& run : runs)
-    for (int chain = 0; chain < run.meanEnergies().size(); ++chain)
-      if (run.meanEnergies()[chain] < best_energy) {
-        best_energy = run.meanEnergies()[chain];
-        best = run.position(chain);
+  double best_energy = std::numeric_limits<double>::infinity();
+  Vector6d best = Vector6d::Zero();
+  for (GoldRun& run : runs)
+    for (const MetropolisState& chain : run.chains())
+      if (chain.energy() < best_energy) {
+        best_energy = chain.energy();
+        best = chain.position();
       }
   for (GoldRun& run : runs)
-    for (int chain = 0; chain < run.meanEnergies().size(); ++chain)
-      if (run.meanEnergies()[chain] > best_energy + worse_mode)
-        run.moveTo(chain, best);
+    for (MetropolisState& chain : run.chains())
+      if (chain.energy() > best_energy + worse_mode)
+        chain.moveTo(best);
 }
 
 /** Fit the proposals of all runs to what all of them have found. */

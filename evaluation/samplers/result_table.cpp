@@ -1,7 +1,5 @@
-#include "samplers/result_table.h"
-
+#include "samplers/score.h"
 #include "study/draw_statistics.h"
-#include "study/formatted_text.h"
 #include "study/text_table.h"
 
 #include <algorithm>

@@ -10,6 +10,7 @@
 #include <bayesian_icp/summary.h>
 
 #include <cstdint>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -101,5 +102,11 @@ Score
 scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws);
 
 using ResultFile = RunFile<ScoredRun>;
+
+/** \brief Print medians and worst cases, one line for each scene, cell and sampler.
+ * Step sizes of a sampler that were only tried with the first seed are left out where
+ * another one has more runs. */
+void
+printTable(const std::vector<ScoredRun>& runs, std::ostream& stream);
 
 } // namespace bayesian_icp::evaluate

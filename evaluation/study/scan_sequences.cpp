@@ -5,7 +5,7 @@
 #include "io/json_file.h"
 #include "io/motion.h"
 #include "io/numbers.h"
-#include "study/formatted_text.h"
+#include "study/text_table.h"
 
 #include <nlohmann/json.hpp>
 

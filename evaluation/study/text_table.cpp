@@ -1,6 +1,7 @@
 #include "study/text_table.h"
 
-#include "study/formatted_text.h"
+#include "io/numbers.h"
+#include "study/draw_statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,38 @@ numberText(double value, int num_decimals)
   return std::abs(value) < (num_decimals > 0 ? 1e4 : 1e7)
              ? format("%.*f", num_decimals, value)
              : format("%.1e", value);
+}
+
+void
+MedianTable::add(const std::string& group, const std::vector<double>& numbers)
+{
+  auto found = std::find_if(groups_.begin(), groups_.end(), [&group](const Group& g) {
+    return g.name == group;
+  });
+  if (found == groups_.end())
+    found =
+        groups_.insert(found, {group, 0, decltype(Group::numbers)(columns_.size())});
+  ++found->num_runs;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (!std::isnan(numbers[i]))
+      found->numbers[i].push_back(numbers[i]);
+}
+
+void
+MedianTable::print(std::ostream& stream) const
+{
+  constexpr int num_digits = 4;
+  std::vector<std::string> header = {"medians of the runs of", "runs"};
+  header.insert(header.end(), columns_.begin(), columns_.end());
+  TextTable table(header);
+  for (const Group& group : groups_) {
+    std::vector<std::string> cells = {group.name, std::to_string(group.num_runs)};
+    for (const std::vector<double>& numbers : group.numbers)
+      cells.push_back(numbers.empty() ? "-" : io::textOf(median(numbers), num_digits));
+    table.add(cells);
+  }
+  stream << title_ << '\n';
+  table.print(stream);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -1,13 +1,31 @@
 /** \file
- * \brief Tables that the studies print.
+ * \brief Numbers as text, and tables that the studies print.
  */
 #pragma once
 
+#include <array>
+#include <cstdio>
 #include <iosfwd>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
+
+/** \brief A text as printf() makes it, of at most 255 characters. */
+template <typename... Values>
+std::string
+format(const char* pattern, Values... values)
+{
+  std::array<char, 256> text;
+  std::snprintf(text.data(), text.size(), pattern, values...);
+  return text.data();
+}
+
+/** \brief So many digits after the point, fewer of a number so large that
+ * nobody reads them; "-" of NaN. */
+std::string
+numberText(double value, int num_decimals);
 
 /** \brief Columns as wide as their widest cell: names on the left, then
  * numbers, which end at the same place. */
@@ -38,9 +56,34 @@ private:
   std::vector<std::vector<std::string>> rows_;
 };
 
-/** \brief So many digits after the point, fewer of a number so large that
- * nobody reads them; "-" of NaN. */
-std::string
-numberText(double value, int num_decimals);
+/** \brief Medians of the numbers of runs, a line for each group of runs. */
+class MedianTable {
+public:
+  MedianTable(std::string title, std::vector<std::string> columns)
+  : title_(std::move(title))
+  , columns_(std::move(columns))
+  {}
+
+  /** \brief A run of this group. NaN is left out of the medians.
+   * \param[in] numbers one for each column */
+  void
+  add(const std::string& group, const std::vector<double>& numbers);
+
+  /** \brief Groups are in the order of their first runs. */
+  void
+  print(std::ostream& stream) const;
+
+private:
+  struct Group {
+    std::string name;
+    std::size_t num_runs = 0;
+    /** Of each column. */
+    std::vector<std::vector<double>> numbers;
+  };
+
+  std::string title_;
+  std::vector<std::string> columns_;
+  std::vector<Group> groups_;
+};
 
 } // namespace bayesian_icp::evaluate

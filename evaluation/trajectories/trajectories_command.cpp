@@ -4,7 +4,7 @@
 #include "io/program.h"
 #include "io/text_hash.h"
 #include "register/choices.h"
-#include "study/formatted_text.h"
+#include "study/text_table.h"
 #include "study/input_hash.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"

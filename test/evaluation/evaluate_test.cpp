@@ -1,8 +1,7 @@
 // The evaluation app's own pieces: distances against closed forms, scores of good and
 // bad draws.
 #include "evaluation/evaluate_test_support.h"
-#include "samplers/gold_file.h"
-#include "samplers/result_table.h"
+#include "samplers/gold_cache.h"
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
 

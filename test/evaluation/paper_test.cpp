@@ -5,7 +5,7 @@
 #include "io/errors.h"
 #include "paper/accuracy_methods.h"
 #include "paper/baseline_distance.h"
-#include "paper/median_table.h"
+#include "study/text_table.h"
 #include "support/command_helpers.h"
 
 #include <gtest/gtest.h>
