@@ -113,8 +113,7 @@ planScans(const CoverageSetup& setup, const std::string& condition, Random& rand
 ScanPlan
 planDrive(const CoverageSetup& setup, const std::string& condition, Random& random)
 {
-  const auto& known = lidarConditions();
-  if (std::count(known.begin(), known.end(), condition) == 0)
+  if (std::count(lidar_conditions.begin(), lidar_conditions.end(), condition) == 0)
     refuseCondition(condition);
   const bool is_sweep = condition == "lidar64_sweep";
   SensorOptions sensor = simulator::carLidar(
@@ -162,10 +161,10 @@ withoutLostPart(const Matrix3Xd& target,
   return kept.leftCols(num_kept);
 }
 
-/** \brief Draw the true pose and move the source, which comes in the target frame, by
- * its inverse. */
+} // namespace
+
 void
-moveSource(Random& random, CoverageCase& drawn)
+displaceSource(Random& random, CoverageCase& drawn)
 {
   const Vector6d deviation = drawn.prior_sd.cwiseProduct(random.normal6());
   Vector6d turn = deviation;
@@ -182,32 +181,6 @@ moveSource(Random& random, CoverageCase& drawn)
   drawn.truth.translation() = centroid - rotation * moved_centroid;
 }
 
-} // namespace
-
-const std::vector<std::string>&
-coverageConditions()
-{
-  static const std::vector<std::string> names = {
-      "same", "moved", "half", "noise3", "correlated", "outliers", "lost20", "lost50"};
-  return names;
-}
-
-const std::vector<std::string>&
-furtherConditions()
-{
-  static const std::vector<std::string> names = {
-      "far", "points_quarter", "points_x4", "points_x16", "points_x64"};
-  return names;
-}
-
-const std::vector<std::string>&
-lidarConditions()
-{
-  static const std::vector<std::string> names = {
-      "lidar16", "lidar32", "lidar64", "lidar64_sweep"};
-  return names;
-}
-
 CoverageCase
 makeCoverageCase(const std::string& scene,
                  const std::string& condition,
@@ -216,8 +189,7 @@ makeCoverageCase(const std::string& scene,
   const CoverageSetup setup = coverageSetup(scene);
   // Cases of one seed share no random numbers.
   Random random(seed, io::hashOf(scene + '/' + condition));
-  const bool is_drive =
-      std::count(lidarScenes().begin(), lidarScenes().end(), scene) > 0;
+  const bool is_drive = std::count(lidar_scenes.begin(), lidar_scenes.end(), scene) > 0;
   const ScanPlan plan = is_drive ? planDrive(setup, condition, random)
                                  : planScans(setup, condition, random);
   const std::uint64_t scan_seed = random.index(std::size_t{1} << 62);
@@ -246,7 +218,7 @@ makeCoverageCase(const std::string& scene,
   if (plan.lost_part > 0.0)
     made.target =
         withoutLostPart(made.target, made.source, target_pose, plan.lost_part, random);
-  moveSource(random, made);
+  displaceSource(random, made);
   return made;
 }
 

@@ -27,8 +27,8 @@ namespace bayesian_icp::evaluate {
  *   the target loses all points on one side of a plane, chosen at random but parallel
  *   to the line of sight (camera) or upright (LiDAR), that has 20 or 50 % of the
  *   source's points on that side. */
-const std::vector<std::string>&
-coverageConditions();
+inline const std::vector<std::string> coverage_conditions = {
+    "same", "moved", "half", "noise3", "correlated", "outliers", "lost20", "lost50"};
 
 /** \brief Conditions of the same scenes that a study has only if it is told to.
  *
@@ -36,21 +36,21 @@ coverageConditions();
  * axis) and a prior that says so: most starts end in another basin.
  * - points_quarter, points_x4, points_x16, points_x64: `same` with that many times the
  *   points in both clouds. */
-const std::vector<std::string>&
-furtherConditions();
+inline const std::vector<std::string> further_conditions = {
+    "far", "points_quarter", "points_x4", "points_x16", "points_x64"};
 
-/** \brief What lidarScenes() are seen with: carLidar(), whose rings have other offsets
+/** \brief What lidar_scenes are seen with: carLidar(), whose rings have other offsets
  * in every case, from both of drivenViews(). No ray is jittered.
  *
  * - lidar16, lidar32, lidar64: the number of rings; the sensor stands still in each
  * scan.
  * - lidar64_sweep: the scans are turns that follow each other at once while the sensor
  *   moves at constant velocity. The truth is between the middles of both turns. */
-const std::vector<std::string>&
-lidarConditions();
+inline const std::vector<std::string> lidar_conditions = {
+    "lidar16", "lidar32", "lidar64", "lidar64_sweep"};
 
-/** \brief Simulate a case: a scene of lidarScenes() under one of lidarConditions(), or
- * another one under one of coverageConditions() or furtherConditions(); all of it
+/** \brief Simulate a case: a scene of lidar_scenes under one of lidar_conditions, or
+ * another one under one of coverage_conditions or further_conditions; all of it
  * depends on the three arguments only. The target frame is the scene's world frame. The
  * true pose is drawn from the prior (angles from a Gaussian), and the source is not
  * thinned. \throws std::invalid_argument if there is no such scene or condition */
@@ -58,5 +58,10 @@ CoverageCase
 makeCoverageCase(const std::string& scene,
                  const std::string& condition,
                  std::uint64_t seed);
+
+/** \brief Draw the true pose from the case's prior, whose mean is no motion, and move
+ * the source, which comes in the target frame, by its inverse. */
+void
+displaceSource(Random& random, CoverageCase& drawn);
 
 } // namespace bayesian_icp::evaluate

@@ -219,10 +219,9 @@ simulatedOffer(const CoverageOptions& options)
 {
   Offer offer;
   offer.seeds = seedsOf(options);
-  offer.sets = {
-      {"tuned", tunedScenes(), coverageConditions(), furtherConditions(), true},
-      {"new", newScenes(), coverageConditions(), furtherConditions(), true},
-      {"lidar", lidarScenes(), lidarConditions(), {}, false}};
+  offer.sets = {{"tuned", tunedScenes(), coverage_conditions, further_conditions, true},
+                {"new", newScenes(), coverage_conditions, further_conditions, true},
+                {"lidar", lidar_scenes, lidar_conditions, {}, false}};
   offer.make_case = [](const CoverageCaseName& name) {
     return makeCoverageCase(name.scene, name.condition, name.seed);
   };

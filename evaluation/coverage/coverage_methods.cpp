@@ -3,9 +3,9 @@
 #include "algebra/decompositions.h"
 #include "geometry/twist.h"
 #include "register/choices.h"
+#include "study/clocks.h"
 #include "study/option_values.h"
 
-#include <chrono>
 #include <new>
 
 namespace bayesian_icp::evaluate {
@@ -66,8 +66,7 @@ coverageMethods()
 MethodResult
 timedResult(const CoverageMethod& method, const CoverageCase& problem)
 {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
+  const double begin = wallSeconds();
   MethodResult result;
   try {
     result = method.run(problem);
@@ -78,7 +77,7 @@ timedResult(const CoverageMethod& method, const CoverageCase& problem)
   catch (const std::exception& error) {
     result.notes = std::string("exception: ") + error.what();
   }
-  result.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  result.seconds = wallSeconds() - begin;
   return result;
 }
 

@@ -1,9 +1,10 @@
 #include "coverage/coverage_real.h"
 
-#include "geometry/twist.h"
+#include "coverage/coverage_cases.h"
 #include "io/errors.h"
 #include "io/text_hash.h"
 #include "methods/baseline_problem.h"
+#include "study/named.h"
 
 #include <bayesian_icp/random.h>
 
@@ -23,19 +24,7 @@ RealPairs::RealPairs(const std::string& folder)
 std::vector<std::string>
 RealPairs::names() const
 {
-  std::vector<std::string> names;
-  for (const ManifestEntry& entry : entries_)
-    names.push_back(entry.name);
-  return names;
-}
-
-const ManifestEntry&
-RealPairs::entryOf(const std::string& name) const
-{
-  for (const ManifestEntry& entry : entries_)
-    if (entry.name == name)
-      return entry;
-  throw io::FileError(folder_, "has no pair " + io::inQuotes(name));
+  return namesOf(entries_);
 }
 
 std::shared_ptr<const ScanPair>
@@ -51,8 +40,10 @@ RealPairs::pairOf(const ManifestEntry& entry) const
 CoverageCase
 RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
 {
-  const ManifestEntry& entry = entryOf(name);
-  const auto pair = pairOf(entry);
+  const ManifestEntry* const entry = findNamed(entries_, name);
+  if (entry == nullptr)
+    throw io::FileError(folder_, "has no pair " + io::inQuotes(name));
+  const auto pair = pairOf(*entry);
   // Cases of one seed share no random numbers.
   Random random(seed, io::hashOf(name));
   CoverageCase made;
@@ -60,20 +51,11 @@ RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
   made.condition = "real";
   made.seed = seed;
   made.target = pair->target;
-  made.prior_sd << Eigen::Vector3d::Constant(entry.prior_sd->translation),
-      Eigen::Vector3d::Constant(entry.prior_sd->rotation);
-  made.truth_sd_translation = entry.truth_sd.translation;
-  made.truth_sd_rotation = entry.truth_sd.rotation;
+  made.prior_sd = entry->prior_sd->vector();
+  made.truth_sd = entry->truth_sd;
   const auto part = randomChoice(pair->source.cols(), max_source_points, random);
   made.source = pair->truth * pair->source(Eigen::all, part);
-  // The prior is about no motion: the truth turns the source about its centroid, and
-  // shifts the centroid by the first three numbers.
-  const Vector6d deviation = made.prior_sd.cwiseProduct(random.normal6());
-  const Eigen::Vector3d moved_centroid = made.source.rowwise().mean();
-  const Eigen::Vector3d centroid = moved_centroid - deviation.head<3>();
-  made.truth.linear() = rotationOf(deviation);
-  made.truth.translation() = moved_centroid - made.truth.linear() * centroid;
-  made.source = made.truth.inverse() * made.source;
+  displaceSource(random, made);
   return made;
 }
 

@@ -32,9 +32,6 @@ public:
   makeCase(const std::string& name, std::uint64_t seed) const;
 
 private:
-  const ManifestEntry&
-  entryOf(const std::string& name) const;
-
   std::shared_ptr<const ScanPair>
   pairOf(const ManifestEntry& entry) const;
 

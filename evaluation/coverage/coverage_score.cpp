@@ -66,9 +66,7 @@ chiSquaredProbability(int degrees_of_freedom, double distance)
 Matrix6d
 truthFactor(const CoverageCase& problem, const MethodResult& result)
 {
-  Vector6d sd;
-  sd << Eigen::Vector3d::Constant(problem.truth_sd_translation),
-      Eigen::Vector3d::Constant(problem.truth_sd_rotation);
+  const Vector6d sd = problem.truth_sd.vector();
   Matrix6d factor = sd.asDiagonal();
   const Eigen::Vector3d origin = result.mean.translation() - result.centre;
   for (int k = 0; k < 3 && !std::isnan(problem.lost_displacement); ++k)

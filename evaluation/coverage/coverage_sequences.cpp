@@ -1,9 +1,9 @@
 #include "coverage/coverage_sequences.h"
 
-#include "io/cloud_file.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "io/text_hash.h"
+#include "study/named.h"
 
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/random.h>
@@ -42,15 +42,11 @@ randomPoses(const Isometry3d& T_target_sensor,
             const AxisDeviation& guess_sd,
             Random& random)
 {
-  const Vector6d direction = random.normal6(), deviation = random.normal6();
+  const Vector6d direction = random.normal6();
   Isometry3d T_turned_sensor = Isometry3d::Identity();
   T_turned_sensor.linear() = expSO3(turn_angle * direction.tail<3>().normalized());
   T_turned_sensor.translation() = turn_shift * direction.head<3>().normalized();
-  Isometry3d guess = T_target_sensor;
-  guess.linear() =
-      expSO3(guess_sd.rotation * deviation.tail<3>()) * T_target_sensor.linear();
-  guess.translation() += guess_sd.translation * deviation.head<3>();
-  return {guess * T_turned_sensor.inverse(),
+  return {perturbed(T_target_sensor, guess_sd, random) * T_turned_sensor.inverse(),
           T_target_sensor * T_turned_sensor.inverse()};
 }
 
@@ -58,7 +54,7 @@ randomPoses(const Isometry3d& T_target_sensor,
 
 SequencePairs::SequencePairs(const std::string& folder, const SequenceOptions& options)
 : options_(options)
-, sequences_(readSequences(folder))
+, recordings_(readRecordings(folder))
 {
   guesses_ = " step " + io::textOf(options.step);
   if (!options.rows_file.empty()) {
@@ -77,9 +73,9 @@ SequencePairs::readRows()
   readPairPoses(
       options_.rows_file,
       [&](const std::string& set, std::uint64_t pair, const PairPoses& poses) {
-        const ScanSequence& sequence = sequenceOf(set);
+        const Recording& recording = recordingOf(set);
         const std::string name = "pair " + std::to_string(pair) + " of " + set;
-        if (pair >= numPairs(sequence))
+        if (pair >= numPairs(recording))
           throw std::runtime_error("there is no " + name);
         if (!rows_[set].emplace(pair, poses).second)
           throw std::runtime_error(name + " is there twice");
@@ -93,32 +89,29 @@ SequencePairs::readRows()
 std::vector<std::string>
 SequencePairs::names() const
 {
-  std::vector<std::string> names;
-  for (const ScanSequence& sequence : sequences_)
-    names.push_back(sequence.name);
-  return names;
+  return namesOf(recordings_);
 }
 
-const ScanSequence&
-SequencePairs::sequenceOf(const std::string& name) const
+const Recording&
+SequencePairs::recordingOf(const std::string& name) const
 {
-  for (const ScanSequence& sequence : sequences_)
-    if (sequence.name == name)
-      return sequence;
-  throw std::runtime_error("there is no set " + io::inQuotes(name));
+  const Recording* const recording = findNamed(recordings_, name);
+  if (recording == nullptr)
+    throw std::runtime_error("there is no set " + io::inQuotes(name));
+  return *recording;
 }
 
 std::size_t
-SequencePairs::numPairs(const ScanSequence& sequence) const
+SequencePairs::numPairs(const Recording& recording) const
 {
-  const std::size_t num_scans = sequence.poses.size();
+  const std::size_t num_scans = recording.poses.size();
   return num_scans > options_.step ? num_scans - options_.step : 0;
 }
 
 std::string
 SequencePairs::condition(const std::string& name) const
 {
-  return sequenceOf(name).quality + guesses_;
+  return recordingOf(name).quality + guesses_;
 }
 
 std::vector<std::uint64_t>
@@ -126,7 +119,7 @@ SequencePairs::pairs(const std::string& name) const
 {
   std::vector<std::uint64_t> all;
   const auto rows = rows_.find(name);
-  for (std::uint64_t pair = 0; pair < numPairs(sequenceOf(name)); ++pair)
+  for (std::uint64_t pair = 0; pair < numPairs(recordingOf(name)); ++pair)
     if (options_.rows_file.empty() ||
         (rows != rows_.end() && rows->second.count(pair) > 0))
       all.push_back(pair);
@@ -134,36 +127,34 @@ SequencePairs::pairs(const std::string& name) const
 }
 
 PairPoses
-SequencePairs::posesOf(const ScanSequence& sequence, std::uint64_t pair) const
+SequencePairs::posesOf(const Recording& recording, std::uint64_t pair) const
 {
   if (!options_.rows_file.empty())
-    return rows_.at(sequence.name).at(pair);
-  Random random(options_.seed, io::hashOf(sequence.name + ' ' + io::textOf(pair)));
+    return rows_.at(recording.name).at(pair);
+  Random random(options_.seed, io::hashOf(recording.name + ' ' + io::textOf(pair)));
   return randomPoses(
-      sequence.relativePose(pair, pair + options_.step), options_.guess_sd, random);
+      recording.relativePose(pair, pair + options_.step), options_.guess_sd, random);
 }
 
 CoverageCase
 SequencePairs::makeCase(const std::string& name, std::uint64_t pair) const
 {
-  const ScanSequence& sequence = sequenceOf(name);
+  const Recording& recording = recordingOf(name);
   const std::size_t source = pair + options_.step;
-  const PairPoses poses = posesOf(sequence, pair);
+  const PairPoses poses = posesOf(recording, pair);
   const Isometry3d T_turned_sensor =
-      poses.truth.inverse() * sequence.relativePose(pair, source);
+      poses.truth.inverse() * recording.relativePose(pair, source);
   CoverageCase made;
   made.scene = name;
   made.condition = condition(name);
   made.seed = ChainOptions().seed;
-  made.source =
-      T_turned_sensor * io::readFinitePoints(sequence.scanFile(source)).cast<double>();
-  made.target = io::readFinitePoints(sequence.scanFile(pair)).cast<double>();
+  made.source = T_turned_sensor * recording.read(source);
+  made.target = recording.read(pair);
   made.truth = poses.truth;
   made.prior_mean = poseOf(poses.guess.matrix());
   made.prior_sd = PriorOptions().variance.cwiseSqrt();
-  made.truth_sd_translation = sequence.truth_sd.translation;
-  made.truth_sd_rotation = sequence.truth_sd.rotation;
-  made.lost_displacement = sequence.lost_displacement;
+  made.truth_sd = recording.truth_sd;
+  made.lost_displacement = recording.lost_displacement;
   return made;
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "study/coverage_case.h"
-#include "study/scan_sequences.h"
+#include "study/recordings.h"
 
 #include <map>
 #include <string>
@@ -57,21 +57,21 @@ public:
   makeCase(const std::string& name, std::uint64_t pair) const;
 
 private:
-  const ScanSequence&
-  sequenceOf(const std::string& name) const;
+  const Recording&
+  recordingOf(const std::string& name) const;
 
   /** Number of pairs of scans. */
   std::size_t
-  numPairs(const ScanSequence& sequence) const;
+  numPairs(const Recording& recording) const;
 
   void
   readRows();
 
   PairPoses
-  posesOf(const ScanSequence& sequence, std::uint64_t pair) const;
+  posesOf(const Recording& recording, std::uint64_t pair) const;
 
   SequenceOptions options_;
-  std::vector<ScanSequence> sequences_;
+  std::vector<Recording> recordings_;
   /** The pairs of each recording and their poses in the file of rows. */
   std::map<std::string, std::map<std::uint64_t, PairPoses>> rows_;
   /** Part of condition(). */

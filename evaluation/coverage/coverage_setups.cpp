@@ -1,6 +1,8 @@
 #include "coverage/coverage_setups.h"
 
 #include "io/coordinates.h"
+#include "study/axis_deviation.h"
+#include "study/named.h"
 
 #include <Eigen/Geometry>
 
@@ -23,14 +25,6 @@ struct Image {
   double field_of_view;
 };
 
-Vector6d
-standardDeviations(double translation, double rotation)
-{
-  Vector6d deviations;
-  deviations << Vector3d::Constant(translation), Vector3d::Constant(rotation);
-  return deviations;
-}
-
 CoverageSetup
 depthCamera(const Image& image, const View& view)
 {
@@ -42,7 +36,7 @@ depthCamera(const Image& image, const View& view)
   setup.sensor.min_range = 0.2;
   setup.sensor.max_range = 8.0;
   setup.view = view;
-  setup.prior_sd = standardDeviations(0.03, 0.06);
+  setup.prior_sd = AxisDeviation{0.03, 0.06}.vector();
   return setup;
 }
 
@@ -76,7 +70,7 @@ lidar(double min_elevation, double max_elevation, const View& view)
   setup.sensor.max_range = 12.0;
   setup.view = view;
   setup.step = {0.6, 0.15, 0.1};
-  setup.prior_sd = standardDeviations(0.1, 0.03);
+  setup.prior_sd = AxisDeviation{0.1, 0.03}.vector();
   return setup;
 }
 
@@ -89,7 +83,12 @@ fromFoot(double height, const View& view)
   return {view.eye - middle, view.look_at - middle};
 }
 
-using Setups = std::vector<std::pair<std::string, CoverageSetup>>;
+struct NamedSetup {
+  std::string name;
+  CoverageSetup setup;
+};
+
+using Setups = std::vector<NamedSetup>;
 
 const Setups&
 tunedSetups()
@@ -132,15 +131,6 @@ newSetups()
   return setups;
 }
 
-std::vector<std::string>
-namesOf(const Setups& setups)
-{
-  std::vector<std::string> names;
-  for (const auto& [name, setup] : setups)
-    names.push_back(name);
-  return names;
-}
-
 CoverageSetup
 makeLidarSetup(const std::string& scene)
 {
@@ -148,7 +138,7 @@ makeLidarSetup(const std::string& scene)
   CoverageSetup setup;
   setup.sensor = usual.sensor;
   setup.view = usual.target_view;
-  setup.prior_sd = standardDeviations(0.3, 0.03);
+  setup.prior_sd = AxisDeviation{0.3, 0.03}.vector();
   return setup;
 }
 
@@ -157,12 +147,10 @@ CoverageSetup
 findSetup(const std::string& scene)
 {
   for (const Setups* setups : {&tunedSetups(), &newSetups()})
-    for (const auto& [name, setup] : *setups)
-      if (name == scene)
-        return setup;
-  for (const std::string& name : lidarScenes())
-    if (name == scene)
-      return makeLidarSetup(scene);
+    if (const NamedSetup* const found = findNamed(*setups, scene))
+      return found->setup;
+  if (std::count(lidar_scenes.begin(), lidar_scenes.end(), scene) > 0)
+    return makeLidarSetup(scene);
   throw std::invalid_argument("the coverage study has no scene '" + scene + "'");
 }
 
@@ -174,26 +162,16 @@ turnedAboutVertical(const Vector3d& vector, double angle)
 
 } // namespace
 
-const std::vector<std::string>&
+std::vector<std::string>
 tunedScenes()
 {
-  static const std::vector<std::string> names = namesOf(tunedSetups());
-  return names;
+  return namesOf(tunedSetups());
 }
 
-const std::vector<std::string>&
+std::vector<std::string>
 newScenes()
 {
-  static const std::vector<std::string> names = namesOf(newSetups());
-  return names;
-}
-
-const std::vector<std::string>&
-lidarScenes()
-{
-  static const std::vector<std::string> names = {
-      "street", "office_floor", "forest", "bare_ground", "tunnel"};
-  return names;
+  return namesOf(newSetups());
 }
 
 CoverageSetup

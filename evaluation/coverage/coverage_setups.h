@@ -29,22 +29,22 @@ struct CoverageSetup {
 };
 
 /** \brief Scenes on which the method's constants were chosen. */
-const std::vector<std::string>&
+std::vector<std::string>
 tunedScenes();
 
 /** \brief Scenes that had no part in the choice of any constant. */
-const std::vector<std::string>&
+std::vector<std::string>
 newScenes();
 
 /** \brief Scenes to drive through with a LiDAR on the roof; no constant was chosen on
  * them. */
-const std::vector<std::string>&
-lidarScenes();
+inline const std::vector<std::string> lidar_scenes = {
+    "street", "office_floor", "forest", "bare_ground", "tunnel"};
 
 /** \brief Sensor, view and prior of a scene. Things of the size of a hand or a table,
  * the corridor and the stairs have the prior of 0.03 m and 0.06 rad (one standard
  * deviation); places seen by a LiDAR, whose points are up to 10 m from their centroid,
- * of 0.1 m and 0.03 rad; lidarScenes() of 0.3 m and 0.03 rad. The sensor of these is
+ * of 0.1 m and 0.03 rad; lidar_scenes of 0.3 m and 0.03 rad. The sensor of these is
  * carLidar(16), and the view where the drive begins.
  * \throws std::invalid_argument if the study has no scene of this name */
 CoverageSetup
@@ -62,7 +62,7 @@ struct DrivenViews {
   simulator::View source;
 };
 
-/** \brief A drive in one of lidarScenes(): the target is seen up to 8 m before or
+/** \brief A drive in one of lidar_scenes: the target is seen up to 8 m before or
  * behind CoverageSetup::view and from a heading up to 0.05 rad beside it; then the
  * sensor goes on by 0.5 to 2 m along an arc that turns by up to 0.07 rad to either
  * side. All uniform, on level ground. */

@@ -1,17 +1,73 @@
 /** \file
- * \brief Runs of a coverage study that are not in its file yet, on all cores.
+ * \brief The runs of a coverage study: the CSV file that keeps them, and those that are
+ * not there yet, on all cores.
  */
 #pragma once
 
-#include "coverage/coverage_file.h"
 #include "coverage/coverage_methods.h"
+#include "coverage/coverage_score.h"
 #include "study/parallel_tasks.h"
+#include "study/run_file.h"
 
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
+
+/** \brief Which run. */
+struct CoverageRunName {
+  std::string scene;
+  std::string condition;
+  std::uint64_t seed = 0;
+  std::string method;
+};
+
+struct CoverageRun {
+  static constexpr int num_name_columns = 4;
+
+  CoverageRunName name;
+  CoverageScore score;
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    column("scene", self.name.scene);
+    column("condition", self.name.condition);
+    column("seed", self.name.seed);
+    column("method", self.name.method);
+    auto& score = self.score;
+    column("valid", score.is_valid);
+    column("nees", score.nees);
+    column("region", score.region);
+    column("log_score", score.log_score);
+    column("energy_score", score.energy_score);
+    twistColumns("pit_", score.pit, column);
+    twistColumns("z_", score.z, column);
+    twistColumns("relative_sd_", score.relative_sd, column);
+    column("translation_error_m", score.translation_error);
+    column("rotation_error_rad", score.rotation_error);
+    column("displacement_m", score.displacement);
+    column("lost_displacement_m", score.lost_displacement);
+    column("seconds", score.seconds);
+    column("queries", score.num_queries);
+    column("notes", score.notes);
+  }
+
+private:
+  template <typename Vector, typename Column>
+  static void
+  twistColumns(const std::string& prefix, Vector& values, const Column& column)
+  {
+    constexpr std::array<const char*, 6> axes = {"vx", "vy", "vz", "wx", "wy", "wz"};
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      column(prefix + axes[k], values[Eigen::Index(k)]);
+  }
+};
+
+/** \brief The CSV file. */
+using CoverageFile = RunFile<CoverageRun>;
 
 /** \brief Which case. */
 struct CoverageCaseName {

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "coverage/coverage_file.h"
+#include "coverage/coverage_study.h"
 
 #include <array>
 #include <iosfwd>

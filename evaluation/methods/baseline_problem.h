@@ -11,6 +11,8 @@
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/prior.h>
 
+#include <cmath>
+
 namespace bayesian_icp::evaluate {
 
 /** \brief Largest number of source points that are registered, unless stated otherwise.

@@ -4,6 +4,8 @@
 #include "geometry/twist.h"
 #include "study/draw_statistics.h"
 
+#include <algorithm>
+
 namespace bayesian_icp::evaluate {
 
 namespace {
@@ -64,8 +66,7 @@ addTruthScores(const ScanPair& pair,
   problem.source = pair.source;
   problem.truth = pair.truth;
   problem.prior_sd = priorSd();
-  problem.truth_sd_translation = pair.truth_sd.translation;
-  problem.truth_sd_rotation = pair.truth_sd.rotation;
+  problem.truth_sd = pair.truth_sd;
   MethodResult result;
   result.is_valid = true;
   result.mean = isometryOf(meanPose(draws));
@@ -76,22 +77,6 @@ addTruthScores(const ScanPair& pair,
   run.truth_energy_score = score.energy_score;
   run.translation_error = score.translation_error;
   run.rotation_error = score.rotation_error;
-}
-
-/** A run without draws. */
-void
-setUnknown(DistributionRun& run)
-{
-  run.main_kl = infinity;
-  run.main_coordinate_kl.setConstant(infinity);
-  for (double* number : {&run.energy_score,
-                         &run.truth_energy_score,
-                         &run.nees,
-                         &run.translation_error,
-                         &run.rotation_error})
-    *number = unknown;
-  run.mean.setConstant(unknown);
-  run.standard_deviation.setConstant(unknown);
 }
 
 } // namespace
@@ -105,7 +90,6 @@ distributionRunOf(const PaperRunName& name,
   DistributionRun scored;
   scored.name = name;
   scored.score = scoreOf(run, baseline.ends);
-  setUnknown(scored);
   const PoseMatrix draws = pooledDraws(run.chains.chains);
   if (draws.rows() < min_scored_draws)
     return scored;
@@ -119,17 +103,14 @@ partOf(const ChainSet& chains, const DrawPart& part)
 {
   const auto num_chains = static_cast<Eigen::Index>(chains.chains.size());
   const Eigen::Index first = part.first / num_chains, count = part.count / num_chains;
-  PoseMatrix rows(0, 6);
-  for (const Chain& chain : chains.chains) {
-    const Eigen::Index num_rows =
-        chain.diverged ? 0
-                       : std::clamp<Eigen::Index>(chain.draws.rows() - first, 0, count);
-    const Eigen::Index begin = rows.rows();
-    rows.conservativeResize(begin + num_rows, 6);
-    rows.bottomRows(num_rows) =
-        chain.draws.middleRows(num_rows > 0 ? first : 0, num_rows);
-  }
-  return rows;
+  std::vector<PoseMatrix> parts;
+  for (const Chain& chain : chains.chains)
+    if (!chain.diverged) {
+      const Eigen::Index begin = std::min(first, chain.draws.rows());
+      parts.push_back(
+          chain.draws.middleRows(begin, std::min(count, chain.draws.rows() - begin)));
+    }
+  return pooled(parts);
 }
 
 CurveDivergences

@@ -1,18 +1,70 @@
 #include "paper/paper_baseline.h"
 
 #include "io/errors.h"
+#include "io/numbers.h"
 #include "io/text_hash.h"
-#include "paper/monte_carlo_runs.h"
+#include "study/clocks.h"
 #include "study/input_hash.h"
+#include "study/run_file.h"
 
 #include <bayesian_icp/summary.h>
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <type_traits>
 
 namespace bayesian_icp::evaluate {
 
 namespace {
+
+/** To be changed with what a run does: old files are then ignored. */
+constexpr char version[] = "monte carlo icp 1";
+
+constexpr int block_size = 100;
+constexpr double seconds_between_reports = 5.0;
+
+IcpStop
+stopOf(std::string_view name)
+{
+  for (const IcpStop stop : icp_stops)
+    if (name == toString(stop))
+      return stop;
+  throw std::runtime_error("not an end of ICP");
+}
+
+/** A row of the file. */
+struct KeptRun {
+  static constexpr int num_name_columns = 1;
+
+  struct Name {
+    int index = 0;
+  };
+
+  Name name;
+  MonteCarloIcpRun run;
+
+  template <typename Self, typename Column>
+  static void
+  columns(Self& self, const Column& column)
+  {
+    auto& run = self.run;
+    std::string stop = toString(run.stop);
+    column("index", self.name.index);
+    unitColumns("start_", run.start, column);
+    unitColumns("", run.end, column);
+    column("stop", stop);
+    column("iterations", run.num_iterations);
+    column("mean_squared_distance_m2", run.mean_squared_distance);
+    if constexpr (!std::is_const_v<Self>) {
+      run.index = self.name.index;
+      run.stop = stopOf(stop);
+      run.has_converged = run.stop != IcpStop::TooFewPairs;
+    }
+  }
+};
+
+using KeptRuns = RunFile<KeptRun>;
 
 constexpr double main_basin_factor = 2.0;
 
@@ -28,32 +80,97 @@ baselineOptions(const PaperStudyOptions& paper)
   return options;
 }
 
-std::vector<MonteCarloIcpRun>
-keptRuns(const PaperStudy& study, const PaperProblem& problem)
+} // namespace
+
+std::uint64_t
+monteCarloKey(const Eigen::Matrix3Xd& source,
+              const KdTree& target,
+              const MonteCarloIcpOptions& options)
 {
-  const std::string& name = problem.pair.name;
-  return keptMonteCarloRuns(
-      problem.pair.source,
-      problem.tree,
-      baselineOptions(study.options),
-      {study.options.output_folder, name},
-      [&](const std::string& line) { study.report(name + ": " + line); });
+  InputHash hash;
+  hash.add(version, sizeof version);
+  hash.addMatrix(source);
+  hash.addMatrix(target.points());
+  hash.addMatrix(options.mean);
+  hash.addMatrix(options.half_range);
+  hash.add(&options.seed, sizeof options.seed);
+  for (const double number : {static_cast<double>(options.icp.max_iterations),
+                              options.icp.max_distance,
+                              options.icp.transformation_epsilon,
+                              options.icp.euclidean_fitness_epsilon,
+                              options.icp.rotation_epsilon,
+                              options.icp.absolute_fitness_epsilon})
+    hash.add(number);
+  return hash.value();
 }
 
 std::string
-keyOf(const PaperStudyOptions& options, const PaperProblem& problem)
+monteCarloFile(const std::string& folder, const std::string& pair, std::uint64_t key)
 {
-  const MonteCarloIcpOptions baseline = baselineOptions(options);
-  const std::uint64_t numbers[] = {
-      problem.pair.key(),
-      monteCarloKey(problem.pair.source, problem.tree, baseline),
-      static_cast<std::uint64_t>(baseline.num_runs)};
-  InputHash hash;
-  hash.add(numbers, sizeof numbers);
-  return io::textOfHash(hash.value());
+  return folder + "/monte_carlo_" + pair + '_' + io::textOfHash(key) + ".csv";
 }
 
-} // namespace
+std::vector<MonteCarloIcpRun>
+keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
+                   const KdTree& target,
+                   const MonteCarloIcpOptions& options,
+                   const std::string& file,
+                   const std::function<void(const std::string&)>& report)
+{
+  KeptRuns runs(file);
+  const int end = options.first_run + options.num_runs;
+  const auto isMissing = [&runs](int index) { return runs.find({index}) == nullptr; };
+  int num_missing = 0, num_done = 0;
+  for (int index = options.first_run; index < end; ++index)
+    num_missing += isMissing(index) ? 1 : 0;
+  // Not too many lines of it.
+  const double begin = wallSeconds();
+  double last_report = 0.0;
+  const auto reportProgress = [&](int done) {
+    const double seconds = wallSeconds() - begin;
+    const bool is_due = done == num_missing
+                            ? last_report > 0.0
+                            : seconds >= last_report + seconds_between_reports;
+    if (!report || done == 0 || !is_due)
+      return;
+    last_report = seconds;
+    report(io::textOf(done) + " of " + io::textOf(num_missing) +
+           " runs of ICP, about " +
+           io::fixedTextOf(seconds * (num_missing - done) / done, 0) + " s left");
+  };
+  std::vector<MonteCarloIcpRun> asked;
+  for (int index = options.first_run; index < end; ++index) {
+    // The next runs that are missing, without a gap.
+    MonteCarloIcpOptions block = options;
+    block.first_run = index;
+    block.num_runs = 0;
+    while (block.num_runs < block_size && index + block.num_runs < end &&
+           isMissing(index + block.num_runs))
+      ++block.num_runs;
+    if (block.num_runs > 0)
+      for (const MonteCarloIcpRun& run :
+           monteCarloIcp(source, target, block, [&](int done) {
+             reportProgress(num_done + done);
+             return true;
+           }))
+        runs.add({{run.index}, run});
+    num_done += block.num_runs;
+    asked.push_back(runs.find({index})->run);
+  }
+  return asked;
+}
+
+PoseMatrix
+endsOf(const std::vector<MonteCarloIcpRun>& runs)
+{
+  PoseMatrix ends(static_cast<Eigen::Index>(runs.size()), 6);
+  Eigen::Index row = 0;
+  for (const MonteCarloIcpRun& run : runs)
+    if (run.has_converged)
+      ends.row(row++) = run.end.transpose();
+  ends.conservativeResize(row, 6);
+  return ends;
+}
 
 PaperBaseline
 baselineOf(const std::string& pair_name, const std::vector<MonteCarloIcpRun>& runs)
@@ -75,10 +192,24 @@ baselineOf(const std::string& pair_name, const std::vector<MonteCarloIcpRun>& ru
   return baseline;
 }
 
-ComparedPair::ComparedPair(const PaperStudy& study, const ScanPair& scan_pair)
-: problem(scan_pair)
-, baseline(baselineOf(scan_pair.name, keptRuns(study, problem)))
-, key(keyOf(study.options, problem))
-{}
+ComparedPair::ComparedPair(const PaperStudy& study, const ScanPair& pair)
+: problem(pair)
+{
+  const MonteCarloIcpOptions options = baselineOptions(study.options);
+  const std::uint64_t runs_key = monteCarloKey(pair.source, problem.tree, options);
+  baseline = baselineOf(
+      pair.name,
+      keptMonteCarloRuns(
+          pair.source,
+          problem.tree,
+          options,
+          monteCarloFile(study.options.output_folder, pair.name, runs_key),
+          [&](const std::string& line) { study.report(pair.name + ": " + line); }));
+  const std::uint64_t numbers[] = {
+      pair.key(), runs_key, static_cast<std::uint64_t>(options.num_runs)};
+  InputHash hash;
+  hash.add(numbers, sizeof numbers);
+  key = io::textOfHash(hash.value());
+}
 
 } // namespace bayesian_icp::evaluate

@@ -1,5 +1,6 @@
 /** \file
- * \brief The paper's baseline distribution: results of Monte Carlo ICP.
+ * \brief The paper's baseline distribution: results of Monte Carlo ICP, ICP from random
+ * starts, kept on disk run by run.
  */
 #pragma once
 
@@ -7,9 +8,43 @@
 #include "paper/paper_experiment.h"
 #include "paper/paper_methods.h"
 
+#include <cstdint>
+#include <functional>
+#include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
+
+/** \brief What a run depends on besides its index, in one number: points, starts, seed,
+ * criteria of ICP. How many runs, and by how many threads, is left out. */
+std::uint64_t
+monteCarloKey(const Eigen::Matrix3Xd& source,
+              const KdTree& target,
+              const MonteCarloIcpOptions& options);
+
+/** \brief FOLDER/monte_carlo_PAIR_KEY.csv, where the runs of a pair are kept: other
+ * inputs have another file. */
+std::string
+monteCarloFile(const std::string& folder, const std::string& pair, std::uint64_t key);
+
+/** \brief The runs first_run ... first_run + num_runs - 1 of the options, in this
+ * order: those of the file, and for the others they are made and written there, a
+ * hundred at a time, so that an interrupted study goes on where it stopped. Bit for bit
+ * the result of monteCarloIcp().
+ * \param[in] file made, with its folder, if it is missing
+ * \param[in] report gets a line of progress now and then; may be empty
+ * \throws io::FileError if the file cannot be written, or has a bad row */
+std::vector<MonteCarloIcpRun>
+keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
+                   const KdTree& target,
+                   const MonteCarloIcpOptions& options,
+                   const std::string& file,
+                   const std::function<void(const std::string&)>& report);
+
+/** \brief Ends of the runs that had enough pairs, one per row [m, rad], canonical: the
+ * draws of the baseline. */
+PoseMatrix
+endsOf(const std::vector<MonteCarloIcpRun>& runs);
 
 /** \brief Where standard ICP ends from random starts about a pair's initial guess. */
 struct PaperBaseline {
@@ -38,9 +73,9 @@ baselineOf(const std::string& pair_name, const std::vector<MonteCarloIcpRun>& ru
 struct ComparedPair {
   /** \brief Take the baseline's runs that are in the output folder, and make the
    * others.
-   * \param[in] scan_pair must outlive this object
+   * \param[in] pair must outlive this object
    * \throws io::FileError */
-  ComparedPair(const PaperStudy& study, const ScanPair& scan_pair);
+  ComparedPair(const PaperStudy& study, const ScanPair& pair);
 
   PaperProblem problem;
   PaperBaseline baseline;

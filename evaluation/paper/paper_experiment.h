@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <functional>
 #include <iosfwd>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,13 +41,6 @@ struct PaperStudyOptions {
   std::vector<std::uint64_t>
   seeds() const;
 };
-
-/** \brief Read the command line.
- * \param[in] help is printed before the options if it is asked for
- * \return nothing if that was help
- * \throws io::UsageError with a message for the user */
-std::optional<PaperStudyOptions>
-readPaperOptions(int argc, const char* const* argv, const std::string& help);
 
 /** \brief The pairs asked for. A missing or broken one is named, with the reason, on
  * \p log and left out.

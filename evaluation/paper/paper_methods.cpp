@@ -1,7 +1,7 @@
 #include "paper/paper_methods.h"
 
 #include "geometry/twist.h"
-#include "study/cpu_time.h"
+#include "study/clocks.h"
 #include "study/draw_statistics.h"
 
 #include <algorithm>

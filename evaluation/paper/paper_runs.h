@@ -3,10 +3,12 @@
  */
 #pragma once
 
+#include "coverage/coverage_score.h"
 #include "samplers/score.h"
 #include "study/run_file.h"
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 namespace bayesian_icp::evaluate {
@@ -34,20 +36,21 @@ struct DistributionRun {
   Score score;
   /** KL(runs of the baseline in its main basin || method) [nats]; the first is NaN if
    * there are fewer than seven of those runs. */
-  double main_kl = 0.0;
-  Vector6d main_coordinate_kl = Vector6d::Zero();
+  double main_kl = std::numeric_limits<double>::infinity();
+  Vector6d main_coordinate_kl =
+      Vector6d::Constant(std::numeric_limits<double>::infinity());
   /** Of the baseline's results and of the truth, in units of the prior's standard
    * deviations. */
-  double energy_score = 0.0;
-  double truth_energy_score = 0.0;
+  double energy_score = std::numeric_limits<double>::quiet_NaN();
+  double truth_energy_score = std::numeric_limits<double>::quiet_NaN();
   /** Squared Mahalanobis distance of the truth. */
-  double nees = 0.0;
+  double nees = std::numeric_limits<double>::quiet_NaN();
   /** Of the draws' mean: the source's centroid [m], and the rotation [rad]. */
-  double translation_error = 0.0;
-  double rotation_error = 0.0;
+  double translation_error = std::numeric_limits<double>::quiet_NaN();
+  double rotation_error = std::numeric_limits<double>::quiet_NaN();
   /** Of the draws, angles unwrapped about the baseline's mean [m, rad]. */
-  Vector6d mean = Vector6d::Zero();
-  Vector6d standard_deviation = Vector6d::Zero();
+  Vector6d mean = unknownVector();
+  Vector6d standard_deviation = unknownVector();
 
   template <typename Self, typename Column>
   static void

@@ -2,6 +2,7 @@
 
 #include "io/cloud_file.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <numeric>

@@ -1,6 +1,6 @@
 #include "samplers/sampler_runs.h"
 
-#include "study/cpu_time.h"
+#include "study/clocks.h"
 #include "study/draw_statistics.h"
 
 #include <bayesian_icp/pipeline.h>

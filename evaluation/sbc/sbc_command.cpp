@@ -1,12 +1,11 @@
 #include "commands.h"
 #include "io/coordinates.h"
-#include "sbc/rank_file.h"
 #include "sbc/rank_samplers.h"
+#include "sbc/rank_statistics.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
 #include "study/text_table.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -100,18 +99,16 @@ runMissing(const SbcOptions& options, RankFile& results)
     for (const RankRun::Name& name : runNamesOf(sampler, options))
       if (results.find(name) == nullptr)
         missing.push_back({sampler, name});
-  StudyTasks tasks;
-  tasks.size = missing.size();
-  tasks.run = [&](std::size_t i) {
+  const auto run = [&](std::size_t i) {
     const std::optional<Ranks> ranks = missing[i].sampler.run(missing[i].name.seed);
     results.add({missing[i].name, ranks.has_value(), ranks.value_or(Ranks::Zero())});
   };
-  tasks.report = [](const StudyProgress& progress, std::size_t) {
+  const auto report = [](const StudyProgress& progress, std::size_t) {
     if (progress.num_done % 50 == 0 || progress.num_done == progress.num_all)
       std::cerr << progress.num_done << " of " << progress.num_all << " runs"
                 << std::endl;
   };
-  runTasks(tasks, options.num_threads);
+  runTasks(missing.size(), options.num_threads, run, report);
 }
 
 /** The ranks of a sampler's good runs. */

@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "study/axis_deviation.h"
+
 #include <bayesian_icp/pose.h>
 
 #include <Eigen/Geometry>
@@ -28,11 +30,10 @@ struct CoverageCase {
   /** Pose and standard deviations (x, y, z, roll, pitch, yaw) [m, rad]. */
   Vector6d prior_mean = Vector6d::Zero();
   Vector6d prior_sd = Vector6d::Zero();
-  /** Accuracy of the truth itself [m, rad], root mean square over three axes; zero in
+  /** Accuracy of the truth itself, root mean square over three axes; zero in
    * simulation. Of the source's centroid and the rotation, of recordings of its origin
    * and the rotation. */
-  double truth_sd_translation = 0.0;
-  double truth_sd_rotation = 0.0;
+  AxisDeviation truth_sd;
   /** Of recordings: mean displacement of the source's points beyond which a pose is
    * lost [m]. NaN: no pose is. */
   double lost_displacement = std::numeric_limits<double>::quiet_NaN();

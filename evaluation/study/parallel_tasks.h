@@ -15,19 +15,16 @@ struct StudyProgress {
   double seconds_left;
 };
 
-/** \brief Tasks that do not depend on each other, by their index. */
-struct StudyTasks {
-  std::size_t size = 0;
-  /** Does one; called by several threads at once. */
-  std::function<void(std::size_t index)> run;
-  /** Told of each that is done, by one thread at a time; may be empty. */
-  std::function<void(const StudyProgress& progress, std::size_t index)> report;
-};
-
-/** \brief Do all tasks, each in one thread.
- * \throws what `run` and `report` throw first; tasks that had not begun then are left
+/** \brief Do tasks that do not depend on each other, each in one thread.
+ * \param[in] run does one; called by several threads at once
+ * \param[in] report told of each that is done, by one thread at a time; may be empty
+ * \throws what \p run and \p report throw first; tasks that had not begun then are left
  *         out */
 void
-runTasks(const StudyTasks& tasks, int num_threads);
+runTasks(std::size_t size,
+         int num_threads,
+         const std::function<void(std::size_t index)>& run,
+         const std::function<void(const StudyProgress& progress, std::size_t index)>&
+             report = nullptr);
 
 } // namespace bayesian_icp::evaluate

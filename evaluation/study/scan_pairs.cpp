@@ -2,11 +2,15 @@
 
 #include "io/cloud_file.h"
 #include "io/errors.h"
+#include "io/json_file.h"
+#include "io/motion.h"
 #include "study/input_hash.h"
+#include "study/named.h"
 
-#include <bayesian_icp/random.h>
+#include <nlohmann/json.hpp>
 
-#include <algorithm>
+#include <cmath>
+#include <filesystem>
 
 namespace bayesian_icp::evaluate {
 
@@ -15,6 +19,31 @@ using Eigen::Translation3d;
 using Eigen::Vector3d;
 
 namespace {
+
+constexpr std::uint64_t max_manifest_size = 16 << 20;
+constexpr double radians_per_degree = 3.14159265358979323846 / 180.0;
+
+/** \throws nlohmann::json::exception */
+ManifestEntry
+entryOf(const nlohmann::json& json)
+{
+  ManifestEntry entry;
+  const auto& files = json.at("files");
+  entry.name = json.at("name");
+  entry.source = files.at("source");
+  entry.target = files.at("target");
+  entry.ground_truth = files.at("ground_truth");
+  entry.initial_guess = files.value("initial_guess", "");
+  if (const auto prior = json.find("suggested_prior_sigma"); prior != json.end())
+    entry.prior_sd = {prior->at("translation_m"), prior->at("rotation_rad")};
+  const auto& accuracy = json.at("ground_truth_accuracy");
+  // The manifest's are of the whole vector.
+  entry.truth_sd.translation =
+      accuracy.at("translation_m").get<double>() / std::sqrt(3.0);
+  entry.truth_sd.rotation =
+      accuracy.at("rotation_deg").get<double>() * radians_per_degree / std::sqrt(3.0);
+  return entry;
+}
 
 constexpr std::uint64_t thinning_stream = 0x7061697273;
 
@@ -32,6 +61,28 @@ centre(ScanPair& pair, const Isometry3d& guess)
 
 } // namespace
 
+bool
+hasManifest(const std::string& folder)
+{
+  return std::filesystem::exists(folder + "/" + manifest_name);
+}
+
+std::vector<ManifestEntry>
+readManifest(const std::string& folder)
+{
+  const std::string file = folder + "/" + manifest_name;
+  const nlohmann::json manifest = io::readJson(file, max_manifest_size);
+  std::vector<ManifestEntry> entries;
+  try {
+    for (const auto& json : manifest)
+      entries.push_back(entryOf(json));
+  }
+  catch (const nlohmann::json::exception& error) {
+    throw io::FileError(file, error.what());
+  }
+  return entries;
+}
+
 std::uint64_t
 ScanPair::key() const
 {
@@ -42,23 +93,10 @@ ScanPair::key() const
   return hash.value();
 }
 
-const std::vector<std::string>&
-paperObjects()
-{
-  static const std::vector<std::string> objects = {
-      "bowl", "can", "mug_hidden_handle", "table_top", "mug", "table"};
-  return objects;
-}
-
 std::vector<std::string>
 pairNames(const std::string& folder)
 {
-  if (!hasManifest(folder))
-    return paperObjects();
-  std::vector<std::string> names;
-  for (const ManifestEntry& entry : readManifest(folder))
-    names.push_back(entry.name);
-  return names;
+  return hasManifest(folder) ? namesOf(readManifest(folder)) : paper_objects;
 }
 
 ScanPair
@@ -68,7 +106,7 @@ readScanPair(const std::string& folder, const ManifestEntry& entry)
   pair.name = entry.name;
   pair.source = io::readFinitePoints(folder + "/" + entry.source).cast<double>();
   pair.target = io::readFinitePoints(folder + "/" + entry.target).cast<double>();
-  pair.truth = readTransform(folder + "/" + entry.ground_truth);
+  pair.truth = Isometry3d(io::readMatrixFile(folder + "/" + entry.ground_truth));
   pair.truth_sd = entry.truth_sd;
   return pair;
 }
@@ -84,17 +122,17 @@ readScanPair(const std::string& folder, const std::string& name)
     entry.ground_truth = name + "/T_target_source.txt";
     return readScanPair(folder, entry);
   }
-  for (const ManifestEntry& entry : readManifest(folder))
-    if (entry.name == name) {
-      ScanPair pair = readScanPair(folder, entry);
-      centre(pair,
-             entry.initial_guess.empty()
-                 ? Isometry3d::Identity()
-                 : readTransform(folder + "/" + entry.initial_guess));
-      return pair;
-    }
-  throw io::FileError(folder + "/" + manifest_name,
-                      "has no pair " + io::inQuotes(name));
+  const std::vector<ManifestEntry> manifest = readManifest(folder);
+  const ManifestEntry* const entry = findNamed(manifest, name);
+  if (entry == nullptr)
+    throw io::FileError(folder + "/" + manifest_name,
+                        "has no pair " + io::inQuotes(name));
+  ScanPair pair = readScanPair(folder, *entry);
+  const std::string& guess = entry->initial_guess;
+  centre(pair,
+         guess.empty() ? Isometry3d::Identity()
+                       : Isometry3d(io::readMatrixFile(folder + "/" + guess)));
+  return pair;
 }
 
 void

@@ -1,17 +1,42 @@
 /** \file
- * \brief The pairs of scans on which the paper's experiments are made.
+ * \brief Folders of pairs of scans, and the pairs on which the paper's experiments are
+ * made.
  */
 #pragma once
 
-#include "study/scan_manifest.h"
+#include "study/axis_deviation.h"
 
 #include <Eigen/Geometry>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
+
+constexpr char manifest_name[] = "manifest.json";
+
+/** \brief A pair as manifest.json, a list of pairs, has it. Names of files are relative
+ * to the folder. */
+struct ManifestEntry {
+  std::string name, source, target, ground_truth;
+  /** Empty: none is given. */
+  std::string initial_guess;
+  /** What the pose may be believed to be before registration, about the guess. */
+  std::optional<AxisDeviation> prior_sd;
+  /** Accuracy of the ground truth. */
+  AxisDeviation truth_sd;
+};
+
+/** \brief Whether there is FOLDER/manifest.json. */
+bool
+hasManifest(const std::string& folder);
+
+/** \brief Read FOLDER/manifest.json.
+ * \throws io::FileError */
+std::vector<ManifestEntry>
+readManifest(const std::string& folder);
 
 /** \brief Two scans and the true motion between them. The identity is the initial
  * guess, and the origin is on the object, so that a rotation about it does not carry
@@ -32,8 +57,8 @@ struct ScanPair {
 
 /** \brief The paper's six objects as they are named in data/, in the order of its
  * Table I. */
-const std::vector<std::string>&
-paperObjects();
+inline const std::vector<std::string> paper_objects = {
+    "bowl", "can", "mug_hidden_handle", "table_top", "mug", "table"};
 
 /** \brief Names of the pairs in a folder: those of its manifest.json, or the paper's
  * six objects if it has none.

@@ -3,12 +3,13 @@
 #include "algebra/decompositions.h"
 #include "io/text_hash.h"
 #include "methods/published_covariances.h"
+#include "study/clocks.h"
 #include "track/registration.h"
 
 #include <bayesian_icp/random.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 
@@ -125,12 +126,10 @@ guessOf(const Recording& recording, std::uint64_t seed, int target, int source)
   Random random(
       seed,
       io::hashOf(recording.name + ' ' + io::textOf(target) + ' ' + io::textOf(source)));
-  const Vector6d deviation = random.normal6();
-  Isometry3d guess = recording.relativePose(static_cast<std::size_t>(target),
-                                            static_cast<std::size_t>(source));
-  guess.linear() = expSO3(guess_sd.rotation * deviation.tail<3>()) * guess.linear();
-  guess.translation() += guess_sd.translation * deviation.head<3>();
-  return guess;
+  return perturbed(recording.relativePose(static_cast<std::size_t>(target),
+                                          static_cast<std::size_t>(source)),
+                   guess_sd,
+                   random);
 }
 
 EdgeRun
@@ -147,7 +146,7 @@ registeredEdge(const EdgeName& name,
   EdgeRun run;
   run.name = name;
   run.mean = problem.prior_mean;
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = wallSeconds();
   try {
     registerBy(name.method, problem, run);
   }
@@ -157,8 +156,7 @@ registeredEdge(const EdgeName& name,
   catch (const std::exception& error) {
     run.complaint = error.what();
   }
-  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
-  run.seconds = time.count();
+  run.seconds = wallSeconds() - begin;
   return run;
 }
 

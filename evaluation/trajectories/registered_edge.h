@@ -5,8 +5,8 @@
 #pragma once
 
 #include "graph/pose_graph.h"
+#include "study/recordings.h"
 #include "study/run_file.h"
-#include "trajectories/recording.h"
 
 #include <string>
 #include <vector>

@@ -1,13 +1,15 @@
 #include "commands.h"
+#include "io/errors.h"
 #include "io/folders.h"
 #include "io/output_folder.h"
 #include "io/program.h"
 #include "io/text_hash.h"
 #include "register/choices.h"
-#include "study/text_table.h"
 #include "study/input_hash.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
+#include "study/text_table.h"
+#include "trajectories/drives.h"
 #include "trajectories/trajectory_run.h"
 
 #include <algorithm>
@@ -34,6 +36,20 @@ struct TrajectoriesOptions {
   ResultOptions result{"results/trajectories.csv"};
 };
 
+/** \throws io::FileError of what is wrong with the folder */
+std::vector<Recording>
+readFirstScans(const std::string& folder, std::size_t max_scans)
+{
+  std::vector<Recording> recordings = readRecordings(folder);
+  for (Recording& recording : recordings) {
+    if (recording.poses.size() < 2)
+      throw io::FileError((std::filesystem::path(folder) / recording.name).string(),
+                          "has fewer than two scans");
+    recording.poses.resize(std::min(max_scans, recording.poses.size()));
+  }
+  return recordings;
+}
+
 std::vector<RegisteredRecording>
 recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
 {
@@ -45,7 +61,7 @@ recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
       for (const std::string& name : driveNames())
         all.push_back({makeDrive(name, seed, num_scans), seed, {}});
     else
-      for (const Recording& recording : readRecordings(folder, num_scans))
+      for (const Recording& recording : readFirstScans(folder, num_scans))
         all.push_back({recording, seed, {}});
   }
   if (options.names.empty())
@@ -74,14 +90,11 @@ std::vector<std::uint64_t>
 hashesOf(const Recording& recording, int num_threads)
 {
   std::vector<std::uint64_t> hashes(recording.poses.size());
-  StudyTasks tasks;
-  tasks.size = hashes.size();
-  tasks.run = [&](std::size_t scan) {
+  runTasks(hashes.size(), num_threads, [&](std::size_t scan) {
     InputHash hash;
     hash.addMatrix(recording.read(scan));
     hashes[scan] = hash.value();
-  };
-  runTasks(tasks, num_threads);
+  });
   return hashes;
 }
 
@@ -111,37 +124,20 @@ scanPairsOf(const RegisteredRecording& registered, const TrajectoriesOptions& op
   return pairs;
 }
 
-/** The registrations that a file does not have. */
-std::vector<PairOfScans>
-missingOf(std::vector<PairOfScans> pairs, const EdgeFile& results)
-{
-  std::vector<PairOfScans> missing;
-  for (PairOfScans& pair : pairs) {
-    auto& names = pair.names;
-    names.erase(std::remove_if(names.begin(),
-                               names.end(),
-                               [&](const EdgeName& name) {
-                                 return results.find(name) != nullptr;
-                               }),
-                names.end());
-    if (!names.empty())
-      missing.push_back(std::move(pair));
-  }
-  return missing;
-}
-
 void
 registerMissing(const std::vector<PairOfScans>& pairs,
                 const RegisteredRecording& registered,
                 int num_threads,
                 EdgeFile& results)
 {
-  const std::vector<PairOfScans> missing = missingOf(pairs, results);
-  const std::string name =
-      registered.recording.name + ", seed " + io::textOf(registered.seed);
-  StudyTasks tasks;
-  tasks.size = missing.size();
-  tasks.run = [&](std::size_t k) {
+  const auto isMissing = [&](const EdgeName& name) {
+    return results.find(name) == nullptr;
+  };
+  std::vector<PairOfScans> missing;
+  for (const PairOfScans& pair : pairs)
+    if (std::any_of(pair.names.begin(), pair.names.end(), isMissing))
+      missing.push_back(pair);
+  const auto run = [&](std::size_t k) {
     const PairOfScans& pair = missing[k];
     const auto read = [&](int scan) {
       return registered.recording.read(static_cast<std::size_t>(scan));
@@ -150,13 +146,18 @@ registerMissing(const std::vector<PairOfScans>& pairs,
     const Eigen::Isometry3d guess =
         guessOf(registered.recording, registered.seed, pair.target, pair.source);
     for (const EdgeName& edge : pair.names)
-      results.add(registeredEdge(edge, source, target, guess));
+      if (isMissing(edge))
+        results.add(registeredEdge(edge, source, target, guess));
   };
-  tasks.report = [&](const StudyProgress& progress, std::size_t) {
-    std::cerr << name + ": " + io::textOf(progress.num_done) + " of " +
-                     io::textOf(progress.num_all) + " pairs registered\n";
-  };
-  runTasks(tasks, num_threads);
+  const std::string name =
+      registered.recording.name + ", seed " + io::textOf(registered.seed);
+  runTasks(missing.size(),
+           num_threads,
+           run,
+           [&name](const StudyProgress& progress, std::size_t) {
+             std::cerr << name + ": " + io::textOf(progress.num_done) + " of " +
+                              io::textOf(progress.num_all) + " pairs registered\n";
+           });
 }
 
 /** Register what is not in the file, and take all edges from there. */

@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <map>
-#include <optional>
-#include <stdexcept>
 #include <utility>
 
 namespace bayesian_icp::evaluate {
@@ -34,10 +32,7 @@ edgesOf(const RegisteredRecording& registered, const std::string& method)
 Matrix6d
 covarianceOf(const AxisDeviation& deviation)
 {
-  Vector6d variances;
-  variances << Eigen::Vector3d::Constant(std::pow(deviation.translation, 2)),
-      Eigen::Vector3d::Constant(std::pow(deviation.rotation, 2));
-  return variances.asDiagonal();
+  return deviation.vector().cwiseAbs2().asDiagonal();
 }
 
 /** Whether a constant covariance for \p judged may be fitted to \p other. */

@@ -91,7 +91,8 @@ std::vector<std::string>
 allScenes()
 {
   std::vector<std::string> names = tunedScenes();
-  names.insert(names.end(), newScenes().begin(), newScenes().end());
+  const std::vector<std::string> others = newScenes();
+  names.insert(names.end(), others.begin(), others.end());
   return names;
 }
 
@@ -103,7 +104,7 @@ TEST_P(EveryCoverageScene, LiesOnItsSurfacesAtTheTruth)
 {
   const simulator::Scene scene =
       simulator::makeScene(coverageSetup(GetParam()).simulated_scene);
-  for (const std::string& condition : coverageConditions()) {
+  for (const std::string& condition : coverage_conditions) {
     const CoverageCase made = makeCoverageCase(GetParam(), condition, 1);
     ASSERT_TRUE(made.source.allFinite() && made.target.allFinite());
     // The fewest: a tool at half the resolution.
@@ -158,7 +159,7 @@ TEST(DensityCases, HaveThatManyTimesThePoints)
 
 TEST(LidarCases, LieOnTheirSurfacesAtTheTruth)
 {
-  for (const std::string& scene_name : lidarScenes()) {
+  for (const std::string& scene_name : lidar_scenes) {
     const simulator::Scene scene = simulator::makeScene(scene_name);
     const CoverageCase made = makeCoverageCase(scene_name, "lidar16", 1);
     EXPECT_GT(made.source.cols(), 8000) << scene_name;

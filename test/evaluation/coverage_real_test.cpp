@@ -68,9 +68,9 @@ TEST_F(RealPairsTest, RealPosesAreDrawnFromThePrior)
   // Chi-square with 6 degrees of freedom: mean 6, variance 12; 4 standard errors.
   EXPECT_NEAR(sum / num_cases, 6.0, 4.0 * std::sqrt(12.0 / num_cases));
   const CoverageCase made = pairs.makeCase("pair", 1);
-  EXPECT_NEAR(made.truth_sd_translation, 0.3 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(made.truth_sd.translation, 0.3 / std::sqrt(3.0), 1e-12);
   EXPECT_NEAR(
-      made.truth_sd_rotation, 9.0 * std::acos(-1.0) / 180.0 / std::sqrt(3.0), 1e-12);
+      made.truth_sd.rotation, 9.0 * std::acos(-1.0) / 180.0 / std::sqrt(3.0), 1e-12);
   EXPECT_EQ(made.source, pairs.makeCase("pair", 1).source);
 }
 

@@ -186,8 +186,8 @@ TEST(CoverageScore, AddsTheTruthsOwnAccuracy)
   twist[0] = 0.1;
   twist[5] = 0.26;
   right.problem.truth = movedBy(twist, right.result.centre, right.result.mean);
-  right.problem.truth_sd_translation = 0.04;
-  right.problem.truth_sd_rotation = 0.12;
+  right.problem.truth_sd.translation = 0.04;
+  right.problem.truth_sd.rotation = 0.12;
   const CoverageScore score = coverageScoreOf(right.problem, right.result);
   // 0.03^2 + 0.04^2 = 0.05^2.
   EXPECT_NEAR(score.z[0], 2.0, 1e-9);
@@ -204,8 +204,8 @@ TEST(CoverageScore, OfARecordingHasTheTruthsAccuracyAtTheSourcesOrigin)
 {
   RightPosterior right = rightPosterior(1, 0);
   right.problem.lost_displacement = 10.0;
-  right.problem.truth_sd_translation = 4e-4;
-  right.problem.truth_sd_rotation = 1.2e-3;
+  right.problem.truth_sd.translation = 4e-4;
+  right.problem.truth_sd.rotation = 1.2e-3;
   right.result.covariance = 1e-14 * Matrix6d::Identity();
   // A turn about the origin, then a shift of it: each in its own unit.
   const Eigen::Isometry3d& mean = right.result.mean;

@@ -143,8 +143,8 @@ TEST_F(SequencesTest, SourceIsTurnedAndTheTruthPutsItBack)
   EXPECT_NEAR(Eigen::AngleAxisd(turn.linear()).angle(), 0.5, 1e-9);
   EXPECT_NEAR(turn.translation().norm(), 0.5, 1e-9);
   EXPECT_EQ(made.prior_sd, PriorOptions().variance.cwiseSqrt());
-  EXPECT_EQ(made.truth_sd_translation, 0.003);
-  EXPECT_EQ(made.truth_sd_rotation, 0.002);
+  EXPECT_EQ(made.truth_sd.translation, 0.003);
+  EXPECT_EQ(made.truth_sd.rotation, 0.002);
   EXPECT_EQ(made.lost_displacement, 0.1);
   EXPECT_EQ(made.seed, ChainOptions().seed);
 }

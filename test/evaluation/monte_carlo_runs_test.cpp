@@ -1,6 +1,6 @@
 // Runs of Monte Carlo ICP on disk: the same bits, made once, never of other inputs.
 #include "io/errors.h"
-#include "paper/monte_carlo_runs.h"
+#include "paper/paper_baseline.h"
 #include "support/command_helpers.h"
 #include "support/test_support.h"
 
@@ -33,22 +33,17 @@ protected:
     return KdTree(source_.cast<float>());
   }
 
-  MonteCarloFile
-  file() const
-  {
-    return {(folder_ / "runs").string(), "cube"};
-  }
-
   std::string
   fileName() const
   {
-    return file().name(monteCarloKey(source_, tree(), options_));
+    return monteCarloFile(
+        (folder_ / "runs").string(), "cube", monteCarloKey(source_, tree(), options_));
   }
 
   std::vector<MonteCarloIcpRun>
   kept(const std::function<void(const std::string&)>& report = {}) const
   {
-    return keptMonteCarloRuns(source_, tree(), options_, file(), report);
+    return keptMonteCarloRuns(source_, tree(), options_, fileName(), report);
   }
 
   void

@@ -117,7 +117,7 @@ TEST_F(ScanPairs, FoldersLaidOutAsDataKeepTheirFrames)
   EXPECT_EQ(pair.source.cols(), 200);
   // Files are in single precision.
   EXPECT_TRUE(pair.target.isApprox(bumpySurface(300, 1), 1e-6));
-  EXPECT_EQ(pairNames(folder_.string()), paperObjects());
+  EXPECT_EQ(pairNames(folder_.string()), paper_objects);
   EXPECT_THROW(readScanPair(folder_.string(), "other"), io::FileError);
 }
 

@@ -6,7 +6,7 @@
 #include "fuzz_input.h"
 #include "register/config_file.h"
 #include "register/settings_json.h"
-#include "study/scan_manifest.h"
+#include "study/scan_pairs.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,11 +3,11 @@
  * of CSV files, gold standards.
  */
 #include "batch/batch_file.h"
-#include "coverage/coverage_file.h"
+#include "coverage/coverage_study.h"
 #include "fuzz_input.h"
 #include "paper/paper_runs.h"
 #include "samplers/gold_cache.h"
-#include "sbc/rank_file.h"
+#include "sbc/rank_statistics.h"
 
 #include <sstream>
 #include <stdexcept>

@@ -1,10 +1,12 @@
-#include "study/scan_sequences.h"
+#include "study/recordings.h"
 
+#include "io/cloud_file.h"
 #include "io/errors.h"
 #include "io/input_file.h"
 #include "io/json_file.h"
 #include "io/motion.h"
 #include "io/numbers.h"
+#include "study/scan_pairs.h"
 #include "study/text_table.h"
 
 #include <nlohmann/json.hpp>
@@ -101,48 +103,40 @@ lengthAt(const json& object, const char* key)
   return length;
 }
 
-ScanSequence
-readSequence(const fs::path& folder)
+Recording
+readRecording(const fs::path& folder)
 {
-  ScanSequence sequence;
-  sequence.folder = folder.string();
-  sequence.name = folder.filename().string();
+  Recording recording;
+  recording.name = folder.filename().string();
+  recording.read = [folder](std::size_t scan) -> Eigen::Matrix3Xd {
+    const std::string file = (folder / format("scan_%04zu.pcd", scan)).string();
+    return io::readFinitePoints(file).cast<double>();
+  };
   const std::string set_file = (folder / set_name).string();
   const json set = io::readJson(set_file, max_set_size);
   try {
-    sequence.quality = set.at("quality");
-    if (sequence.quality != "A" && sequence.quality != "B" && sequence.quality != "C")
-      throw std::runtime_error("quality is " + io::inQuotes(sequence.quality) +
+    recording.quality = set.at("quality");
+    if (recording.quality != "A" && recording.quality != "B" &&
+        recording.quality != "C")
+      throw std::runtime_error("quality is " + io::inQuotes(recording.quality) +
                                ", but must be A, B or C");
-    sequence.truth_sd = {lengthAt(set, "accuracy_translation_m"),
-                         lengthAt(set, "accuracy_rotation_rad")};
-    sequence.lost_displacement = lengthAt(set, "lost_displacement_m");
+    recording.truth_sd = {lengthAt(set, "accuracy_translation_m"),
+                          lengthAt(set, "accuracy_rotation_rad")};
+    recording.lost_displacement = lengthAt(set, "lost_displacement_m");
   }
   catch (const std::exception& error) {
     throw io::FileError(set_file, error.what());
   }
-  forEachLine((folder / "poses.txt").string(), [&sequence](const std::string& line) {
-    sequence.poses.push_back(motionOf(line));
+  forEachLine((folder / "poses.txt").string(), [&recording](const std::string& line) {
+    recording.poses.push_back(motionOf(line));
   });
-  return sequence;
+  return recording;
 }
 
 } // namespace
 
-std::string
-ScanSequence::scanFile(std::size_t scan) const
-{
-  return folder + format("/scan_%04zu.pcd", scan);
-}
-
-Isometry3d
-ScanSequence::relativePose(std::size_t target, std::size_t source) const
-{
-  return poses[target].inverse() * poses[source];
-}
-
-std::vector<ScanSequence>
-readSequences(const std::string& folder)
+std::vector<Recording>
+readRecordings(const std::string& folder)
 {
   std::vector<fs::path> folders;
   std::error_code error;
@@ -156,10 +150,10 @@ readSequences(const std::string& folder)
                         std::string("has neither a ") + manifest_name +
                             " nor a folder with a " + set_name);
   std::sort(folders.begin(), folders.end());
-  std::vector<ScanSequence> sequences;
+  std::vector<Recording> recordings;
   for (const fs::path& path : folders)
-    sequences.push_back(readSequence(path));
-  return sequences;
+    recordings.push_back(readRecording(path));
+  return recordings;
 }
 
 void

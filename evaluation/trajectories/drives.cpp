@@ -1,9 +1,7 @@
-#include "trajectories/recording.h"
+#include "trajectories/drives.h"
 
-#include "io/cloud_file.h"
-#include "io/errors.h"
 #include "simulator/simulation.h"
-#include "study/scan_sequences.h"
+#include "study/named.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,20 +113,14 @@ drives()
 std::vector<std::string>
 driveNames()
 {
-  std::vector<std::string> names;
-  for (const Drive& drive : drives())
-    names.push_back(drive.name);
-  return names;
+  return namesOf(drives());
 }
 
 Recording
 makeDrive(const std::string& name, std::uint64_t seed, std::size_t num_scans)
 {
-  const auto drive =
-      std::find_if(drives().begin(), drives().end(), [&name](const Drive& candidate) {
-        return candidate.name == name;
-      });
-  if (drive == drives().end())
+  const Drive* const drive = findNamed(drives(), name);
+  if (drive == nullptr)
     throw std::invalid_argument("there is no drive '" + name + "'");
   Recording recording;
   recording.name = name;
@@ -146,28 +138,6 @@ makeDrive(const std::string& name, std::uint64_t seed, std::size_t num_scans)
         .points;
   };
   return recording;
-}
-
-std::vector<Recording>
-readRecordings(const std::string& folder, std::size_t max_scans)
-{
-  std::vector<Recording> recordings;
-  for (const ScanSequence& sequence : readSequences(folder)) {
-    if (sequence.poses.size() < 2)
-      throw io::FileError(sequence.folder, "has fewer than two scans");
-    Recording recording;
-    recording.name = sequence.name;
-    recording.quality = sequence.quality;
-    recording.poses = sequence.poses;
-    recording.poses.resize(std::min(max_scans, sequence.poses.size()),
-                           Isometry3d::Identity());
-    recording.truth_sd = sequence.truth_sd;
-    recording.read = [sequence](std::size_t scan) -> Eigen::Matrix3Xd {
-      return io::readFinitePoints(sequence.scanFile(scan)).cast<double>();
-    };
-    recordings.push_back(std::move(recording));
-  }
-  return recordings;
 }
 
 } // namespace bayesian_icp::evaluate

@@ -1,46 +1,48 @@
 /** \file
- * \brief Recordings: folders of consecutive scans of one sensor with their poses.
+ * \brief Recordings: consecutive scans of one sensor on its way, with the poses at
+ * which they were taken.
  */
 #pragma once
 
-#include "study/scan_manifest.h"
-
-#include <Eigen/Geometry>
+#include "study/axis_deviation.h"
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief A recording. Scans are in the sensor's frame [m]. */
-struct ScanSequence {
-  std::string folder;
-  /** That of the folder. */
+/** \brief A real or simulated recording. */
+struct Recording {
   std::string name;
-  /** Of the poses: A (known exactly), B (independent), C (found from the scans). */
+  /** Of the poses: "exact" of simulated ones, A (known exactly), B (independent), C
+   * (found from the scans). */
   std::string quality;
   /** Accuracy of the pose of a scan relative to its neighbour. */
   AxisDeviation truth_sd;
-  /** Mean displacement of a scan's points beyond which its pose is lost [m]. */
-  double lost_displacement = 0.0;
+  /** Mean displacement of a scan's points beyond which its pose is lost [m]; NaN of
+   * simulated ones. */
+  double lost_displacement = std::numeric_limits<double>::quiet_NaN();
   /** T_world_sensor of each scan. */
   std::vector<Eigen::Isometry3d> poses;
-
-  /** \brief The name of a scan's file, which is read when it is needed. */
-  std::string
-  scanFile(std::size_t scan) const;
+  /** The points of a scan in the sensor's frame, 3 x n, finite [m]; may be called by
+   * several threads. */
+  std::function<Eigen::Matrix3Xd(std::size_t scan)> read;
 
   /** \brief Where the scan \p source is in the frame of \p target. */
   Eigen::Isometry3d
-  relativePose(std::size_t target, std::size_t source) const;
+  relativePose(std::size_t target, std::size_t source) const
+  {
+    return poses.at(target).inverse() * poses.at(source);
+  }
 };
 
 /** \brief Every folder in \p folder that has a set.json, by name, with its poses.txt.
  * \throws io::FileError if there is none, or what is wrong with a file */
-std::vector<ScanSequence>
-readSequences(const std::string& folder);
+std::vector<Recording>
+readRecordings(const std::string& folder);
 
 /** \brief A guess and the truth of a pair of scans, T_target_source. */
 struct PairPoses {
