@@ -1,5 +1,6 @@
 #include "calibrated/calibrated_report.h"
 #include "coverage/coverage_methods.h"
+#include "register/data_text.h"
 #include "study/text_table.h"
 
 #include <algorithm>
@@ -29,16 +30,9 @@ std::string
 notesOf(const DataReport& report)
 {
   std::string notes;
-  const auto flag = [&notes](bool is_raised, const char* name) {
-    if (is_raised)
-      notes += std::string("flag:") + name + ';';
-  };
-  flag(report.flags.wrong_basin, "wrong_basin");
-  flag(report.flags.low_support, "low_support");
-  flag(report.flags.few_patches, "few_patches");
-  flag(report.flags.misfit, "misfit");
-  flag(report.flags.no_information, "no_information");
-  flag(report.flags.prior_conflict, "prior_conflict");
+  for (const app::DataFlag& flag : app::data_flags)
+    if (report.flags.*flag.is_raised)
+      notes += std::string("flag:") + flag.key + ';';
   return notes + "prior_only=" + std::to_string(numPriorOnly(report)) +
          numberNote("basin_distance", report.basin_distance) +
          numberNote("active", report.active_fraction) +
@@ -47,15 +41,6 @@ notesOf(const DataReport& report)
          numberNote("residual_scale", report.residual_scale) +
          numberNote("correlation", report.correlation_factor) +
          numberNote("prior_probability", report.prior_probability);
-}
-
-MethodResult
-notedResultOf(const CalibratedEstimate& estimate, const SurfaceScorer& scorer)
-{
-  MethodResult result = resultOf(estimate);
-  result.notes = notesOf(dataReportOf(estimate, scorer.model()));
-  result.num_queries = estimate.num_queries;
-  return result;
 }
 
 /** A case, ready to be estimated. */
@@ -103,8 +88,12 @@ MethodResult
 runCalibrated(const CoverageCase& problem)
 {
   const Registration registration(problem);
-  return notedResultOf(estimateCalibrated(registration.scorer, registration.prior),
-                       registration.scorer);
+  const CalibratedEstimate estimate =
+      estimateCalibrated(registration.scorer, registration.prior);
+  MethodResult result = resultOf(estimate);
+  result.notes = notesOf(dataReportOf(estimate, registration.scorer.model()));
+  result.num_queries = estimate.num_queries;
+  return result;
 }
 
 MethodResult

@@ -1,13 +1,13 @@
 #include "commands.h"
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_real.h"
-#include "coverage/coverage_sequences.h"
 #include "coverage/coverage_study.h"
 #include "coverage/coverage_summary.h"
 #include "io/cloud_file.h"
 #include "io/command_line.h"
 #include "io/errors.h"
 #include "register/choices.h"
+#include "study/named.h"
 #include "study/option_values.h"
 #include "study/text_table.h"
 
@@ -344,9 +344,7 @@ conditionsOf(const CoverageOptions& options,
 std::vector<CoverageMethod>
 methodsOf(const CoverageOptions& options)
 {
-  Names known;
-  for (const CoverageMethod& method : coverageMethods())
-    known.push_back(method.name);
+  const std::vector<CoverageMethod> known = coverageMethods();
   Names named;
   std::vector<CoverageMethod> of_exact;
   for (const std::string& name : options.methods)
@@ -356,9 +354,9 @@ methodsOf(const CoverageOptions& options)
       named.push_back(name);
   if (named.empty() && !of_exact.empty())
     return of_exact;
-  requireKnown(named, known, "methods");
+  requireKnown(named, namesOf(known), "methods");
   std::vector<CoverageMethod> methods;
-  for (const CoverageMethod& method : coverageMethods())
+  for (const CoverageMethod& method : known)
     if (named.empty() || contains(named, method.name))
       methods.push_back(method);
   methods.insert(methods.end(), of_exact.begin(), of_exact.end());

@@ -49,17 +49,15 @@ runPaperPreset(const CoverageCase& problem)
 
 } // namespace
 
-const std::vector<CoverageMethod>&
+std::vector<CoverageMethod>
 coverageMethods()
 {
-  static const std::vector<CoverageMethod> methods = [] {
-    std::vector<CoverageMethod> all = {{"prior", runPrior}, {"paper", runPaperPreset}};
-    for (CoverageMethod& baseline : baselineMethods())
-      all.push_back(std::move(baseline));
-    all.push_back({"calibrated", runCalibrated});
-    all.push_back({"calibrated-draws", runCalibratedDraws});
-    return all;
-  }();
+  std::vector<CoverageMethod> methods = {{"prior", runPrior},
+                                         {"paper", runPaperPreset}};
+  for (CoverageMethod& baseline : baselineMethods())
+    methods.push_back(std::move(baseline));
+  methods.push_back({"calibrated", runCalibrated});
+  methods.push_back({"calibrated-draws", runCalibratedDraws});
   return methods;
 }
 

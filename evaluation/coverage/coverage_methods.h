@@ -23,7 +23,7 @@ struct CoverageMethod {
 };
 
 /** \brief All methods, in the order of the tables. */
-const std::vector<CoverageMethod>&
+std::vector<CoverageMethod>
 coverageMethods();
 
 /** \brief Run a method and measure its time; an exception is a result that is not

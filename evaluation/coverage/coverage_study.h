@@ -29,15 +29,14 @@ struct CoverageRun {
   CoverageRunName name;
   CoverageScore score;
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("scene", self.name.scene);
-    column("condition", self.name.condition);
-    column("seed", self.name.seed);
-    column("method", self.name.method);
-    auto& score = self.score;
+    column("scene", name.scene);
+    column("condition", name.condition);
+    column("seed", name.seed);
+    column("method", name.method);
     column("valid", score.is_valid);
     column("nees", score.nees);
     column("region", score.region);

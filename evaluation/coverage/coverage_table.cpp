@@ -39,31 +39,31 @@ struct Column {
 };
 
 using Columns = std::vector<Column>;
-using Summary = CoverageSummary;
 
 Column
 numberColumn(const std::string& title,
-             double Summary::*number,
+             double CoverageSummary::*number,
              int num_decimals,
              double factor = 1.0)
 {
-  return {title, [=](const Summary& s) {
+  return {title, [=](const CoverageSummary& s) {
             return numberText(factor * s.*number, num_decimals);
           }};
 }
 
 Column
-percentColumn(const std::string& title, Share Summary::*share)
+percentColumn(const std::string& title, Share CoverageSummary::*share)
 {
-  return {title,
-          [=](const Summary& s) { return numberText(100.0 * (s.*share).value, 0); }};
+  return {title, [=](const CoverageSummary& s) {
+            return numberText(100.0 * (s.*share).value, 0);
+          }};
 }
 
 Column
 shareColumn(std::size_t level)
 {
   return {"truths within\n" + format("%.0f %%", 100.0 * coverage_levels[level]),
-          [=](const Summary& s) { return shareText(s.coverage[level]); }};
+          [=](const CoverageSummary& s) { return shareText(s.coverage[level]); }};
 }
 
 const Columns&
@@ -71,20 +71,20 @@ simulatedColumns()
 {
   static const Columns columns = {
       {"valid\n/runs",
-       [](const Summary& s) { return countText(s.num_valid, s.num_runs); }},
-      numberColumn("mean\nNEES/6", &Summary::anees, 2),
+       [](const CoverageSummary& s) { return countText(s.num_valid, s.num_runs); }},
+      numberColumn("mean\nNEES/6", &CoverageSummary::anees, 2),
       shareColumn(0),
       shareColumn(1),
       shareColumn(2),
       shareColumn(3),
-      numberColumn("mean\nlog p", &Summary::mean_log_score, 2),
-      numberColumn("mean\nenergy", &Summary::mean_energy_score, 4),
-      numberColumn("median\nmm", &Summary::translation_error, 2, mm),
-      numberColumn("median\ndeg", &Summary::rotation_error, 2, degree),
-      percentColumn("flagged\nall %", &Summary::flagged),
-      percentColumn("flagged\nout95 %", &Summary::flagged_outside),
-      numberColumn("median\ns", &Summary::median_seconds, 3),
-      {"median\nqueries", [](const Summary& s) {
+      numberColumn("mean\nlog p", &CoverageSummary::mean_log_score, 2),
+      numberColumn("mean\nenergy", &CoverageSummary::mean_energy_score, 4),
+      numberColumn("median\nmm", &CoverageSummary::translation_error, 2, mm),
+      numberColumn("median\ndeg", &CoverageSummary::rotation_error, 2, degree),
+      percentColumn("flagged\nall %", &CoverageSummary::flagged),
+      percentColumn("flagged\nout95 %", &CoverageSummary::flagged_outside),
+      numberColumn("median\ns", &CoverageSummary::median_seconds, 3),
+      {"median\nqueries", [](const CoverageSummary& s) {
          return numberText(s.median_queries >= 0.0 ? s.median_queries : std::nan(""),
                            0);
        }}};
@@ -96,19 +96,19 @@ const Columns&
 sequenceColumns()
 {
   static const Columns columns = {
-      {"\npairs", [](const Summary& s) { return std::to_string(s.num_runs); }},
-      {"\nlost", [](const Summary& s) { return std::to_string(s.num_lost); }},
-      numberColumn("mean\nNEES/6", &Summary::anees, 2),
+      {"\npairs", [](const CoverageSummary& s) { return std::to_string(s.num_runs); }},
+      {"\nlost", [](const CoverageSummary& s) { return std::to_string(s.num_lost); }},
+      numberColumn("mean\nNEES/6", &CoverageSummary::anees, 2),
       shareColumn(0),
       shareColumn(coverage_levels.size() - 1),
-      numberColumn("mean\nlog p", &Summary::mean_log_score, 2),
-      numberColumn("median\nmm", &Summary::translation_error, 2, mm),
-      numberColumn("median\nmrad", &Summary::rotation_error, 3, mrad),
+      numberColumn("mean\nlog p", &CoverageSummary::mean_log_score, 2),
+      numberColumn("median\nmm", &CoverageSummary::translation_error, 2, mm),
+      numberColumn("median\nmrad", &CoverageSummary::rotation_error, 3, mrad),
       {"alarms\n/good",
-       [](const Summary& s) { return countText(s.num_alarms, s.num_good); }},
+       [](const CoverageSummary& s) { return countText(s.num_alarms, s.num_good); }},
       {"misses\n/bad",
-       [](const Summary& s) { return countText(s.num_misses, s.num_bad); }},
-      numberColumn("median\ns", &Summary::median_seconds, 3)};
+       [](const CoverageSummary& s) { return countText(s.num_misses, s.num_bad); }},
+      numberColumn("median\ns", &CoverageSummary::median_seconds, 3)};
   return columns;
 }
 

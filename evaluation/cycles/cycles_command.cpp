@@ -5,9 +5,9 @@
 #include "io/folders.h"
 #include "io/output_folder.h"
 #include "io/program.h"
-#include "study/csv_row.h"
-#include "study/text_table.h"
 #include "study/option_values.h"
+#include "study/run_file.h"
+#include "study/text_table.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,5 +1,7 @@
 #include "methods/published_covariances.h"
 
+#include "calibrated/median.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <nanoflann.hpp>
@@ -50,10 +52,7 @@ planeResidualScale(const MatchedPoints& matches)
   for (Index i = 0; i < matches.moved.cols(); ++i)
     distances.push_back(std::abs(
         matches.normals.col(i).dot(matches.moved.col(i) - matches.target.col(i))));
-  const auto middle =
-      distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return 1.4826 * *middle;
+  return 1.4826 * bayesian_icp::medianOf(distances);
 }
 
 /** \param[in] sigma noise of a point's coordinate [m]; NaN: that of the fit */

@@ -1,9 +1,9 @@
 #include "geometry/twist.h"
 #include "io/text_hash.h"
-#include "paper/accuracy_methods.h"
-#include "paper/baseline_distance.h"
+#include "paper/paper_experiment.h"
+#include "paper/paper_methods.h"
+#include "paper/paper_runs.h"
 #include "paper/picture_data.h"
-#include "paper/study_record.h"
 #include "study/clocks.h"
 #include "study/text_table.h"
 

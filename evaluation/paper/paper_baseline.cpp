@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
-#include <type_traits>
 
 namespace bayesian_icp::evaluate {
 
@@ -44,23 +43,20 @@ struct KeptRun {
   Name name;
   MonteCarloIcpRun run;
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    auto& run = self.run;
     std::string stop = toString(run.stop);
-    column("index", self.name.index);
+    column("index", name.index);
     unitColumns("start_", run.start, column);
     unitColumns("", run.end, column);
     column("stop", stop);
     column("iterations", run.num_iterations);
     column("mean_squared_distance_m2", run.mean_squared_distance);
-    if constexpr (!std::is_const_v<Self>) {
-      run.index = self.name.index;
-      run.stop = stopOf(stop);
-      run.has_converged = run.stop != IcpStop::TooFewPairs;
-    }
+    run.index = name.index;
+    run.stop = stopOf(stop);
+    run.has_converged = run.stop != IcpStop::TooFewPairs;
   }
 };
 

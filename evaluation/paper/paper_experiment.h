@@ -69,6 +69,23 @@ struct PaperStudy {
   }
 };
 
+/** \brief A pair, and the column `key` of its rows. */
+struct PairKey {
+  std::string pair;
+  std::string key;
+};
+
+/** \brief Note in study.json what the last run of an experiment asked for: command,
+ * seeds, pairs; and the versions of what took part. What is there of other experiments
+ * stays. \param[in] name of its CSV file, without .csv \param[in] num_starts rows are
+ * those of the first seed and of this number of starts; 0: of as many seeds as there
+ * are repeats \throws io::FileError */
+void
+recordExperiment(const PaperStudy& study,
+                 const std::string& name,
+                 const std::vector<PairKey>& pairs,
+                 int num_starts = 0);
+
 /** All that follow run what is not yet in the experiment's files in the output folder,
  * and print medians of all of it; they throw io::FileError. */
 

@@ -65,11 +65,46 @@ struct PaperMethod {
  * - `online-icp-noise`: point-to-plane with the noise that the residuals have;
  * - `hessian`: residual variance times the inverse of point-to-point ICP's Hessian;
  * - `gicp`: the inverse of the Hessian of PCL's GICP, about its result. */
-const std::vector<PaperMethod>&
+std::vector<PaperMethod>
 paperMethods();
 
 /** \brief The method of this name, which is there. */
-const PaperMethod&
+PaperMethod
 paperMethod(const std::string& name);
+
+/** \brief Starts are uniform within these of zero, on each axis [m, rad]: the paper's.
+ */
+constexpr double accuracy_translation_range = 1.0;
+constexpr double accuracy_rotation_range = 0.3;
+
+/** \brief A pose and what its method says of it. */
+struct AccuracyEstimate {
+  /** T_target_source [m, rad]; NaN if there is none. */
+  Vector6d pose;
+  /** Short name of the method's own. */
+  std::string status;
+};
+
+/** \brief A way to a pose whose accuracy is compared. */
+struct AccuracyMethod {
+  /** In the file. */
+  std::string name;
+  std::function<AccuracyEstimate(const PaperProblem&, const DrawPlan&)> run;
+};
+
+/** \brief What they are:
+ *
+ * - `paper`, `exact`, `calibrated`: means of 2000 draws. The paper's prior is about
+ *   zero and its chains begin at the start, with 500 steps of burn-in; the others take
+ *   the start as initial guess, and their prior is about it, with the variance that
+ *   starts have;
+ * - `sgd-icp`: with Adam and the defaults of the authors' program, but a target point
+ *   may be in several pairs, as in the paper's Bayesian ICP;
+ * - `sgd-icp-filter`: the same with the program's filter of repeated matches. From a
+ *   start far off nearly all points have the same few neighbours, of which it then
+ *   leaves too few to go on;
+ * - `icp`: standard ICP to completion. */
+std::vector<AccuracyMethod>
+accuracyMethods();
 
 } // namespace bayesian_icp::evaluate

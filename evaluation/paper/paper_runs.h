@@ -4,6 +4,7 @@
 #pragma once
 
 #include "coverage/coverage_score.h"
+#include "paper/paper_baseline.h"
 #include "samplers/score.h"
 #include "study/run_file.h"
 
@@ -52,25 +53,25 @@ struct DistributionRun {
   Vector6d mean = unknownVector();
   Vector6d standard_deviation = unknownVector();
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("key", self.name.key);
-    column("pair", self.name.pair);
-    column("method", self.name.method);
-    column("seed", self.name.seed);
-    column("status", self.score.status);
-    Score::columns(self.score, column);
-    column("main_kl", self.main_kl);
-    coordinateColumns("main_kl_", self.main_coordinate_kl, column);
-    column("energy_score", self.energy_score);
-    column("truth_energy_score", self.truth_energy_score);
-    column("nees", self.nees);
-    column("translation_error_m", self.translation_error);
-    column("rotation_error_rad", self.rotation_error);
-    unitColumns("mean_", self.mean, column);
-    unitColumns("sd_", self.standard_deviation, column);
+    column("key", name.key);
+    column("pair", name.pair);
+    column("method", name.method);
+    column("seed", name.seed);
+    column("status", score.status);
+    score.columns(column);
+    column("main_kl", main_kl);
+    coordinateColumns("main_kl_", main_coordinate_kl, column);
+    column("energy_score", energy_score);
+    column("truth_energy_score", truth_energy_score);
+    column("nees", nees);
+    column("translation_error_m", translation_error);
+    column("rotation_error_rad", rotation_error);
+    unitColumns("mean_", mean, column);
+    unitColumns("sd_", standard_deviation, column);
   }
 };
 
@@ -85,17 +86,17 @@ struct CurvePoint {
   PaperRunName name;
   CurveDivergences divergences = CurveDivergences::Zero();
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("key", self.name.key);
-    column("pair", self.name.pair);
-    column("variant", self.name.method);
-    column("seed", self.name.seed);
-    column("value", self.name.number);
-    coordinateColumns("kl_", self.divergences, column);
-    column("kl", self.divergences[6]);
+    column("key", name.key);
+    column("pair", name.pair);
+    column("variant", name.method);
+    column("seed", name.seed);
+    column("value", name.number);
+    coordinateColumns("kl_", divergences, column);
+    column("kl", divergences[6]);
   }
 };
 
@@ -109,18 +110,18 @@ struct RuntimeRun {
   double cpu_seconds = 0.0;
   std::string status;
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("key", self.name.key);
-    column("pair", self.name.pair);
-    column("method", self.name.method);
-    column("threads", self.name.number);
-    column("seed", self.name.seed);
-    column("wall_s_per_1000_draws", self.wall_seconds);
-    column("cpu_s_per_1000_draws", self.cpu_seconds);
-    column("status", self.status);
+    column("key", name.key);
+    column("pair", name.pair);
+    column("method", name.method);
+    column("threads", name.number);
+    column("seed", name.seed);
+    column("wall_s_per_1000_draws", wall_seconds);
+    column("cpu_s_per_1000_draws", cpu_seconds);
+    column("status", status);
   }
 };
 
@@ -136,19 +137,43 @@ struct AccuracyRun {
   double rotation_error = 0.0;
   std::string status;
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("key", self.name.key);
-    column("pair", self.name.pair);
-    column("method", self.name.method);
-    column("seed", self.name.seed);
-    column("start", self.name.number);
-    column("translation_error_m", self.translation_error);
-    column("rotation_error_rad", self.rotation_error);
-    column("status", self.status);
+    column("key", name.key);
+    column("pair", name.pair);
+    column("method", name.method);
+    column("seed", name.seed);
+    column("start", name.number);
+    column("translation_error_m", translation_error);
+    column("rotation_error_rad", rotation_error);
+    column("status", status);
   }
 };
+
+/** \brief Distance of a run's draws to the baseline and to the truth.
+ * \param[in] name goes into the result */
+DistributionRun
+distributionRunOf(const PaperRunName& name,
+                  const ScanPair& pair,
+                  const SamplerRun& run,
+                  const PaperBaseline& baseline);
+
+/** \brief Draws of every chain: from row \p first on, \p count of them, both as totals
+ * over all chains. */
+struct DrawPart {
+  int first = 0;
+  int count = 0;
+};
+
+/** \brief Rows of the chains that did not diverge; what they do not have is left out.
+ */
+PoseMatrix
+partOf(const ChainSet& chains, const DrawPart& part);
+
+/** \brief KL(baseline || draws); infinite with fewer than 10 draws. */
+CurveDivergences
+curveDivergences(const PoseMatrix& draws, const PaperBaseline& baseline);
 
 } // namespace bayesian_icp::evaluate

@@ -4,8 +4,8 @@
 #include "io/coordinates.h"
 #include "io/output_folder.h"
 #include "samplers/score.h"
-#include "study/csv_row.h"
 #include "study/draw_statistics.h"
+#include "study/run_file.h"
 
 #include <bayesian_icp/summary.h>
 
@@ -56,10 +56,7 @@ writeRows(const std::string& name, const Rows& rows, std::ostream& stream)
 Eigen::MatrixX3d
 someOf(const Eigen::Matrix3Xd& cloud)
 {
-  Eigen::MatrixX3d points(std::min(cloud.cols(), num_drawn_points), 3);
-  for (Eigen::Index i = 0; i < points.rows(); ++i)
-    points.row(i) = cloud.col(i * cloud.cols() / points.rows()).transpose();
-  return points;
+  return cloud(Eigen::all, spreadIndices(cloud.cols(), num_drawn_points)).transpose();
 }
 
 void

@@ -1,9 +1,8 @@
-#include "paper/study_record.h"
-
 #include "io/errors.h"
 #include "io/json_file.h"
 #include "io/numbers.h"
 #include "io/output_folder.h"
+#include "paper/paper_experiment.h"
 
 #include <pcl/pcl_config.h>
 

@@ -26,6 +26,24 @@ CONTESTS = (
 COMPARED = ("bayesian-icp", "exact", "online-icp", "online-icp-noise")
 CHAINS = ("bayesian-icp", "bayesian-icp-1e-5", "exact", "calibrated")
 
+SD_COLUMNS = [f"sd_{c}_{u}" for c, u in zip(COORDINATES, UNITS)]
+# By their titles.
+DIVERGENCE_COLUMNS = {
+    **{coordinate: f"kl_{coordinate}" for coordinate in COORDINATES},
+    "6-D": "kl",
+    "yaw, main basin": "main_kl_yaw",
+    "6-D, main basin": "main_kl",
+}
+SCORE_COLUMNS = {
+    **{f"W1 {coordinate}": f"w1_{coordinate}" for coordinate in COORDINATES},
+    "energy score, baseline": "energy_score",
+    "energy score, truth": "truth_energy_score",
+    "NEES / 6": "nees_6",
+    "truth in 95 % region [share]": "is_covered",
+    "translation error [m]": "translation_error_m",
+    "rotation error [rad]": "rotation_error_rad",
+}
+
 TEXT = (
     "How far is the distribution that a method reports from the baseline, where standard ICP "
     "ends from random starts? KL is that of Gaussian moments, KL(baseline ‖ method), angles "
@@ -97,7 +115,7 @@ def baseline_table(rows):
     header += [f"sd {c} [{u}]" for c, u in zip(COORDINATES, UNITS)]
     lines = []
     for row in rows.itertuples():
-        sds = [getattr(row, f"sd_{c}_{u}") for c, u in zip(COORDINATES, UNITS)]
+        sds = [getattr(row, column) for column in SD_COLUMNS]
         points = f"{row.source_points} / {row.target_points}"
         share = f"{100 * row.main_basin_share:.1f}"
         lines.append([row.pair, points, str(row.runs), share, *(f"{sd:.3g}" for sd in sds)])
@@ -152,7 +170,7 @@ def mixing_table(pairs):
         for method in CHAINS:
             runs = rows[rows.method == method]
             statuses = runs.status.value_counts().sort_index()
-            sd = runs[[f"sd_{c}_{u}" for c, u in zip(COORDINATES, UNITS)]].to_numpy()
+            sd = runs[SD_COLUMNS].to_numpy()
             translation, rotation = np.sqrt(np.mean(sd.reshape(-1, 2, 3) ** 2, axis=2)).T
             lines.append([
                 f"{pair}, {TITLES[method]}",
@@ -173,25 +191,6 @@ def method_table(caption, rows, columns):
         for method, title in TITLES.items()
     ]
     return Table(caption, ["method", *columns], lines)
-
-
-def divergence_columns():
-    columns = {coordinate: f"kl_{coordinate}" for coordinate in COORDINATES}
-    columns["6-D"] = "kl"
-    columns["yaw, main basin"] = "main_kl_yaw"
-    columns["6-D, main basin"] = "main_kl"
-    return columns
-
-
-def score_columns():
-    columns = {f"W1 {coordinate}": f"w1_{coordinate}" for coordinate in COORDINATES}
-    columns["energy score, baseline"] = "energy_score"
-    columns["energy score, truth"] = "truth_energy_score"
-    columns["NEES / 6"] = "nees_6"
-    columns["truth in 95 % region [share]"] = "is_covered"
-    columns["translation error [m]"] = "translation_error_m"
-    columns["rotation error [rad]"] = "rotation_error_rad"
-    return columns
 
 
 def plot_divergences(output, pairs):
@@ -276,9 +275,9 @@ def section_of(output, rows, tables):
         blocks.append(baseline_table(baseline[baseline.pair.isin(names)]))
     blocks += comparison_tables(rows)
     blocks += [plot_divergences(output, pairs), Text(MIXING_TEXT), mixing_table(pairs)]
-    blocks += [method_table(DIVERGENCE_CAPTION.format(p), r, divergence_columns()) for p, r in pairs]
+    blocks += [method_table(DIVERGENCE_CAPTION.format(p), r, DIVERGENCE_COLUMNS) for p, r in pairs]
     blocks.append(Text(TRUTH_TEXT))
-    blocks += [method_table(SCORE_CAPTION.format(p), r, score_columns()) for p, r in pairs]
+    blocks += [method_table(SCORE_CAPTION.format(p), r, SCORE_COLUMNS) for p, r in pairs]
     for pair in names:
         if f"draws_{pair}" in tables:
             blocks.append(plot_densities(output, pair, tables[f"draws_{pair}"]))

@@ -7,21 +7,9 @@
 
 #include <cstdint>
 #include <functional>
-#include <iosfwd>
 #include <string>
 
 namespace bayesian_icp::evaluate {
-
-/** \brief Write a gold standard, in the byte order of this machine. */
-void
-writeGold(const GoldStandard& gold, std::ostream& stream);
-
-/** \brief Takes no more memory than three times the size of \p stream, whatever it
- * holds.
- * \throws std::runtime_error if it does not hold a whole gold standard of this version
- */
-GoldStandard
-readGold(std::istream& stream);
 
 /** \brief What a gold standard depends on, in one number: points, likelihood, prior,
  * options of its runs. The number of threads and of seconds are left out. */

@@ -1,8 +1,8 @@
 #include "samplers/sampler_problem.h"
 
 #include "io/cloud_file.h"
+#include "study/draw_statistics.h"
 
-#include <algorithm>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -12,18 +12,6 @@ namespace bayesian_icp::evaluate {
 namespace {
 
 constexpr double half_turn = 3.14159265358979323846;
-
-/** \p size columns, evenly spread. */
-Eigen::Matrix3Xd
-thinned(const Eigen::Matrix3Xf& points, std::size_t size)
-{
-  const Eigen::Index num_kept =
-      std::min(points.cols(), static_cast<Eigen::Index>(size));
-  Eigen::Matrix3Xd kept(3, num_kept);
-  for (Eigen::Index i = 0; i < num_kept; ++i)
-    kept.col(i) = points.col(i * points.cols() / num_kept).cast<double>();
-  return kept;
-}
 
 ResidualOptions
 withResidual(Residual residual)
@@ -39,8 +27,11 @@ Scene
 readScene(const std::string& folder, const std::string& name, std::size_t max_points)
 {
   const std::string path = folder + "/" + name + "/";
+  const Eigen::Matrix3Xf source = io::readFinitePoints(path + "source.pcd");
+  const auto thinned =
+      spreadIndices(source.cols(), static_cast<Eigen::Index>(max_points));
   return {name,
-          thinned(io::readFinitePoints(path + "source.pcd"), max_points),
+          source(Eigen::all, thinned).cast<double>(),
           KdTree(io::readFinitePoints(path + "target.pcd"))};
 }
 

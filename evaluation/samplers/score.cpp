@@ -30,16 +30,6 @@ addDiagnostics(const Summary& summary, Score& score)
   }
 }
 
-Eigen::VectorXd
-spreadColumn(const PoseMatrix& draws, int k)
-{
-  const Eigen::Index size = std::min(draws.rows(), num_compared_draws);
-  Eigen::VectorXd values(size);
-  for (Eigen::Index i = 0; i < size; ++i)
-    values[i] = draws(i * draws.rows() / size, k);
-  return values;
-}
-
 } // namespace
 
 Score
@@ -65,8 +55,9 @@ scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
   const PoseMatrix draws = unwrapAbout(centre, pooled_draws);
   const Moments p = momentsOf(reference), q = momentsOf(draws);
   score.kl = gaussianKl(p, q);
+  const auto compared = spreadIndices(reference.rows(), num_compared_draws);
   for (int k = 0; k < 6; ++k) {
-    const Eigen::VectorXd a = spreadColumn(reference, k), b = draws.col(k);
+    const Eigen::VectorXd a = reference(compared, k), b = draws.col(k);
     score.coordinate_kl[k] = gaussianKl(p, q, k);
     score.wasserstein[k] = wasserstein1(a, b) / std::sqrt(p.covariance(k, k));
     score.kolmogorov_smirnov[k] = kolmogorovSmirnov(a, b);

@@ -54,19 +54,19 @@ struct Score {
   }
 
   /** \brief All but the status. */
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("kl", self.kl);
-    coordinateColumns("kl_", self.coordinate_kl, column);
-    coordinateColumns("w1_", self.wasserstein, column);
-    coordinateColumns("ks_", self.kolmogorov_smirnov, column);
-    column("rhat", self.rhat);
-    column("bulk_ess", self.bulk_ess);
-    column("tail_ess", self.tail_ess);
-    column("seconds", self.seconds);
-    column("draws", self.num_draws);
+    column("kl", kl);
+    coordinateColumns("kl_", coordinate_kl, column);
+    coordinateColumns("w1_", wasserstein, column);
+    coordinateColumns("ks_", kolmogorov_smirnov, column);
+    column("rhat", rhat);
+    column("bulk_ess", bulk_ess);
+    column("tail_ess", tail_ess);
+    column("seconds", seconds);
+    column("draws", num_draws);
   }
 };
 
@@ -77,19 +77,19 @@ struct ScoredRun {
   RunName name;
   Score score;
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("gold_key", self.name.gold_key);
-    column("scene", self.name.scene);
-    column("sigma", self.name.sigma);
-    column("effective_points", self.name.effective_points);
-    column("sampler", self.name.sampler);
-    column("seed", self.name.seed);
-    column("status", self.score.status);
-    Score::columns(self.score, column);
-    auto ess_per_second = self.score.essPerSecond();
+    column("gold_key", name.gold_key);
+    column("scene", name.scene);
+    column("sigma", name.sigma);
+    column("effective_points", name.effective_points);
+    column("sampler", name.sampler);
+    column("seed", name.seed);
+    column("status", score.status);
+    score.columns(column);
+    auto ess_per_second = score.essPerSecond();
     column("min_ess_per_second", ess_per_second);
   }
 };

@@ -66,10 +66,10 @@ runScans(std::uint64_t seed)
 
 } // namespace
 
-const std::vector<RankSampler>&
+std::vector<RankSampler>
 rankSamplers()
 {
-  static const std::vector<RankSampler> samplers = {
+  return {
       {"exact-langevin",
        true,
        [](std::uint64_t seed) { return runExactPreset(seed, ExactSteps::Langevin); }},
@@ -78,7 +78,6 @@ rankSamplers()
        [](std::uint64_t seed) { return runExactPreset(seed, ExactSteps::Metropolis); }},
       {"calibrated", true, runLinearScores},
       {"calibrated-scans", false, runScans}};
-  return samplers;
 }
 
 } // namespace bayesian_icp::evaluate

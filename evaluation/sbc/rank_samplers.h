@@ -31,7 +31,7 @@ struct RankSampler {
  *   run.
  * - calibrated-scans: preset `calibrated` on simulated scans of the tuned scenes, same
  *   view; not a well-specified model. */
-const std::vector<RankSampler>&
+std::vector<RankSampler>
 rankSamplers();
 
 } // namespace bayesian_icp::evaluate

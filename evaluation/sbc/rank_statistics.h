@@ -58,15 +58,15 @@ struct RankRun {
   Ranks ranks = Ranks::Zero();
 
   /** \throws std::runtime_error of what is no rank */
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("sampler", self.name.sampler);
-    column("seed", self.name.seed);
-    column("valid", self.is_valid);
-    coordinateColumns("rank_", self.ranks, column);
-    if (self.ranks.minCoeff() < 0 || self.ranks.maxCoeff() > num_ranked_draws)
+    column("sampler", name.sampler);
+    column("seed", name.seed);
+    column("valid", is_valid);
+    coordinateColumns("rank_", ranks, column);
+    if (ranks.minCoeff() < 0 || ranks.maxCoeff() > num_ranked_draws)
       throw std::runtime_error("not a rank");
   }
 };

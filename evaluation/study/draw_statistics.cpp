@@ -1,6 +1,7 @@
 #include "study/draw_statistics.h"
 
 #include "algebra/decompositions.h"
+#include "sampler/t_mixture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,12 +53,7 @@ forEachStep(Eigen::VectorXd a,
 Moments
 momentsOf(const PoseMatrix& draws)
 {
-  Moments moments;
-  moments.mean = draws.colwise().mean().transpose();
-  const PoseMatrix centred = draws.rowwise() - moments.mean.transpose();
-  moments.covariance =
-      centred.transpose() * centred / static_cast<double>(draws.rows() - 1);
-  return moments;
+  return {draws.colwise().mean().transpose(), covarianceOf(draws)};
 }
 
 PoseMatrix
@@ -68,6 +64,16 @@ unwrapAbout(const Vector6d& centre, const PoseMatrix& draws)
     for (int k = 3; k < 6; ++k)
       unwrapped(row, k) = centre[k] + wrapAngle(draws(row, k) - centre[k]);
   return unwrapped;
+}
+
+std::vector<Eigen::Index>
+spreadIndices(Eigen::Index all, Eigen::Index size)
+{
+  std::vector<Eigen::Index> indices(static_cast<std::size_t>(std::min(all, size)));
+  for (std::size_t i = 0; i < indices.size(); ++i)
+    indices[i] =
+        static_cast<Eigen::Index>(i) * all / static_cast<Eigen::Index>(indices.size());
+  return indices;
 }
 
 std::optional<Matrix6d>
@@ -135,13 +141,13 @@ energyScore(const PoseMatrix& draws, const PoseMatrix& outcomes)
   double to_outcomes = 0.0;
   for (Eigen::Index i = 0; i < outcomes.rows(); ++i)
     to_outcomes += (draws.rowwise() - outcomes.row(i)).rowwise().norm().mean();
-  const Eigen::Index size = draws.rows();
-  const Eigen::Index num_paired = std::min(size, num_paired_draws);
+  const PoseMatrix paired =
+      draws(spreadIndices(draws.rows(), num_paired_draws), Eigen::all);
+  const Eigen::Index num_paired = paired.rows();
   double sum = 0.0;
   for (Eigen::Index i = 0; i < num_paired; ++i)
     for (Eigen::Index j = 0; j < i; ++j)
-      sum +=
-          (draws.row(i * size / num_paired) - draws.row(j * size / num_paired)).norm();
+      sum += (paired.row(i) - paired.row(j)).norm();
   const Eigen::Index num_pairs = num_paired * (num_paired - 1) / 2;
   return to_outcomes / static_cast<double>(outcomes.rows()) -
          0.5 * sum / static_cast<double>(num_pairs);

@@ -1,9 +1,9 @@
 /** \file
  * \brief Files of results, one row per run, in which runs are found by their name.
  *
- * A type of rows says its columns once: `Run::columns(run, column)` calls
- * `column(title, value)` for each, in their order; the values are std::string, bool (0
- * or 1) or numbers. `Run::name` is what tells runs apart, and has the first
+ * A type of rows says its columns once: `run.columns(column)` calls `column(title,
+ * value)` for each, in their order, to read and to write; the values are std::string,
+ * bool (0 or 1) or numbers. `Run::name` is what tells runs apart, and has the first
  * `Run::num_name_columns` of them.
  */
 #pragma once
@@ -11,7 +11,7 @@
 #include "io/coordinates.h"
 #include "io/errors.h"
 #include "io/line_file.h"
-#include "study/csv_row.h"
+#include "io/numbers.h"
 
 #include <Eigen/Core>
 
@@ -21,10 +21,53 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
+
+/** \brief A row of a CSV file, without quoting, in the making. */
+class CsvRow {
+public:
+  /** \brief Add a field. Commas and control characters of a text become spaces; a bool
+   * is 0 or 1. */
+  template <typename Value>
+  CsvRow&
+  add(const Value& value)
+  {
+    if (!is_empty_)
+      text_ += ',';
+    is_empty_ = false;
+    if constexpr (std::is_same_v<Value, bool>)
+      text_ += value ? '1' : '0';
+    else if constexpr (std::is_arithmetic_v<Value>)
+      text_ += io::textOf(value);
+    else
+      addText(value);
+    return *this;
+  }
+
+  const std::string&
+  text() const
+  {
+    return text_;
+  }
+
+private:
+  void
+  addText(const std::string& text)
+  {
+    for (const char character : text) {
+      const bool is_plain =
+          character != ',' && static_cast<unsigned char>(character) >= 0x20;
+      text_ += is_plain ? character : ' ';
+    }
+  }
+
+  std::string text_;
+  bool is_empty_ = true;
+};
 
 namespace detail {
 
@@ -58,18 +101,17 @@ std::string
 headerOf()
 {
   CsvRow row;
-  const Run run{};
-  Run::columns(run, [&row](const std::string& title, const auto&) { row.add(title); });
+  Run().columns([&row](const std::string& title, const auto&) { row.add(title); });
   return row.text();
 }
 
 /** \brief The values. */
 template <typename Run>
 std::string
-rowOf(const Run& run)
+rowOf(Run run)
 {
   CsvRow row;
-  Run::columns(run, [&row](const std::string&, const auto& value) { row.add(value); });
+  run.columns([&row](const std::string&, const auto& value) { row.add(value); });
   return row.text();
 }
 
@@ -81,7 +123,7 @@ runOf(const std::string& line)
   const std::vector<std::string_view> fields = io::splitAt(',', line);
   std::size_t next = 0;
   Run run;
-  Run::columns(run, [&](const std::string&, auto& value) {
+  run.columns([&](const std::string&, auto& value) {
     if (next == fields.size())
       throw std::runtime_error("too few fields");
     detail::readField(fields[next++], value);
@@ -183,7 +225,7 @@ private:
     run.name = name;
     CsvRow key;
     int num_left = Run::num_name_columns;
-    Run::columns(std::as_const(run), [&](const std::string&, const auto& value) {
+    run.columns([&](const std::string&, const auto& value) {
       if (num_left-- > 0)
         key.add(value);
     });

@@ -97,13 +97,6 @@ graphEdgeOf(const EdgeRun& run)
   return edge;
 }
 
-const std::vector<std::string>&
-edgeMethods()
-{
-  static const std::vector<std::string> methods = {"calibrated", "gicp", "closed-form"};
-  return methods;
-}
-
 std::vector<std::pair<int, int>>
 pairsOf(const Recording& recording, int span, double closure_distance)
 {

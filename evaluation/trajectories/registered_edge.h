@@ -36,22 +36,22 @@ struct EdgeRun {
   Matrix6d covariance = Matrix6d::Zero();
   double seconds = 0.0;
 
-  template <typename Run, typename Column>
-  static void
-  columns(Run& run, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("recording", run.name.recording);
-    column("seed", run.name.seed);
-    column("target", run.name.target);
-    column("source", run.name.source);
-    column("method", run.name.method);
-    column("inputs", run.name.inputs);
-    column("complaint", run.complaint);
-    coordinateColumns("mean_", run.mean, column);
+    column("recording", name.recording);
+    column("seed", name.seed);
+    column("target", name.target);
+    column("source", name.source);
+    column("method", name.method);
+    column("inputs", name.inputs);
+    column("complaint", complaint);
+    coordinateColumns("mean_", mean, column);
     for (int row = 0, k = 0; row < 6; ++row)
       for (int place = row; place < 6; ++place, ++k)
-        column("covariance_" + io::textOf(k), run.covariance(row, place));
-    column("seconds", run.seconds);
+        column("covariance_" + io::textOf(k), covariance(row, place));
+    column("seconds", seconds);
   }
 };
 
@@ -66,8 +66,8 @@ graphEdgeOf(const EdgeRun& run);
  * again; `gicp`: PCL's GICP and the inverse of its Hessian; `closed-form`:
  * point-to-plane ICP with the prior, and Censi's covariance. The last two register at
  * most 5000 points. */
-const std::vector<std::string>&
-edgeMethods();
+inline const std::vector<std::string> edge_methods = {
+    "calibrated", "gicp", "closed-form"};
 
 /** \brief Which pairs of a recording are registered: each scan to those up to \p span
  * before it, and each fifth one to the nearest one that is at least ten scans before it

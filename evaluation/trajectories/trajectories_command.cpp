@@ -112,7 +112,7 @@ scanPairsOf(const RegisteredRecording& registered, const TrajectoriesOptions& op
     inputs.addMatrix(guessOf(recording, registered.seed, target, source).matrix());
     inputs.add(BAYESIAN_ICP_VERSION, sizeof BAYESIAN_ICP_VERSION);
     PairOfScans pair{target, source, {}};
-    for (const std::string& method : edgeMethods())
+    for (const std::string& method : edge_methods)
       pair.names.push_back({recording.name,
                             registered.seed,
                             target,

@@ -1,13 +1,40 @@
 /** \file
- * \brief Trajectories that the same solver makes of the edges of several methods.
+ * \brief Trajectories that the same solver makes of the edges of several methods: how
+ * far they are from the true ones, and whether their covariances say so.
  */
 #pragma once
 
 #include "graph/optimization.h"
 #include "trajectories/registered_edge.h"
-#include "trajectories/trajectory_score.h"
 
 namespace bayesian_icp::evaluate {
+
+/** \brief Errors of a trajectory whose first pose is known. ATE and RPE are those of
+ * evo (evo_ape -a, evo_rpe --delta 1) and of Sturm et al. (IROS 2012). */
+struct TrajectoryScore {
+  /** Root mean square error of the positions after the rigid alignment of both
+   * trajectories that makes it smallest [m]. */
+  double ate = 0.0;
+  /** Root mean squares over neighbours of the error of their relative pose: length of
+   * its translation [m], and its angle [rad]. */
+  double rpe_translation = 0.0;
+  double rpe_rotation = 0.0;
+  /** Error of the last pose in the frame of the first one: distance [m], angle [rad].
+   */
+  double drift_translation = 0.0;
+  double drift_rotation = 0.0;
+  /** Normalised squared error per degree of freedom, mean over all poses but the first
+   * and of the last one; 1 if covariances are right. */
+  double nees = 0.0;
+  double nees_of_last = 0.0;
+};
+
+/** \brief Score a trajectory.
+ * \param[in] estimate of at least two poses in the frame of the first one
+ * \param[in] truth as many, in any frame */
+TrajectoryScore
+scoreOf(const std::vector<app::GaussianPose>& estimate,
+        const std::vector<Eigen::Isometry3d>& truth);
 
 /** \brief A recording and what its pairs have given, with every method. */
 struct RegisteredRecording {
@@ -20,7 +47,7 @@ struct RegisteredRecording {
 struct TrajectoryRun {
   std::string recording, quality;
   std::uint64_t seed = 0;
-  /** Methods of edgeMethods() from which means and covariances of the edges are;
+  /** Methods of edge_methods from which means and covariances of the edges are;
    * covariances may be "constant". */
   std::string means, covariances;
   int num_scans = 0;
@@ -32,26 +59,26 @@ struct TrajectoryRun {
   int num_cycles = 0;
   double cycle_nees = 0.0;
 
-  template <typename Run, typename Column>
-  static void
-  columns(Run& run, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("recording", run.recording);
-    column("quality", run.quality);
-    column("seed", run.seed);
-    column("means", run.means);
-    column("covariances", run.covariances);
-    column("num_scans", run.num_scans);
-    column("num_edges", run.num_edges);
-    column("ate_m", run.score.ate);
-    column("rpe_m", run.score.rpe_translation);
-    column("rpe_rad", run.score.rpe_rotation);
-    column("drift_m", run.score.drift_translation);
-    column("drift_rad", run.score.drift_rotation);
-    column("nees", run.score.nees);
-    column("nees_of_last", run.score.nees_of_last);
-    column("num_cycles", run.num_cycles);
-    column("cycle_nees", run.cycle_nees);
+    column("recording", recording);
+    column("quality", quality);
+    column("seed", seed);
+    column("means", means);
+    column("covariances", covariances);
+    column("num_scans", num_scans);
+    column("num_edges", num_edges);
+    column("ate_m", score.ate);
+    column("rpe_m", score.rpe_translation);
+    column("rpe_rad", score.rpe_rotation);
+    column("drift_m", score.drift_translation);
+    column("drift_rad", score.drift_rotation);
+    column("nees", score.nees);
+    column("nees_of_last", score.nees_of_last);
+    column("num_cycles", num_cycles);
+    column("cycle_nees", cycle_nees);
   }
 };
 

@@ -3,6 +3,7 @@
 #include "geometry/twist.h"
 #include "methods/baseline_problem.h"
 #include "methods/pcl_baselines.h"
+#include "study/named.h"
 #include "support/test_support.h"
 
 #include <gtest/gtest.h>
@@ -60,11 +61,8 @@ waves(std::uint64_t seed, Index num_source = 1000)
 MethodResult
 run(const std::string& name, const CoverageCase& c)
 {
-  for (const CoverageMethod& method : baselineMethods())
-    if (method.name == name)
-      return method.run(c);
-  ADD_FAILURE() << name;
-  return {};
+  const std::vector<CoverageMethod> methods = baselineMethods();
+  return findNamed(methods, name)->run(c);
 }
 
 /** Squared error in units of the covariance. */
@@ -73,15 +71,6 @@ squaredError(const MethodResult& result, const CoverageCase& c)
 {
   const Vector6d error = twistBetween(result.mean, c.truth, result.centre);
   return error.dot(result.covariance.ldlt().solve(error));
-}
-
-std::vector<std::string>
-names()
-{
-  std::vector<std::string> all;
-  for (const CoverageMethod& method : baselineMethods())
-    all.push_back(method.name);
-  return all;
 }
 
 class Baseline : public ::testing::TestWithParam<std::string> {};
@@ -145,7 +134,7 @@ TEST_P(Baseline, RefusesEmptyClouds)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    All, Baseline, ::testing::ValuesIn(names()), [](const auto& i) {
+    All, Baseline, ::testing::ValuesIn(namesOf(baselineMethods())), [](const auto& i) {
       std::string name = i.param;
       name.erase(std::remove(name.begin(), name.end(), '-'), name.end());
       return name;

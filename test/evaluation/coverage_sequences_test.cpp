@@ -1,10 +1,9 @@
 // Recordings as cases of the coverage study.
-#include "coverage/coverage_sequences.h"
-#include "evaluation/csv_rows.h"
+#include "coverage/coverage_real.h"
+#include "evaluation/evaluate_tool.h"
 #include "evaluation/paper_pairs.h"
 #include "io/errors.h"
 #include "simulate/simulate_helpers.h"
-#include "support/command_helpers.h"
 
 #include <bayesian_icp/options.h>
 
@@ -57,7 +56,7 @@ poseOfScan(int scan)
 }
 
 /** A folder with a recording of four scans, `hall`. */
-class SequencesTest : public FolderTest {
+class SequencesTest : public EvaluateTool {
 protected:
   void
   SetUp() override
@@ -122,8 +121,7 @@ protected:
   CommandResult
   run(const std::string& arguments) const
   {
-    return runShell("cd '" + folder_.string() +
-                    "' && '" BAYESIAN_ICP_EVALUATE "' coverage --real . " + arguments);
+    return EvaluateTool::run("coverage --real . " + arguments);
   }
 
   fs::path set_;
@@ -220,8 +218,7 @@ TEST_F(SequencesTest, WhatIsWrongIsNamed)
   const std::string poses = contentOf(set_ / "poses.txt");
   const auto expect = [this](const std::string& piece,
                              const SequenceOptions& options = SequenceOptions()) {
-    EXPECT_NE(complaint(options).find(piece), std::string::npos)
-        << piece << " is not in: " << complaint(options);
+    expectIn(complaint(options), piece);
   };
   writeFile(set_ / "poses.txt", poses.substr(0, poses.rfind(' ')) + '\n');
   expect("poses.txt: line 4: has 11 numbers");
@@ -265,10 +262,8 @@ TEST_F(SequencesTest, TheCommandCountsLostPairs)
 {
   const CommandResult result = run("--methods calibrated,gicp,icp --output a.csv");
   ASSERT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_NE(result.output.find("lost"), std::string::npos) << result.output;
-  EXPECT_NE(result.output.find("\nhall, B step 1 guess-sd 0.1 0.03 seed 1\n"),
-            std::string::npos)
-      << result.output;
+  for (const char* piece : {"lost", "\nhall, B step 1 guess-sd 0.1 0.03 seed 1\n"})
+    expectIn(result.output, piece);
   const Rows rows = rowsOf(folder_ / "a.csv");
   ASSERT_EQ(rows.size(), 10u);
   const auto field = [&rows](std::size_t row, const std::string& column) {
@@ -285,7 +280,7 @@ TEST_F(SequencesTest, TheCommandCountsLostPairs)
     }
   }
   const CommandResult again = run("--methods calibrated,gicp,icp --output a.csv");
-  EXPECT_EQ(again.output.find(" cases"), std::string::npos) << again.output;
+  EXPECT_EQ(count(" cases", again.output), 0) << again.output;
 }
 
 TEST_F(SequencesTest, BadOptionsOfTheCommandExitWithTwo)

@@ -2,15 +2,15 @@
 #include "coverage/coverage_study.h"
 #include "coverage/coverage_summary.h"
 #include "evaluation/coverage_test_support.h"
+#include "evaluation/csv_rows.h"
 #include "io/errors.h"
-#include "support/command_helpers.h"
+#include "study/named.h"
 
 #include <bayesian_icp/pipeline.h>
 
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <fstream>
 #include <new>
 #include <sstream>
 
@@ -18,16 +18,6 @@ using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;
 
 namespace {
-
-std::vector<std::string>
-linesOf(const std::string& file)
-{
-  std::ifstream stream(file);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);)
-    lines.push_back(line);
-  return lines;
-}
 
 class CoverageStudyTest : public FolderTest {
 protected:
@@ -76,14 +66,14 @@ TEST_F(CoverageStudyTest, GoesOnWhereItStopped)
     runCoverageStudy(study(5, 1), results);
     EXPECT_EQ(num_runs_, 10);
   }
-  const auto complete = linesOf(file_);
-  ASSERT_EQ(complete.size(), 11u);
+  const std::string complete = contentOf(file_);
+  ASSERT_EQ(count("\n", complete), 11);
   CoverageFile results(file_);
   runCoverageStudy(study(6, 1), results);
   EXPECT_EQ(num_runs_, 12);
-  const auto lines = linesOf(file_);
-  EXPECT_EQ(lines.size(), 13u);
-  EXPECT_TRUE(std::equal(complete.begin(), complete.end(), lines.begin()));
+  const std::string content = contentOf(file_);
+  EXPECT_EQ(count("\n", content), 13);
+  EXPECT_EQ(content.substr(0, complete.size()), complete);
 }
 
 TEST_F(CoverageStudyTest, AnExceptionOfAMethodIsAResult)
@@ -119,7 +109,7 @@ TEST_F(CoverageStudyTest, LackOfMemoryIsNoResult)
     throw std::bad_alloc();
   };
   EXPECT_THROW(runCoverageStudy(failing, results), std::bad_alloc);
-  EXPECT_EQ(linesOf(file_).size(), 1u) << "only the header";
+  EXPECT_EQ(count("\n", contentOf(file_)), 1) << "only the header";
 }
 
 TEST_F(CoverageStudyTest, AnExceptionOfTheReportEndsTheStudy)
@@ -148,16 +138,14 @@ TEST_F(CoverageStudyTest, TableHasEveryCellAndThePools)
                             "\nbox, all conditions\n",
                             "\nall scenes, moved\n",
                             "\nall\n"})
-    EXPECT_NE(table.str().find(title), std::string::npos) << title;
+    expectIn(table.str(), title);
 }
 
-CoverageMethod
-methodOf(const std::string& name)
+MethodResult
+run(const std::string& name, const CoverageCase& problem)
 {
-  for (const CoverageMethod& method : coverageMethods())
-    if (method.name == name)
-      return method;
-  throw std::invalid_argument(name);
+  const std::vector<CoverageMethod> methods = coverageMethods();
+  return timedResult(*findNamed(methods, name), problem);
 }
 
 /** What the library makes of a case's points with its prior and seed. */
@@ -182,7 +170,7 @@ TEST(CoverageMethods, PaperIsAlgorithm1WithThePriorOfTheCase)
   options.preset = Preset::Paper;
   const PosteriorEstimate expected = estimateOf(problem, options);
   ASSERT_GT(expected.samples.rows(), 0);
-  EXPECT_EQ(timedResult(methodOf("paper"), problem).draws, expected.samples);
+  EXPECT_EQ(run("paper", problem).draws, expected.samples);
 }
 
 TEST(CoverageMethods, ExactIsThePresetThatItsNameStates)
@@ -216,8 +204,7 @@ TEST(CoverageMethods, PriorIsAsLikelyAsItSays)
   problem.truth.linear() = rotationOf(deviation);
   problem.truth.translation() =
       centroid + deviation.head<3>() - problem.truth.linear() * centroid;
-  const CoverageScore score =
-      coverageScoreOf(problem, timedResult(methodOf("prior"), problem));
+  const CoverageScore score = coverageScoreOf(problem, run("prior", problem));
   ASSERT_TRUE(score.is_valid);
   for (int k = 0; k < 6; ++k)
     EXPECT_NEAR(score.z[k], deviation[k] / problem.prior_sd[k], 1e-4) << k;

@@ -28,6 +28,13 @@ rowsOf(const std::filesystem::path& csv)
   return rows;
 }
 
+/** \brief Expect a piece of text. */
+inline void
+expectIn(const std::string& text, const std::string& piece)
+{
+  EXPECT_NE(text.find(piece), std::string::npos) << piece << " is not in: " << text;
+}
+
 /** \brief How often a piece is in a text. */
 inline int
 count(const std::string& piece, const std::string& text)

@@ -1,7 +1,8 @@
 // The evaluation app's own pieces: distances against closed forms, scores of good and
 // bad draws.
+#include "evaluation/csv_rows.h"
 #include "evaluation/evaluate_test_support.h"
-#include "samplers/gold_cache.h"
+#include "samplers/gold_file.h"
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
 
@@ -168,6 +169,6 @@ TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)
   printTable(runs, table);
   for (const char* line :
        {"can, sigma 0.0015 m, N 1000\n", "\n  paper 1e-05     3  0.2000  0.3000  "})
-    EXPECT_NE(table.str().find(line), std::string::npos) << table.str();
-  EXPECT_EQ(table.str().find("paper 0.001"), std::string::npos);
+    expectIn(table.str(), line);
+  EXPECT_EQ(count("paper 0.001", table.str()), 0);
 }

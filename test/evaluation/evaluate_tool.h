@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "support/command_helpers.h"
+#include "evaluation/csv_rows.h"
 
 #include <string>
 
@@ -17,11 +17,5 @@ protected:
   {
     return runShell("cd '" + folder_.string() + "' && " + environment +
                     " '" BAYESIAN_ICP_EVALUATE "' " + arguments);
-  }
-
-  void
-  expectIn(const std::string& text, const std::string& piece) const
-  {
-    EXPECT_NE(text.find(piece), std::string::npos) << piece << " is not in: " << text;
   }
 };

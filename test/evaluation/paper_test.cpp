@@ -1,12 +1,12 @@
 // The parts of the paper's experiments: pairs, Table I, divergences, curves, reports.
-#include "evaluation/evaluate_test_support.h"
+#include "evaluation/csv_rows.h"
 #include "evaluation/paper_pairs.h"
 #include "geometry/twist.h"
 #include "io/errors.h"
-#include "paper/accuracy_methods.h"
-#include "paper/baseline_distance.h"
+#include "paper/paper_methods.h"
+#include "paper/paper_runs.h"
+#include "study/draw_statistics.h"
 #include "study/text_table.h"
-#include "support/command_helpers.h"
 
 #include <gtest/gtest.h>
 
@@ -169,7 +169,7 @@ TEST_F(ScanPairs, BrokenPairsAreNamedAndLeftOut)
   EXPECT_EQ(pairs.front().name, "good");
   EXPECT_EQ(num_skipped, 2);
   for (const char* name : {"pair broken is skipped", "pair missing is skipped"})
-    EXPECT_NE(log.str().find(name), std::string::npos) << log.str();
+    expectIn(log.str(), name);
   options.pairs = {"missing"};
   EXPECT_THROW(readPairs(options, log, num_skipped), io::FileError);
 }

@@ -6,6 +6,7 @@
 #include "calibrated/draws/product_coordinates.h"
 #include "sbc/rank_models.h"
 #include "sbc/rank_samplers.h"
+#include "study/named.h"
 
 #include <bayesian_icp/summary.h>
 
@@ -32,17 +33,15 @@ largestChiSquare(const std::vector<Ranks>& runs)
 void
 expectUniformRanks(const std::string& name, int num_runs)
 {
-  for (const RankSampler& sampler : rankSamplers())
-    if (sampler.name == name) {
-      std::vector<Ranks> runs;
-      for (int seed = 1; seed <= num_runs; ++seed)
-        if (const auto ranks = sampler.run(static_cast<std::uint64_t>(seed)))
-          runs.push_back(*ranks);
-      EXPECT_EQ(runs.size(), static_cast<std::size_t>(num_runs));
-      EXPECT_LT(largestChiSquare(runs), max_rank_chi_square);
-      return;
-    }
-  FAIL() << "no sampler " << name;
+  const std::vector<RankSampler> samplers = rankSamplers();
+  const RankSampler* const sampler = findNamed(samplers, name);
+  ASSERT_NE(sampler, nullptr);
+  std::vector<Ranks> runs;
+  for (int seed = 1; seed <= num_runs; ++seed)
+    if (const auto ranks = sampler->run(static_cast<std::uint64_t>(seed)))
+      runs.push_back(*ranks);
+  EXPECT_EQ(runs.size(), static_cast<std::size_t>(num_runs));
+  EXPECT_LT(largestChiSquare(runs), max_rank_chi_square);
 }
 
 /** 2000 draws at zero but for the x of some. */

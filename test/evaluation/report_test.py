@@ -219,9 +219,9 @@ class Samplers(unittest.TestCase):
 
 def distribution_rows(pair="can", methods=("bayesian-icp", "online-icp"), num_runs=2):
     numbers = dict.fromkeys(
-        [*distribution.divergence_columns().values(), *distribution.score_columns().values()], 1.0
+        [*distribution.DIVERGENCE_COLUMNS.values(), *distribution.SCORE_COLUMNS.values()], 1.0
     )
-    numbers.update({f"sd_{c}_{u}": 0.1 for c, u in zip(frames.COORDINATES, frames.UNITS)})
+    numbers.update(dict.fromkeys(distribution.SD_COLUMNS, 0.1))
     numbers.update(rhat=1.0, bulk_ess=400.0, seconds=0.5, nees=6.0, status="ok")
     rows = [
         {"key": "k", "pair": pair, "method": method, "seed": seed + 1, **numbers}
@@ -271,7 +271,7 @@ class Distribution(unittest.TestCase):
         self.assertEqual(distribution.comparison_tables(distribution_rows("corridor")), [])
 
     def test_baseline_and_mixing(self):
-        columns = {f"sd_{c}_{u}": [0.0146] for c, u in zip(frames.COORDINATES, frames.UNITS)}
+        columns = dict.fromkeys(distribution.SD_COLUMNS, [0.0146])
         row = pd.DataFrame({"pair": ["can"], "source_points": 500, "target_points": 6083,
                             "runs": 60, "main_basin_share": 0.7, **columns})  # fmt: skip
         table = distribution.baseline_table(row)

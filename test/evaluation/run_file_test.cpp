@@ -1,8 +1,8 @@
 // Files of runs: rows come back as they went, and only whole ones; other files are
 // refused.
+#include "evaluation/csv_rows.h"
 #include "io/errors.h"
 #include "study/run_file.h"
-#include "support/command_helpers.h"
 
 #include <gtest/gtest.h>
 
@@ -32,15 +32,15 @@ struct SomeRun {
   double number = 0.0;
   std::string notes;
 
-  template <typename Self, typename Column>
-  static void
-  columns(Self& self, const Column& column)
+  template <typename Column>
+  void
+  columns(const Column& column)
   {
-    column("word", self.name.word);
-    column("seed", self.name.seed);
-    column("valid", self.is_valid);
-    column("number", self.number);
-    column("notes", self.notes);
+    column("word", name.word);
+    column("seed", name.seed);
+    column("valid", is_valid);
+    column("number", number);
+    column("notes", notes);
   }
 };
 
@@ -115,9 +115,8 @@ TEST_F(RunFiles, OtherFilesAreRefused)
       FAIL() << content;
     }
     catch (const io::FileError& error) {
-      const std::string message = error.what();
-      EXPECT_NE(message.find(other), std::string::npos) << message;
-      EXPECT_NE(message.find(complaint), std::string::npos) << message;
+      expectIn(error.what(), other);
+      expectIn(error.what(), complaint);
     }
   }
   EXPECT_THROW(RunFile<SomeRun>{file()}, io::FileError) << "in use";

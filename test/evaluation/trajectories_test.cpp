@@ -1,6 +1,8 @@
 // Errors of trajectories, and trajectories of edges whose errors are drawn from their
 // covariances.
-#include "support/command_helpers.h"
+#include "evaluation/evaluate_tool.h"
+#include "evaluation/paper_pairs.h"
+#include "trajectories/drives.h"
 #include "trajectories/trajectory_run.h"
 
 #include <bayesian_icp/random.h>
@@ -79,7 +81,7 @@ drawnRecording(const std::string& name, std::uint64_t seed)
         std::sqrt(shared.own()) * random.normal6());
     EdgeRun run;
     run.mean = poseOf(T * expSE3(-error));
-    for (const std::string& method : edgeMethods()) {
+    for (const std::string& method : edge_methods) {
       run.name = {name, seed, target, source, method, ""};
       run.complaint = method == "closed-form" ? "none" : "";
       const double scale = method == "gicp" ? 0.1 : 1.0;
@@ -90,13 +92,12 @@ drawnRecording(const std::string& name, std::uint64_t seed)
   return registered;
 }
 
-class TrajectoriesCommand : public FolderTest {
+class TrajectoriesCommand : public EvaluateTool {
 protected:
   CommandResult
   run(const std::string& arguments) const
   {
-    return runShell("cd '" + folder_.string() +
-                    "' && '" BAYESIAN_ICP_EVALUATE "' trajectories " + arguments);
+    return EvaluateTool::run("trajectories " + arguments);
   }
 };
 
@@ -261,18 +262,17 @@ TEST_F(TrajectoriesCommand, GoesOnWhereItStopped)
       "--recordings office_floor --scans 3 --span 1 --output r/a.csv";
   const CommandResult first = run(arguments);
   EXPECT_EQ(first.exit_code, 0) << first.output;
-  EXPECT_NE(first.output.find("2 of 2 pairs"), std::string::npos) << first.output;
+  expectIn(first.output, "2 of 2 pairs");
   const std::string rows = contentOf(folder_ / "r/a.csv");
-  EXPECT_NE(rows.find("office_floor,exact,1,calibrated,constant,3,"),
-            std::string::npos);
+  expectIn(rows, "office_floor,exact,1,calibrated,constant,3,");
   const CommandResult other = run("--recordings office_floor --scans 2 --span 1 "
                                   "--output r/a.csv");
-  EXPECT_NE(other.output.find("1 of 1 pairs"), std::string::npos) << other.output;
+  expectIn(other.output, "1 of 1 pairs");
   const CommandResult second = run(arguments + " --report");
   EXPECT_EQ(second.exit_code, 0) << second.output;
-  EXPECT_EQ(second.output.find("pairs"), std::string::npos) << second.output;
+  EXPECT_EQ(count("pairs", second.output), 0) << second.output;
   EXPECT_EQ(contentOf(folder_ / "r/a.csv"), rows);
-  EXPECT_NE(contentOf(folder_ / "r/report.md").find("Trajectories"), std::string::npos);
+  expectIn(contentOf(folder_ / "r/report.md"), "Trajectories");
 }
 
 TEST_F(TrajectoriesCommand, RegistersAgainIfAScanIsAnotherOne)
@@ -282,14 +282,10 @@ TEST_F(TrajectoriesCommand, RegistersAgainIfAScanIsAnotherOne)
     std::ofstream(folder_ / "scans/wall" / name) << text;
   };
   const auto writeScan = [&](const std::string& name, double height) {
-    std::string points;
+    Eigen::Matrix3Xd points(3, 100);
     for (int k = 0; k < 100; ++k)
-      points += std::to_string(k % 10) + ' ' + std::to_string(k / 10) + ' ' +
-                std::to_string(height * (k % 3)) + '\n';
-    write(name,
-          "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 100\nHEIGHT 1\nPOINTS 100\n"
-          "DATA ascii\n" +
-              points);
+      points.col(k) << k % 10, k / 10, height * (k % 3);
+    writeCloud(folder_ / "scans/wall" / name, points);
   };
   write("set.json",
         R"({"quality": "A", "accuracy_translation_m": 0.01,
@@ -298,8 +294,7 @@ TEST_F(TrajectoriesCommand, RegistersAgainIfAScanIsAnotherOne)
   writeScan("scan_0000.pcd", 0.1);
   writeScan("scan_0001.pcd", 0.1);
   const auto numRegistered = [this] {
-    const std::string output = run("scans --output a.csv").output;
-    return output.find("1 of 1 pairs") == std::string::npos ? 0 : 1;
+    return count("1 of 1 pairs", run("scans --output a.csv").output);
   };
   EXPECT_EQ(numRegistered(), 1);
   EXPECT_EQ(numRegistered(), 0);
@@ -319,5 +314,5 @@ TEST_F(TrajectoriesCommand, SaysWhatItCannotUse)
   }
   const CommandResult result = run("nowhere");
   EXPECT_EQ(result.exit_code, 3) << result.output;
-  EXPECT_NE(result.output.find("nowhere"), std::string::npos) << result.output;
+  expectIn(result.output, "nowhere");
 }

@@ -13,7 +13,7 @@ set(evaluation ${PROJECT_SOURCE_DIR}/evaluation)
 add_library(
   fuzz_readers STATIC EXCLUDE_FROM_ALL
   ${apps}/batch/manifest.cpp
-  ${evaluation}/study/scan_manifest.cpp
+  ${evaluation}/study/scan_pairs.cpp
   ${apps}/io/cloud_file.cpp
   ${apps}/io/folders.cpp
   ${apps}/io/input_file.cpp

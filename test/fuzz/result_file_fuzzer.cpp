@@ -6,7 +6,7 @@
 #include "coverage/coverage_study.h"
 #include "fuzz_input.h"
 #include "paper/paper_runs.h"
-#include "samplers/gold_cache.h"
+#include "samplers/gold_file.h"
 #include "sbc/rank_statistics.h"
 
 #include <sstream>

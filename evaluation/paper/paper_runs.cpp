@@ -1,4 +1,4 @@
-#include "paper/baseline_distance.h"
+#include "paper/paper_runs.h"
 
 #include "coverage/coverage_score.h"
 #include "geometry/twist.h"
@@ -22,17 +22,6 @@ priorSd()
   return PriorOptions().variance.cwiseSqrt();
 }
 
-/** Rows evenly spread. */
-PoseMatrix
-spreadRows(const PoseMatrix& all, Eigen::Index count)
-{
-  const Eigen::Index size = std::min(all.rows(), count);
-  PoseMatrix rows(size, 6);
-  for (Eigen::Index i = 0; i < size; ++i)
-    rows.row(i) = all.row(i * all.rows() / size);
-  return rows;
-}
-
 void
 addBaselineScores(const PoseMatrix& draws,
                   const PaperBaseline& baseline,
@@ -49,8 +38,9 @@ addBaselineScores(const PoseMatrix& draws,
       run.main_coordinate_kl[k] = gaussianKl(main, moments, k);
   }
   const Vector6d scale = priorSd().cwiseInverse();
-  const PoseMatrix outcomes =
-      unwrapAbout(baseline.mean, spreadRows(baseline.ends, max_outcomes));
+  const PoseMatrix outcomes = unwrapAbout(
+      baseline.mean,
+      baseline.ends(spreadIndices(baseline.ends.rows(), max_outcomes), Eigen::all));
   run.energy_score =
       energyScore(draws * scale.asDiagonal(), outcomes * scale.asDiagonal());
 }
