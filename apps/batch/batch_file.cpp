@@ -119,13 +119,14 @@ BatchFile::note(const std::string& line)
     document.at("status").get_to(status);
   }
   catch (const nlohmann::json::exception&) {
-    throw io::FileError(name_, "has a line that is no result: " + io::inQuotes(line));
+    throw io::FileError(name_,
+                        "has a line that is not a result: " + io::inQuotes(line));
   }
   const auto found = settings_ids_.find(pair);
   if (found != settings_ids_.end() && found->second != settings_id)
     throw io::FileError(name_,
                         "has a result of pair " + io::inQuotes(pair) +
-                            " with other settings, files or program version; take "
+                            " with other settings, files or program version; use "
                             "another file, or remove its line");
   return statuses_.emplace(pair, status).second;
 }

@@ -55,7 +55,7 @@ describeOptions(Request& request)
      "Write DIR/NAME/posterior.json and samples.csv for each pair. Without it, only "
      "the lines are written.")
     ("suggested-prior", io::flag(request.use_suggested_prior),
-     "Take the prior about the guess and the source's centroid, with the standard "
+     "Use a prior about the guess and the source's centroid, with the standard "
      "deviations 'suggested_prior_sigma' of each pair. Without it, all pairs have the "
      "prior of --prior-mean and --prior-variance.")
     ("quiet", io::flag(request.is_quiet), "Show no progress.");
@@ -83,7 +83,7 @@ helpText(const po::options_description& options)
        mpirun -n N pcl_bayesian_icp_batch MANIFEST --results FILE [options]
 
 Registers many pairs of clouds in parallel. Prints one line of JSON for each
-pair as soon as it is finished. MANIFEST is a JSON list of pairs,
+pair as soon as the pair is finished. MANIFEST is a JSON list of pairs,
   {"name": ..., "source": FILE, "target": FILE, "guess": FILE or six numbers,
    "settings": {...}}
 whose files are relative to the manifest. Guess and settings are optional. The
@@ -102,7 +102,7 @@ Exit codes:
   1    the status of some pairs is not "ok"
   2    wrong usage
   3    the manifest cannot be used, or a result cannot be written
-  130  interrupted (Ctrl-C or SIGTERM); the pairs under way were abandoned
+  130  interrupted (Ctrl-C or SIGTERM); unfinished pairs were abandoned
 
 Example:
   pcl_bayesian_icp_batch manifest.json --results results.jsonl \

@@ -25,7 +25,7 @@ std::string
 textOf(const JsonNode& value)
 {
   if (!value.json().is_string() || value.text().empty())
-    value.refuse("a text");
+    value.refuse("a string");
   return value.text();
 }
 

@@ -51,7 +51,7 @@ transformOf(const double* numbers)
   const Eigen::Map<const Eigen::Vector3d> position(numbers);
   const Eigen::Quaterniond rotation(numbers + 3);
   if (!(std::abs(rotation.norm() - 1.0) < tolerance) || !position.allFinite())
-    throw std::runtime_error("has a pose that is none");
+    throw std::runtime_error("has an invalid pose");
   Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
   T.topLeftCorner<3, 3>() = rotation.normalized().toRotationMatrix();
   T.topRightCorner<3, 1>() = position;
@@ -69,7 +69,7 @@ covarianceOf(const double* numbers)
   const Eigen::LLT<Matrix6d> factor(information);
   const Matrix6d of_half_angles = factor.solve(Matrix6d::Identity());
   if (factor.info() != Eigen::Success || !of_half_angles.allFinite())
-    throw std::runtime_error("has an information that is not positive definite");
+    throw std::runtime_error("has an information matrix that is not positive definite");
   const Vector6d scale(1.0, 1.0, 1.0, 2.0, 2.0, 2.0);
   return scale.asDiagonal() * of_half_angles * scale.asDiagonal();
 }
@@ -87,7 +87,7 @@ edgeOf(const std::vector<std::string_view>& words)
   for (std::size_t k = 0; k < numbers.size() && is_edge; ++k)
     is_edge = io::readNumber(words[num_names + k], numbers[k]);
   if (!is_edge)
-    throw std::runtime_error("is not an edge of two different vertices, 7 numbers of "
+    throw std::runtime_error("is not an edge with two different vertices, 7 numbers of "
                              "its pose and 21 of its information");
   edge.T_target_source = transformOf(numbers.data());
   edge.covariance = covarianceOf(numbers.data() + size_of_pose);

@@ -111,7 +111,7 @@ requireComplete(const CloudFile& cloud, CloudFormat format, const std::string& p
         xyz.isComplete())
       copyPoints(blob, xyz, written);
     if (!areSame(written.points, cloud.points))
-      throw FileError(path, "it has other points than the cloud");
+      throw FileError(path, "its points differ from those of the cloud");
   }
   catch (const FileError& error) {
     const std::string reason = std::string(error.what()).substr(path.size() + 2);
@@ -165,7 +165,8 @@ readCloud(const std::string& name)
   readBlob(name, format, *blob, cloud);
   if (std::uint64_t(blob->width) * blob->height != num_points ||
       blob->data.size() != num_points * blob->point_step)
-    throw FileError(name, "PCL found another number of points than its header has");
+    throw FileError(name,
+                    "PCL found a different number of points than its header states");
   const FieldTriple xyz(*blob, {"x", "y", "z"});
   if (!xyz.isComplete())
     throw FileError(name, "has no floating-point fields x, y and z");

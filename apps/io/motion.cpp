@@ -30,7 +30,7 @@ readMatrixFile(const std::string& file)
   if (items.size() != 16)
     throw FileError(file,
                     "has " + std::to_string(items.size()) +
-                        " numbers in place of the 16 of a 4x4 matrix");
+                        " numbers instead of the 16 of a 4x4 matrix");
   for (std::size_t i = 0; i < 16; ++i)
     if (!readNumber(items[i], matrix.data()[i]))
       throw FileError(file, io::inQuotes(items[i]) + " is not a number");

@@ -25,11 +25,11 @@ checkSchema(const std::string& name, const json& document)
 {
   if (!document.is_object() || !document.contains("schema") ||
       document["schema"] != posterior_schema_name)
-    throw FileError(name, "is no posterior.json: its 'schema' is another");
+    throw FileError(name, "is not a posterior.json: its 'schema' is different");
   if (!document.contains("schema_version") ||
       document["schema_version"] != posterior_schema_version)
     throw FileError(name,
-                    "is a posterior.json of another 'schema_version' than " +
+                    "is a posterior.json whose 'schema_version' is not " +
                         textOf(posterior_schema_version));
 }
 

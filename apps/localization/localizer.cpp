@@ -138,7 +138,7 @@ report(const Summary& summary,
   result.measurement = measurement.estimate;
   result.draws = draws;
   addDeviations(posterior, result);
-  result.values.emplace_back("directions that the prior alone knows",
+  result.values.emplace_back("directions that the prior alone holds",
                              std::to_string(measurement.num_unmeasured));
 }
 
@@ -197,7 +197,7 @@ Localizer::prepareMap()
     map.swap(new_map_);
   }
   if (map) {
-    map_complaint_ = "the map was not taken";
+    map_complaint_ = "the map was not accepted";
     try {
       requireFrame("map", map->header.frame_id, options_.map_frame);
       icp_.setInputTarget(pointsOf(*map, "map"));

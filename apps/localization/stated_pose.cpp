@@ -70,7 +70,7 @@ checkedCovariance(const Matrix6d& stated, const PriorFloor& floor)
     if (!(covariance(k, k) > 0.0))
       throw Refusal("the prior's variance of " + std::string(axes[k]) +
                     " is 0, but must be positive; the parameters prior_floor_m and "
-                    "prior_floor_rad give least standard deviations");
+                    "prior_floor_rad set minimum standard deviations");
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(correlationsOf(covariance),
                                                        Eigen::EigenvaluesOnly);
   if (!(solver.eigenvalues()[0] >= least_eigenvalue))

@@ -56,7 +56,7 @@ void
 requireGnuplot(const std::string& option)
 {
   if (!runChildProgram({"gnuplot", "--version"}, "").is_good)
-    throw GnuplotError("is not there, but " + option +
+    throw GnuplotError("is not installed, but " + option +
                        " needs it (package gnuplot-nox)");
 }
 

@@ -38,24 +38,24 @@ describeOptionsOfGraph(GraphCommand& command)
     ("loop", po::value<std::vector<std::string>>()->value_name("I,J"),
      "Also register scan J to scan I, counted from 0. May be given several times.")
     ("loops", io::number("M", command.request.loop_radius),
-     "Also register each scan to the nearest earlier one within M metres by the chain, "
-     "if the sensor was more than 2 M away in between. Such an edge has to have status "
-     "ok and to close with the chain (0.1 %).")
+     "Also register each scan to the nearest earlier one within M metres according to "
+     "the chain, if the sensor was more than 2 M away in between. Such an edge must "
+     "have status ok and agree with the chain (0.1 %).")
     ("weak-edges", io::flag(command.request.has_weak_edges),
-     "Make an edge of the prior where a scan cannot be registered to the one before. "
+     "Use the prior as the edge where a scan cannot be registered to the one before. "
      "Without it, that edge is missing.");
   po::options_description optimization("Optimization");
   optimization.add_options()
     ("optimize", io::fileName("FOLDER", command.optimized_folder),
-     "Find the most likely poses of the graph, and put them, their covariances, a report "
-     "and the graph into this folder.")
+     "Find the most likely poses of the graph, and write them, their covariances, a "
+     "report and the graph to this folder.")
     ("robust-loss", io::taken("LOSS", [&command](const std::string& name) {
        if (!readChoice(name, command.loss))
          io::refuseValue(name, namesOfChoices(command.loss));
      }),
-     "How edges outside of their 95 % regions count: none, as their covariances say; "
-     "huber, they pull no harder than there; cauchy, they pull less and less. (default "
-     "none)");
+     "Weight of edges outside their 95 % regions: none, as their covariances state; "
+     "huber, they pull no harder than at the border; cauchy, they pull less and less. "
+     "(default none)");
   // clang-format on
   po::options_description all;
   all.add(group).add(edges).add(optimization);
@@ -118,24 +118,24 @@ the pose of scan k in the frame of scan 0. An edge has the posterior mean of a
 registration and its information. --guess and the prior describe the motion
 from one scan to the next: state your odometry there, and do not add it to the
 graph again. Edges of --span, --loop and --loops have the information of the
-clouds alone; their prior is about what the chain says. A posterior that is
-neither ok nor doubtful makes no edge, a doubtful one none of --span and
---loops. Missing and doubtful edges are reported. A loop that you name stays
-in the graph even if it contradicts the chain.
+clouds alone; the mean of their prior is the pose according to the chain. A
+posterior that is neither ok nor doubtful makes no edge. A doubtful one makes
+no edge of --span or --loops. Missing and doubtful edges are reported. A loop
+that you name stays in the graph even if it contradicts the chain.
 
 --optimize FOLDER finds the poses that fit all edges best. FOLDER gets
   trajectory_tum.txt         scan number, position (m) and quaternion of each
                              scan in the frame of scan 0
   trajectory_covariance.txt  the 6x6 covariances, in ROS's convention (m, rad)
   graph.g2o                  the graph, with these poses
-  report.html                the trajectory, how the cycles close, and edges that
+  report.html                the trajectory, the closure of cycles, and edges that
                              contradict the others (needs gnuplot)
 
 For more, see docs/pose_graph_and_filter.md.
 )" << options
        << R"(
 Exit codes:
-  0    all registrations are ok, but for those of --loops
+  0    all registrations are ok, except for those of --loops
   1    some are not, a loop that you named or an optimized edge contradicts the
        others, none of an edge's cycles closes, or the poses cannot be
        optimized; the graph has been written

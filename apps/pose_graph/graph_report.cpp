@@ -199,11 +199,11 @@ graphReportHtml(const GraphCommand& command,
                               loopsHtml(graph) + complaintsHtml(graph)};
   const Section uncertainty = {
       "uncertainty",
-      "How sure is that?",
+      "How certain is it?",
       html::paragraphHtml(
-          "Registrations of a scan share the noise of its points, and all along the "
-          "same motion share what the sensor does wrong in each scan. Other errors "
-          "are taken as independent.") +
+          "Registrations of the same scan share the noise of its points, and "
+          "registrations along the same motion share the error that the sensor makes "
+          "in each scan. Other errors are treated as independent.") +
           html::legendHtml({{path_colour, "optimized poses"},
                             {before_colour, "the chain of scans alone"}}),
       deviationCharts(numbers, "scan", path)};
@@ -211,8 +211,8 @@ graphReportHtml(const GraphCommand& command,
       "agreement",
       "Do the edges agree?",
       cycles.empty()
-          ? html::paragraphHtml("No cycle: nothing tests the edges. --span and --loops "
-                                "make some.")
+          ? html::paragraphHtml("There is no cycle, so nothing tests the edges. --span "
+                                "and --loops add cycles.")
           : html::paragraphHtml(
                 "The product of the poses around a cycle should be the identity, "
                 "within the sum of the covariances. The squared error per degree of "

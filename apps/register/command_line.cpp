@@ -110,23 +110,24 @@ one or two dashes; their values follow a space or '='.
 )" << options
        << '\n'
        << describeSgdOptions() << R"(
-Preset exact needs the truth about the sensor: --sigma, and --effective-points,
-the number of independent measurements in the source.
+Preset exact needs facts about the sensor: --sigma, the standard deviation of a
+distance, and --effective-points, the number of independent measurements in the
+source.
 
-Preset calibrated needs no truth about the sensor. It measures distances to the
-target's surface in units of the noise that it finds there, and it accounts for
-correlations between neighbouring points. It reports how well the clouds
-determine the pose in each direction. Directions that they do not determine
-stay at the prior, which has to be finite.
+Preset calibrated needs no facts about the sensor. It measures distances to the
+surface of the other cloud in units of the noise that it finds there, and it
+accounts for correlations between neighbouring points. It reports how well the
+clouds determine the pose in each direction. Along directions that they do not
+determine, the posterior is the prior, which has to be finite.
 )" << aboutSgdIcp()
        << R"(
 Exit codes:
-  0    there is a posterior, and it can be trusted
+  0    the posterior can be trusted
   1    the registration failed, the chains have not mixed or are in several
-       modes, the clouds call for doubt, or an export is not possible
+       modes, the result is doubtful, or an export is not possible
   2    wrong usage
   3    a file cannot be read, used or written
-  130  interrupted (Ctrl-C or SIGTERM); the draws until then are written
+  130  interrupted (Ctrl-C or SIGTERM); the draws so far are written
 
 Example:
   pcl_bayesian_icp source.pcd target.pcd -d 0.1 --guess 0,0,0.2,0,0,1.57 -o out
@@ -153,8 +154,8 @@ describeOptions(Request& request)
      "bayesian-icp)")
     ("output,o", io::fileName("DIR", request.output_folder),
      "Write aligned.pcd, samples.csv, posterior.json and report.html to this folder, "
-     "and make it if it is missing. report.html shows everything on one page and needs "
-     "gnuplot. Without this option no file is written.")
+     "and create it if it is missing. report.html shows everything on one page and "
+     "needs gnuplot. Without this option no file is written.")
     ("no-report", "With --output: do not write report.html.")
     ("json", io::flag(request.is_json),
      "Print the content of posterior.json instead of the table.")

@@ -41,8 +41,8 @@ const Convention conventions[] = {
      "twist (v, w) in the target frame, T = exp(xi) T_mean"},
     {CovarianceConvention::RightSE3,
      {"v_x", "v_y", "v_z", "w_x", "w_y", "w_z"},
-     "twist (v, w) in the source frame, T = T_mean exp(xi): GTSAM's, which puts the "
-     "rotation first"}};
+     "twist (v, w) in the source frame, T = T_mean exp(xi): the convention of GTSAM, "
+     "which puts the rotation first"}};
 
 ordered_json
 coordinatesJson(const Summary& summary)
@@ -111,9 +111,9 @@ posteriorOf(const RegistrationResult& result)
           {"covariances", covariancesJson(result.summary)},
           {"modes", modesJson(result.summary.modes)},
           {"modes_note",
-           "weights are estimates, good to a factor of a few; mean and covariances of "
-           "the whole posterior mix modes in proportion to their draws; preset paper "
-           "looks for no modes"},
+           "weights are estimates, accurate to a factor of a few; mean and covariances "
+           "of the whole posterior mix modes in proportion to their draws; preset "
+           "paper does not search for modes"},
           {"chains", chainsJson(result.chains)}};
 }
 

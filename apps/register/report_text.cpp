@@ -69,8 +69,8 @@ modesText(const std::vector<Mode>& modes)
   if (modes.size() < 2)
     return "";
   std::string text =
-      "\nModes between which no chain travels, mean +- standard deviation "
-      "in each; weights are\nestimates, good to a factor of a few:\n";
+      "\nModes between which no chain travels, mean +- standard deviation in each; "
+      "weights are\nestimates, accurate to a factor of a few:\n";
   for (std::size_t i = 0; i < modes.size(); ++i)
     text += modeText(modes[i], i + 1);
   return text;

@@ -33,12 +33,13 @@ visitRegistration(SettingsT& settings, Visitor& visit)
   visit({group, "icp_iterations", "iterations,i", "N",
          "Largest number of iterations of ICP."}, settings.icp_iterations);
   visit({group, "reciprocal", "reciprocal", "",
-         "Use only pairs whose points are nearest to each other. Without it, each "
-         "source point is paired with its nearest target point."},
+         "Use only pairs in which each point is the nearest one to the other. Without "
+         "it, each source point is paired with its nearest target point."},
         settings.is_reciprocal);
   visit({group, "one_to_one", "one-to-one", "",
-         "Pair each target point with the nearest of its source points only. Without "
-         "it, a target point may be in several pairs."}, settings.is_one_to_one);
+         "Keep only one pair for each target point, that with the nearest source point. "
+         "Without it, a target point may be in several pairs."},
+        settings.is_one_to_one);
   visit({group, "use_mean", "mean", "",
          "Take the posterior mean as the final transformation, unless the status is "
          "worse than not mixed. Without it, the final transformation is ICP's result."},
@@ -64,7 +65,8 @@ visitPosterior(OptionsT& options, Visitor& visit)
   visit({"prior", "frame", "prior-frame", "NAME",
          "Point whose translation the prior describes. automatic is origin; with "
          "preset calibrated it is source-centroid if the centroid is further from the "
-         "origin than 1.5 times the points' root mean square distance from it."},
+         "origin than 1.5 times the root mean square distance of the points from the "
+         "centroid."},
         options.prior.frame);
 }
 
@@ -81,8 +83,8 @@ visitChains(ChainsT& chains, Visitor& visit)
   visit({"chains", "seed", "seed", "N",
          "Seed of all random numbers, 0 to 2^64-1."}, chains.seed);
   visit({"chains", "num_threads", "threads", "N",
-         "Number of threads. 0 means as many as there are. The draws do not depend on "
-         "it."}, chains.num_threads);
+         "Number of threads. 0 means OpenMP's default, one per processor. The draws do "
+         "not depend on it."}, chains.num_threads);
 }
 
 /** \brief Call visit(field, value) for the stated scale of presets `paper` and `exact`.
@@ -169,8 +171,8 @@ visitExact(SettingsT& settings, Visitor& visit)
          "x,y,z,roll,pitch,yaw [m, rad]: six numbers, or one for all. automatic is as "
          "wide as the prior, but at most 0.5."}, exact.initial_spread);
   visit({"mini_batch", "batch_size", "batch-size", "N",
-         "Number of source points in each Langevin step, without replacement. With a "
-         "number, there are no other steps."}, exact.batch_size);
+         "Number of source points in each Langevin step, without replacement. A number "
+         "selects Langevin steps."}, exact.batch_size);
   visit({"exact", "max_step_size", "max-step-size", "B",
          "Largest size of a Langevin step, at most 1, which is a Newton step."},
         exact.max_step_size);
@@ -185,7 +187,8 @@ visitExact(SettingsT& settings, Visitor& visit)
          "the target's normal there, or in units of both neighbourhoods' covariances "
          "(GICP)."}, exact.residual.residual);
   visit({"exact", "regularization", "regularization", "NAME",
-         "What these covariances are made: planes, or as fast_gicp's, or nothing."},
+         "How these covariances are regularised: as planes, as in fast_gicp, or not at "
+         "all."},
         exact.residual.regularization);
   visit({"exact", "kernel", "kernel", "NAME",
          "Robust kernel on that distance, against outliers."}, exact.residual.kernel);
@@ -206,9 +209,9 @@ visitCalibrated(SettingsT& settings, Visitor& visit)
   visitLengths(calibrated, visit);
   visit({"calibrated", "max_source_points", "calibrated-points", "N",
          "Largest number of points of each cloud. Of a larger cloud, this many points "
-         "are used that cover it evenly."}, calibrated.max_source_points);
+         "that cover it evenly are used."}, calibrated.max_source_points);
   visit({"calibrated", "num_mode_points", "mode-points", "N",
-         "Number of these points that are used to follow the starts to their modes."},
+         "Number of these source points with which the starts are followed to a mode."},
         calibrated.num_mode_points);
 }
 

@@ -23,13 +23,13 @@ visitOwnFields(OptionsT& options, Visitor& visit)
   visit({group, "optimizer", "optimizer", "NAME",
          "Optimizer that turns gradients into steps."}, options.optimizer);
   visit({group, "translation_epsilon_m", "translation-epsilon", "M",
-         "A pose is still while its translation is nearer than this to where it came to "
-         "rest [m]. 0 means never."}, options.translation_epsilon);
+         "The pose is at rest while its translation stays within this distance of "
+         "where it came to rest [m]. 0 means never."}, options.translation_epsilon);
   visit({group, "rotation_epsilon_rad", "rotation-epsilon", "RAD",
-         "A pose is still only while the sum of the changes of its angles is below this "
-         "[rad]."}, options.rotation_epsilon);
+         "The pose is at rest only while the sum of the changes of its angles is below "
+         "this [rad]."}, options.rotation_epsilon);
   visit({group, "still_iterations", "still-iterations", "N",
-         "Number of consecutive still steps after which the descent has converged."},
+         "Number of consecutive steps at rest after which the descent has converged."},
         options.num_still_iterations);
   visit({group, "is_one_to_one", "keep-duplicates", "",
          "Let a target point be in several pairs of a mini-batch. Without it, only the "
@@ -134,7 +134,7 @@ aboutSgdIcp()
   const StochasticGradientIcpOptions defaults;
   std::ostringstream text;
   text << R"(
-Method sgd-icp finds a pose by stochastic gradient descent, and no posterior.
+Method sgd-icp finds a pose by stochastic gradient descent, but no posterior.
 Of the options above it uses --guess, --max-distance, --seed, --json, --quiet
 and --output (aligned.pcd and sgd_icp.json). It also uses, with defaults of its
 own, --iterations ()"

@@ -102,7 +102,7 @@ chainChart(const DrawSet& draws, int k)
           name + ": trace, and ranks.",
           "Above, the draws of " + name +
               " in their order, one line for each chain; below, how often each chain "
-              "has the ranks among all draws, in units of what is expected.",
+              "has the ranks among all draws, in units of the expected number.",
           {340, 350, chainScript(draws, k)}};
 }
 

@@ -201,7 +201,7 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance)
   const std::string caption =
       "Each pair of coordinates, as differences from their means: up to " +
       io::textOf(max_pair_draws) +
-      " draws, coloured by chain, a few stray ones outside; above the diagonal the "
+      " draws, coloured by chain (a few outliers lie outside); above the diagonal, the "
       "correlations of all draws.";
   return {"pairs-of-coordinates",
           "Pairs of coordinates",
@@ -216,7 +216,7 @@ directionChart(const DataReport& report)
 {
   const std::string caption =
       "Standard deviation along each motion of the table: disc, in the posterior; "
-      "circle, in the prior. Where they meet the clouds say nothing.";
+      "circle, in the prior. Where they meet, the clouds add no information.";
   const std::string script =
       directionsBlock(report.directions) + chart_style +
       "set logscale x\nset format x '%g'\nset grid xtics linewidth 0.3\n"

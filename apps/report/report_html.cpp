@@ -76,7 +76,7 @@ modesTable(const std::vector<Mode>& modes)
 {
   html::Table table;
   table.caption = "Modes between which no chain travels: mean ± standard deviation in "
-                  "each; weights are estimates, good to a factor of a few";
+                  "each; weights are estimates, accurate to a factor of a few";
   table.header = {"mode", "weight", "chains"};
   for (int k = 0; k < 6; ++k)
     table.header.push_back(nameWithUnit(k, "°"));
@@ -237,12 +237,12 @@ chainSection(const DrawSet& draws, const Summary& summary)
   return {"chains",
           "Do the chains agree?",
           html::paragraphHtml(
-              "Good chains cannot be told apart: traces lie on each other without "
+              "Good chains cannot be distinguished: traces lie on each other without "
               "trends, and every chain has every rank equally often (the dashed line). "
               "R-hat at most " +
               io::textOf(max_rhat, 3) +
               " and effective sample sizes (ESS) of at least " +
-              io::textOf(min_ess, 3) + ", all in the first table, are asked for.") +
+              io::textOf(min_ess, 3) + ", all in the first table, are required.") +
               html::paragraphHtml(summary.num_diverged_chains > 0 ? diverged : "") +
               chainLegend(draws),
           chartsOf(draws, chainChart)};

@@ -149,7 +149,7 @@ opening(const Summary& summary, Preset preset)
   case Status::Ok:
     return goodOpening(summary.data, preset);
   case Status::Doubtful:
-    return {Tone::Caution, "Use with care: the clouds call for doubt"};
+    return {Tone::Caution, "Use with care: the result is doubtful"};
   case Status::NotMixed:
     return {Tone::Bad,
             // Particles have no R-hat, nor have chains of a few draws.
@@ -168,7 +168,7 @@ opening(const Summary& summary, Preset preset)
   case Status::Cancelled:
     return {Tone::Bad,
             "Interrupted: do not trust the ±",
-            "What was drawn until then, " + io::textOf(summary.num_draws) + " draws: "};
+            "Draws until then (" + io::textOf(summary.num_draws) + "): "};
   default:
     return {Tone::Bad, "There is no posterior"};
   }
@@ -180,9 +180,9 @@ scaleNote(Preset preset)
   if (preset == Preset::Calibrated)
     return "";
   return std::string("Preset ") + toString(preset) +
-         " takes the scale of the ± from the number of effective points and the "
-         "sigma in its options; it is not found from the clouds. Preset calibrated "
-         "finds it.";
+         " takes the scale of the ± from the number of effective points and the sigma "
+         "in its options. It is not estimated from the clouds; preset calibrated "
+         "estimates it.";
 }
 
 } // namespace

@@ -115,7 +115,7 @@ describeOptions(Request& request)
   // clang-format off
   general.add_options()
     ("output,o", io::text("DIR", request.output_folder),
-     "Folder to write to; it is made if it is missing. (required)")
+     "Folder to write to; it is created if it is missing. (required)")
     ("list-scenes", "List the scenes, with the motions that each leaves unobservable.");
   views.add_options()
     ("same-view",
@@ -136,7 +136,8 @@ helpText(const po::options_description& options)
 Scans a simulated scene twice. Writes source.pcd, target.pcd,
 T_target_source.txt (maps source points into the target frame) and scene.json
 (all options, so that the pair can be made again).
-Exit codes: 0 good, 1 out of memory, 2 usage, 3 cannot write, 130 interrupted.
+Exit codes: 0 success, 1 out of memory, 2 usage, 3 cannot write,
+130 interrupted.
 )" << options;
   return help.str();
 }

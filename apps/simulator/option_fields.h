@@ -51,11 +51,11 @@ visitSensor(SensorT& sensor, const Visitor& visit)
   auto& camera = sensor.camera;
   auto& lidar = sensor.lidar;
   visit({Group::Sensor, "sensor", "KIND",
-         "Kind of sensor: depth-camera, lidar, or a spinning lidar of a car's roof: "
-         "lidar16, lidar32 (-15 to 15 degrees, every 0.2), lidar64, lidar128 (-25 to 5 "
-         "degrees, every 0.25). Those of a car see 1 to 80 m and have --incidence-noise "
-         "0.25 --ring-offset 0.01 --azimuth-phase 1. The other options change these "
-         "values. (default depends on the scene)"}, sensor.kind);
+         "Kind of sensor: depth-camera, lidar, or a spinning lidar on the roof of a "
+         "car: lidar16, lidar32 (-15 to 15 degrees, every 0.2), lidar64, lidar128 (-25 "
+         "to 5 degrees, every 0.25). Car lidars see 1 to 80 m and have "
+         "--incidence-noise 0.25 --ring-offset 0.01 --azimuth-phase 1. The other "
+         "options override these values. (default depends on the scene)"}, sensor.kind);
   visit({Group::Sensor, "width", "N", "Camera: columns [pixels]. (default 640)",
          {1, 8192}, is_camera}, camera.width);
   visit({Group::Sensor, "height", "N", "Camera: rows [pixels]. (default 480)",
@@ -79,14 +79,15 @@ visitSensor(SensorT& sensor, const Visitor& visit)
          "Lidar: angle between rays [degrees]. (default 0.4)",
          {0.01, 180.0}, is_lidar}, lidar.azimuth_step);
   visit({Group::Sensor, "azimuth-phase", "PART",
-         "Lidar: turn all rays of a scan by a random part of an azimuth step, at most "
-         "this part, 0 to 1. (default 0)", part_of_all, is_lidar}, lidar.azimuth_phase);
+         "Lidar: turn all rays of a scan by a random fraction of an azimuth step, at "
+         "most this fraction, 0 to 1. (default 0)", part_of_all, is_lidar},
+        lidar.azimuth_phase);
   visit({Group::Noise, "range-noise", "M",
          "Lidar: standard deviation of the range [m]. (default 0.02)",
          not_negative, is_lidar}, lidar.range_noise);
   visit({Group::Errors, "ring-offset", "M",
-         "Lidar: standard deviation of the rings' constant offsets of the range [m], "
-         "the same in both scans. (default 0)", not_negative, is_lidar},
+         "Lidar: standard deviation of the rings' constant range offsets [m], which "
+         "are the same in both scans. (default 0)", not_negative, is_lidar},
         lidar.ring_offset);
   visit({Group::Errors, "sensor-seed", "N",
          "Lidar: seed of these offsets, 0 to 2^64-1. (default 1)", {}, is_lidar},
@@ -102,8 +103,9 @@ visitSensor(SensorT& sensor, const Visitor& visit)
          "(z - 0.4)^2 m at depth z (Kinect, Nguyen 2012). (default 1)", not_negative},
         sensor.noise);
   visit({Group::Noise, "noise-correlation", "PART",
-         "Part of the variance of the reading's noise, 0 to 1, that neighbouring rays "
-         "share. (default 0)", part_of_all, is_correlated}, sensor.noise_correlation);
+         "Fraction of the variance of the reading's noise, 0 to 1, that neighbouring "
+         "rays share. (default 0)", part_of_all, is_correlated},
+        sensor.noise_correlation);
   visit({Group::Noise, "noise-correlation-pixels", "N",
          "Standard deviation of the Gaussian that smooths the shared part [pixels; "
          "rings and azimuth steps]. (default 2.5)", {0.1, 100.0}, is_correlated},
@@ -117,8 +119,9 @@ visitSensor(SensorT& sensor, const Visitor& visit)
          "Rounding of the readings: none, kinect (camera: 345 m / k, 3 mm at 1 m) or a "
          "step [m]. (default none)"}, sensor.quantisation);
   visit({Group::Errors, "dropout-from", "DEG",
-         "Angle of incidence [degrees] from which readings get lost, with a probability "
-         "that reaches 1 at 90. (default 90: none)", {0.0, 90.0}}, sensor.dropout_from);
+         "Angle of incidence [degrees] from which readings are lost, with a "
+         "probability that reaches 1 at 90. (default 90: none)", {0.0, 90.0}},
+        sensor.dropout_from);
   visit({Group::Errors, "outliers", "P",
          "Probability of a wrong reading, 0 to 1. (default 0)", part_of_all},
         sensor.outliers);
@@ -126,8 +129,8 @@ visitSensor(SensorT& sensor, const Visitor& visit)
          "Largest error of a wrong reading [m]. (default 0.1)", not_negative},
         sensor.outlier_spread);
   visit({Group::Errors, "jitter", "PART",
-         "Move each ray at random within this part, 0 to 1, of a pixel or azimuth step. "
-         "0 is the fixed grid of a real sensor. (default 0)", part_of_all},
+         "Move each ray at random within this fraction, 0 to 1, of a pixel or azimuth "
+         "step. 0 is the fixed grid of a real sensor. (default 0)", part_of_all},
         sensor.jitter);
 }
 
@@ -155,11 +158,12 @@ visitOptions(OptionsT& options, const Visitor& visit)
          "Pose [m, rad] whose inverse moves the source before it is written. With "
          "--frame object it is the true source-to-target pose."}, options.offset);
   visit({Group::Views, "sweep-motion", "PART",
-         "Part, 0 to 1, of the motion from the target's to the source's view that a "
-         "lidar makes at constant velocity during one turn, which begins and ends at "
-         "the back. The points are not corrected for it; the true pose is that in the "
-         "middle of both turns. With 1 the second scan follows the first immediately. "
-         "(default 0)", {}, options.sweep_motion > 0.0}, options.sweep_motion);
+         "Fraction, 0 to 1, of the motion from the target's to the source's view that "
+         "a lidar makes at constant velocity during one turn, which begins and ends at "
+         "the back. The points are not corrected for it. The true pose is that between "
+         "the middles of both turns. With 1 the second scan follows the first "
+         "immediately. (default 0)", {}, options.sweep_motion > 0.0},
+        options.sweep_motion);
   visitSensor(options.sensor, visit);
 }
 

@@ -45,8 +45,9 @@ takeLine(const std::string& file,
   }
   catch (const std::exception& error) {
     throw io::FileError(file,
-                        "line " + io::textOf(track.size()) + " is not of this track: " +
-                            error.what() + "; take another folder, or remove the file");
+                        "line " + io::textOf(track.size()) +
+                            " does not belong to this track: " + error.what() +
+                            "; use another folder, or remove the file");
   }
 }
 

@@ -42,8 +42,8 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
     ("help,h", "Show this text.")
     ("version", "Show the version.")
     ("output,o", io::fileName("FOLDER", command.output_folder),
-     "Folder for the results. If it has those of the same track, interrupted, the track "
-     "goes on. (required)")
+     "Folder for the results. If it has the results of the same track, interrupted, "
+     "the track continues. (required)")
     ("span", io::number("N", request.span),
      "Also register each scan to those up to N before it. These edges go to edges.jsonl "
      "and graph.g2o only. (default 1)")
@@ -53,8 +53,8 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
     ("period", io::number("S", times.period),
      "Time from one scan to the next (s). (default 0.1)")
     ("times", io::text("names|FILE", times.source),
-     "When the scans were taken (s): names, the names of their files without the "
-     "extension are numbers; or a file with one number per line.")
+     "Times of the scans (s): names, if the file names without extension are the times; "
+     "or a file with one number per line.")
     ("acceleration", io::number("A", request.acceleration),
      "Standard deviation of the acceleration along each axis of the sensor (m/s^2). "
      "(default 5)")
@@ -66,7 +66,7 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
      "Register scans to a map of the last scans, with one point in each cube of this "
      "width (m). Without it, each scan is registered to the one before it.")
     ("map-scans", io::number("N", request.map_scans),
-     "Number of scans in a map; it is made anew after as many scans. (default 5)");
+     "Number of scans in a map. After as many scans a new map begins. (default 5)");
   // clang-format on
   po::options_description all;
   all.add(group).add(motion).add(map);
@@ -141,7 +141,7 @@ refuseIcp(const Settings& settings)
   const Settings standard;
   if (settings.icp_iterations != standard.icp_iterations || settings.is_reciprocal ||
       settings.is_one_to_one || settings.use_mean)
-    throw io::UsageError("a track runs no ICP: --iterations, --reciprocal, "
+    throw io::UsageError("a track does not run ICP: --iterations, --reciprocal, "
                          "--one-to-one and --mean have no meaning");
   if (settings.is_normalized || settings.are_lengths_scaled ||
       settings.is_step_size_times_points || settings.is_effective_points_source_size)
@@ -192,18 +192,19 @@ Registers each scan to the one before it, or to a local map (--map), and writes
 the trajectory of the sensor with its covariance. The scans of a folder are its
 .pcd files, sorted by name; their points are in the frame of the sensor, in m.
 
-The prior of each registration is what the motion before makes likely: constant
-velocity, as uncertain as the registrations before and --acceleration say.
---guess and --prior-variance describe the first motion, from scan 0 to scan 1.
+The prior of each registration is a prediction with constant velocity. Its
+uncertainty follows from the earlier registrations and --acceleration. --guess
+and --prior-variance describe the first motion, from scan 0 to scan 1.
 
-Where the status is not ok, it is tried again as if the velocity were as unknown
-as at first, and the better result is taken.
+If the status is not ok, the registration is repeated as if the velocity were as
+unknown as at the start, and the better result is used.
 
-A scan that is registered with status doubtful gets three times its standard
-deviations ("widened"). A scan that cannot be registered, or only in another
-basin, gets the predicted pose ("predicted"), and the next one is registered to
-the same target; from the third of them in a row on, one that can be read
-becomes the target ("split"). Directions that the clouds do not see are left to the prediction.
+If a scan is registered with status doubtful, its standard deviations are
+tripled ("widened"). A scan that cannot be registered, or only in another basin,
+gets the predicted pose ("predicted"), and the next one is registered to the
+same target. From the third such scan in a row on, a scan that can be read
+becomes the target ("split"). Directions that the clouds do not determine are
+left to the prediction.
 
 FOLDER gets
   edges.jsonl                one line per scan: its edge without the prior, its
@@ -211,7 +212,7 @@ FOLDER gets
   trajectory_tum.txt         time, position (m) and quaternion of each scan in
                              the frame of scan 0
   trajectory_covariance.txt  the 6x6 covariances, in ROS's convention (m, rad)
-  graph.g2o                  the edges without the prior, as a pose graph; those of
+  graph.g2o                  the edges without the prior, as a pose graph; edges of
                              predicted and split scans are the prediction
   report.html                the trajectory in pictures (needs gnuplot)
 
@@ -223,8 +224,8 @@ Exit codes:
   1    some are not, and all files have been written; or another failure
   2    wrong usage
   3    a file cannot be used or written
-  130  interrupted (Ctrl-C or SIGTERM); the files have all scans until then, and
-       the same command goes on
+  130  interrupted (Ctrl-C or SIGTERM); the files have all scans so far, and the
+       same command continues
 
 Example:
   pcl_bayesian_icp_track scans -o track --period 0.1 --guess 0.5,0,0,0,0,0

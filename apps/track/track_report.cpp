@@ -30,9 +30,9 @@ uncertaintyCharts(const Track& track)
   std::vector<Chart> charts = deviationCharts(times, x_label, {track.poses(), {}, {}});
   charts.push_back(lineChart(
       "innovation",
-      "Squared difference between prediction and registration, in units of "
-      "what both covariances allow. About 1 on average is right; far above "
-      "1, --acceleration or --angular-acceleration is too small.",
+      "Squared difference between prediction and registration, in units of what both "
+      "covariances allow. About 1 on average is right. If it is far above 1, "
+      "--acceleration or --angular-acceleration is too small.",
       x_label,
       "per direction",
       plot::dataBlock("data", innovations.empty() ? "0 1\n" : innovations) +
@@ -96,11 +96,12 @@ trackReportHtml(const TrackCommand& command, const Track& track)
                         tableOfProblems(command, track)};
   const Section uncertainty = {
       "uncertainty",
-      "How sure is that?",
+      "How certain is it?",
       html::paragraphHtml(
-          "Errors add up along the trajectory. The covariances take a tenth of the "
-          "variance of all registrations as the same error of the sensor, and the rest "
-          "as independent, although two registrations have a scan or a map in common."),
+          "Errors add up along the trajectory. The covariances treat a quarter of a "
+          "registration's variance as the noise of each of its two scans, a fifth as "
+          "an error of registrations along the same motion, and the rest as "
+          "independent."),
       uncertaintyCharts(track)};
   const Section repeat = {
       "repeat", "To repeat the run", html::codeHtml(command.command)};

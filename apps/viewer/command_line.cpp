@@ -158,8 +158,9 @@ describeOptions(Request& request)
     ("ax", value("X", within(0.0, largest), view.axes_scale, "a length [m]"),
      "Length of the target frame's axes [m]. (default 0: none)")
     ("cam", io::fileName("CAMERA", view.camera),
-     "Initial view: what key c prints, or a .cam file. (default: all in sight, from "
-     "the sensor if it is away from the target, else obliquely from above)")
+     "Initial view: the text that key c prints, or a .cam file. (default: everything "
+     "in view, from the sensor if it is away from the target, else obliquely from "
+     "above)")
     ("multiview", value("0|1", oneOf("0", false, "1", true), view.is_multiview, "0 or 1"),
      "Show four pictures: before, after, likely poses, deviations. (default 0)");
   own.add_options()
@@ -214,7 +215,7 @@ target frame. Options begin with one or two dashes.
        << '\n'
        << keysText() << R"(
 Exit codes:
-  0    what was shown can be trusted
+  0    the result shown can be trusted
   1    it cannot (the status in the picture says why), or nothing could be
        shown, for example without an X display (xvfb-run provides one)
   2    wrong usage

@@ -23,7 +23,7 @@ requireDisplay()
   throw std::runtime_error(
       (is_named ? "the X display " + io::inQuotes(name) + " does not answer"
                 : std::string("there is no X display (DISPLAY is not set)")) +
-      "; without a screen run it by xvfb-run -a, with --screenshot");
+      "; without a screen, run it with xvfb-run -a and --screenshot");
 }
 
 } // namespace bayesian_icp::viewer

@@ -120,7 +120,8 @@ TEST(Verdict, WhatNotToTrustComesFirst)
   particles.coordinates[0].rhat = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(verdictOf(particles, Preset::Exact).heading,
             "Do not trust the ±: the draws have not converged");
-  EXPECT_NE(verdict.scale_note.find("not found from the clouds"), std::string::npos);
+  EXPECT_NE(verdict.scale_note.find("not estimated from the clouds"),
+            std::string::npos);
 
   summary.status = Status::Diverged;
   summary.num_diverged_chains = 3;

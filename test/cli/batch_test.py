@@ -273,7 +273,7 @@ class BatchResume(BatchTest):
         self.assertEqual(self.results.read_bytes(), text)
         self.results.write_text("x,y\n1,2\n")
         other = run_batch(manifest, *FAST, "--results", self.results)
-        self.assert_refused(3, other, self.results, "no result")
+        self.assert_refused(3, other, self.results, "not a result")
         self.assertEqual(self.results.read_text(), "x,y\n1,2\n")
 
     def test_interrupt(self):

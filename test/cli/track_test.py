@@ -245,7 +245,7 @@ class TrackUsage(TrackTest):
             (2, [*two, "--prior-variance", "inf"], "must be finite"),
             (2, [*two, "--prior-frame", "source-centroid"], "--prior-frame"),
             (2, [*two, "--sigma", "1"], "--sigma"),
-            (2, [*two, "--iterations", 3], "a track runs no ICP"),
+            (2, [*two, "--iterations", 3], "a track does not run ICP"),
             (2, [*two, "--map", 1e-9], "--map is 1e-09"),
             (3, [*two, "--period", 2147483648], "not from 0 to below 2^31 s"),
             (3, [*two, "--times", "names"], "'target' is not a number"),

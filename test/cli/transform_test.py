@@ -192,7 +192,7 @@ class TransformRefusals(TransformTest):
         result = transform(source, output, "--pose", self.folder / "no.json")
         self.assert_refused(3, result, "no.json: no such file")
         result = transform(source, output, "--pose", self.file("empty.json", "{}"))
-        self.assert_refused(3, result, "empty.json: is no posterior.json")
+        self.assert_refused(3, result, "empty.json: is not a posterior.json")
         scaled = self.file("scaled.txt", "2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1")
         self.assert_refused(3, transform(source, output, "-p", scaled), "is not a rotation")
         self.assertFalse(output.exists())
