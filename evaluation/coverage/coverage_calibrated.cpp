@@ -1,6 +1,6 @@
 #include "calibrated/calibrated_report.h"
 #include "coverage/coverage_methods.h"
-#include "register/data_text.h"
+#include "register/report_text.h"
 #include "study/text_table.h"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ struct Registration {
   , scorer(scorerOf(problem.source,
                     source,
                     problem.target,
-                    target.model,
+                    target,
                     CalibratedOptions().max_source_points,
                     problem.seed))
   , prior(priorOf(problem))

@@ -122,7 +122,7 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
   const SurfaceScorer scorer = scorerOf(source_points,
                                         source_surface(),
                                         target_points,
-                                        target.model,
+                                        target,
                                         options.calibrated.max_source_points,
                                         options.chains.seed,
                                         options.chains.num_threads);

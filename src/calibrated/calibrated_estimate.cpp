@@ -7,7 +7,6 @@
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
 #include "geometry/principal_axes.h"
-#include "search/finite_columns.h"
 #include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
@@ -439,7 +438,7 @@ SurfaceScorer
 scorerOf(const Matrix3Xd& source_points,
          const PreparedSurface& source,
          const Matrix3Xd& target_points,
-         const SurfaceModel& target,
+         const PreparedSurface& target,
          Index max_points,
          std::uint64_t seed,
          int num_threads)
@@ -447,14 +446,13 @@ scorerOf(const Matrix3Xd& source_points,
   Matrix3Xd of_source, of_target;
   forEachPiece(2, num_threads, [&](std::ptrdiff_t cloud) {
     if (cloud == 0)
-      of_source = evenPoints(source_points, target, max_points, seed);
+      of_source = evenPoints(
+          source_points(Eigen::all, source.columns), target.model, max_points, seed);
     else if (source.complaint.empty())
-      of_target = evenPoints(target_points(Eigen::all, finiteColumns(target_points)),
-                             source.model,
-                             max_points,
-                             seed);
+      of_target = evenPoints(
+          target_points(Eigen::all, target.columns), source.model, max_points, seed);
   });
-  SurfaceScorer scorer(of_source, target, num_threads);
+  SurfaceScorer scorer(of_source, target.model, num_threads);
   if (source.complaint.empty())
     scorer.addTargetPoints(of_target, source.model);
   return scorer;

@@ -95,13 +95,13 @@ evenPoints(const Eigen::Matrix3Xd& points,
            Eigen::Index max_points,
            std::uint64_t seed);
 
-/** \brief Scorer of evenPoints() of each cloud against the surface of the other. If the
- * source has no usable surface, only source points are compared, with the target's
- * surface.
+/** \brief Scorer of evenPoints() of each cloud against the surface of the other, of
+ * those that PreparedSurface::columns names. If the source has no usable surface, only
+ * source points are compared, with the target's surface.
  *
- * \param[in] source_points 3 x n, finite [m]
+ * \param[in] source_points 3 x n [m]
  * \param[in] source surface of these; must outlive the scorer
- * \param[in] target_points 3 x m [m]; points that are not finite are left out
+ * \param[in] target_points 3 x m [m]
  * \param[in] target surface of these; must outlive the scorer
  * \param[in] max_points maximum number of points of each cloud
  * \param[in] seed of their order
@@ -111,7 +111,7 @@ SurfaceScorer
 scorerOf(const Eigen::Matrix3Xd& source_points,
          const PreparedSurface& source,
          const Eigen::Matrix3Xd& target_points,
-         const SurfaceModel& target,
+         const PreparedSurface& target,
          Eigen::Index max_points,
          std::uint64_t seed,
          int num_threads = 1);

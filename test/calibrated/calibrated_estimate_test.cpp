@@ -151,7 +151,8 @@ TEST(CalibratedEstimate, TheTargetsPointsMakeItSharper)
   const double ratio = ratioOfDeviations(400, 2000, [](const Case& c) {
     const Matrix3Xd& points = c.scorer.sourcePoints();
     const PreparedSurface source = prepareSurface(points, 1);
-    const SurfaceScorer both = scorerOf(points, source, c.target, c.model, 4000, 1);
+    const PreparedSurface target = prepareSurface(c.target, 1);
+    const SurfaceScorer both = scorerOf(points, source, c.target, target, 4000, 1);
     EXPECT_EQ(both.numPoints(), 4000);
     return std::pair(estimateCalibrated(both, c.prior), c.estimate());
   });
@@ -171,12 +172,12 @@ TEST(CalibratedEstimate, IsTheSameTheOtherWay)
     const Isometry3d start = isometryOf(c.prior.mean());
     const Prior wide(poseOf(start.matrix()), Vector6d::Ones(), c.scorer.centroid());
     const CalibratedEstimate forth = estimateCalibrated(
-        scorerOf(points, source, c.target, target.model, 4000, 1), wide, {}, &start);
+        scorerOf(points, source, c.target, target, 4000, 1), wide, {}, &start);
     const Isometry3d back_start = start.inverse();
     const Prior wide_back(
         poseOf(back_start.matrix()), Vector6d::Ones(), c.target.rowwise().mean());
     const CalibratedEstimate back =
-        estimateCalibrated(scorerOf(c.target, target, points, source.model, 4000, 1),
+        estimateCalibrated(scorerOf(c.target, target, points, source, 4000, 1),
                            wide_back,
                            {},
                            &back_start);

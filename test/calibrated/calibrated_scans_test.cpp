@@ -127,6 +127,40 @@ TEST(CalibratedScans, TheDefaultPriorMixes)
   }
 }
 
+/** A cloud with one stray point for every five, anywhere in its bounding box. */
+Eigen::Matrix3Xf
+withStrayPoints(const Eigen::Matrix3Xf& cloud, std::uint64_t stream)
+{
+  Random random(1, stream);
+  const Eigen::Vector3f low = cloud.rowwise().minCoeff();
+  const Eigen::Vector3f size = cloud.rowwise().maxCoeff() - low;
+  Eigen::Matrix3Xf all(3, cloud.cols() + cloud.cols() / 5);
+  all.leftCols(cloud.cols()) = cloud;
+  for (Eigen::Index i = cloud.cols(); i < all.cols(); ++i)
+    for (int k = 0; k < 3; ++k)
+      all(k, i) = low[k] + static_cast<float>(random.uniform()) * size[k];
+  return all;
+}
+
+TEST(CalibratedScans, StrayPointsDoNotTakeThePlaceOfSurfaces)
+{
+  simulator::ScanPair scans = scansOf("table");
+  const Summary clean = summaryOf(scans, Options());
+  scans.source = withStrayPoints(scans.source, 1);
+  scans.target = withStrayPoints(scans.target, 2);
+  const Summary summary = summaryOf(scans, Options());
+  EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+  EXPECT_LT(squaredErrorOf(summary, scans), chi_square_999);
+  // Deviations double, because some stray points are near surfaces. If all of them were
+  // chosen, deviations would be ten times as large.
+  double log_ratio = 0.0;
+  for (std::size_t k = 0; k < 6; ++k)
+    log_ratio += std::log(summary.coordinates[k].standard_deviation /
+                          clean.coordinates[k].standard_deviation) /
+                 6.0;
+  EXPECT_LT(log_ratio, std::log(4.0));
+}
+
 TEST(CalibratedScans, ABowlTurnsAboutItsAxisWhicheverOfItsPointsAreUsed)
 {
   // data/bowl, and a prior that lets it turn by 0.35 rad.

@@ -109,6 +109,57 @@ TEST(EvenChoice, OfOneStreamHasPointsInCommonWithAnotherCount)
   EXPECT_LT(numInCommon(few, others), 300);
 }
 
+/** A sheet and points that fill the space above it. */
+Matrix3Xf
+sheetAndStrayPoints(Index num_sheet, Index num_stray)
+{
+  Matrix3Xf points(3, num_sheet + num_stray);
+  points.leftCols(num_sheet) = unevenSheet(num_sheet);
+  Random random(1, 1);
+  for (Index i = num_sheet; i < points.cols(); ++i)
+    points.col(i) << static_cast<float>(random.uniform()),
+        static_cast<float>(random.uniform()),
+        static_cast<float>(0.2 + 0.8 * random.uniform());
+  return points;
+}
+
+TEST(WithoutStray, LeavesOutPointsFarFromTheOthers)
+{
+  // In 0.8 m^3 and 27 cubes of a side of some 0.03 m, the mean number of others around
+  // a stray point is 0.8, and four or more are there once in 100 times.
+  constexpr Index num_sheet = 20000, num_stray = 1000;
+  const auto kept = withoutStray(sheetAndStrayPoints(num_sheet, num_stray), 80000);
+  const auto num_kept_of_sheet =
+      std::lower_bound(kept.begin(), kept.end(), num_sheet) - kept.begin();
+  EXPECT_EQ(num_kept_of_sheet, num_sheet);
+  EXPECT_LT(static_cast<Index>(kept.size()) - num_kept_of_sheet, num_stray / 25);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+}
+
+TEST(WithoutStray, FivePointsAreCompany)
+{
+  Matrix3Xf points = sheetAndStrayPoints(20000, 109);
+  points.middleCols(20100, 4).colwise() = Eigen::Vector3f(0.f, 0.f, 2.f);
+  points.rightCols(5).colwise() = Eigen::Vector3f(0.f, 0.f, -2.f);
+  const auto kept = withoutStray(points, 80000);
+  for (Index i = 20100; i < points.cols(); ++i)
+    EXPECT_EQ(std::binary_search(kept.begin(), kept.end(), i), i >= 20104) << i;
+}
+
+TEST(WithoutStray, KeepsWhereACloudGetsSparse)
+{
+  // Ground whose density falls with the square of the distance.
+  Matrix3Xf points(3, 20000);
+  Random random(1, 2);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double radius = std::exp(3.0 * random.uniform());
+    const double angle = 6.2831853 * random.uniform();
+    points.col(i) << static_cast<float>(radius * radius * std::cos(angle)),
+        static_cast<float>(radius * radius * std::sin(angle)), 0.f;
+  }
+  EXPECT_EQ(withoutStray(points, 80000).size(), 20000U);
+}
+
 TEST(EvenlyThinned, LeavesAboutTheWantedNumber)
 {
   const Matrix3Xf points = unevenSheet(100000);

@@ -153,7 +153,22 @@ chooseOfCubes(const Eigen::Matrix3Xf& points,
  * of them. It is in units of the sheet's root mean square distance from its centroid
  * over the square root of that number. */
 constexpr double cube_of_sheet = 8.0;
+/** A point with fewer points around it than the first number, itself included, is
+ * isolated; with fewer than the second, it is sparse. An even sheet has 86 of them. */
+constexpr double min_crowd = 5.0, sparse_crowd = 20.0;
 constexpr int num_bisections = 60;
+
+/** Side of the cubes around points of a sheet that is thinned to \p count points. */
+float
+cubeOfSheet(const Eigen::Matrix3Xf& points, Index count)
+{
+  const Eigen::Matrix3Xd centred =
+      points.cast<double>().colwise() - points.cast<double>().rowwise().mean();
+  const double extent =
+      std::sqrt(centred.squaredNorm() / static_cast<double>(points.cols()));
+  const double cube = cube_of_sheet * extent / std::sqrt(static_cast<double>(count));
+  return std::max(static_cast<float>(cube), std::numeric_limits<float>::min());
+}
 
 /** Cubes that hold points, in the order of their first points. */
 class OccupiedCubes {
@@ -180,22 +195,24 @@ public:
     }
   }
 
-  /** Points in a cube and the 26 about it, for every cube. */
+  /** Points in a cube and the 26 around it, for every cube; counting ends where there
+   * are \p enough. */
   std::vector<double>
-  crowds() const
+  crowds(double enough = std::numeric_limits<double>::infinity()) const
   {
-    std::vector<double> crowds;
-    for (const std::uint64_t number : numbers_) {
-      double crowd = 0.0;
-      for (const std::int64_t x : {-1, 0, 1})
-        for (const std::int64_t y : {-1, 0, 1})
-          for (const std::int64_t z : {-1, 0, 1}) {
-            const auto found = indices_.find(number + numberOf({x, y, z}));
-            if (found != indices_.end())
-              crowd += static_cast<double>(counts_[found->second]);
-          }
-      crowds.push_back(crowd);
-    }
+    std::vector<std::uint64_t> neighbors;
+    for (const std::int64_t x : {-1, 0, 1})
+      for (const std::int64_t y : {-1, 0, 1})
+        for (const std::int64_t z : {-1, 0, 1})
+          neighbors.push_back(numberOf({x, y, z}));
+    std::vector<double> crowds(numbers_.size());
+    for (std::size_t cube = 0; cube < crowds.size(); ++cube)
+      for (auto n = neighbors.begin(); n != neighbors.end() && crowds[cube] < enough;
+           ++n) {
+        const auto found = indices_.find(numbers_[cube] + *n);
+        if (found != indices_.end())
+          crowds[cube] += static_cast<double>(counts_[found->second]);
+      }
     return crowds;
   }
 
@@ -263,17 +280,29 @@ shuffle(std::vector<Index>& columns, Random& random)
 }
 
 std::vector<Index>
+withoutStray(const Eigen::Matrix3Xf& points, Index count)
+{
+  const OccupiedCubes cubes(points,
+                            cubeOfSheet(points, std::min(points.cols(), count)));
+  const std::vector<double> crowds = cubes.crowds(sparse_crowd);
+  std::vector<Index> columns;
+  Index num_sparse = 0;
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double crowd = crowds[cubes.cubeOf(i)];
+    if (crowd >= min_crowd)
+      columns.push_back(i);
+    num_sparse += crowd >= min_crowd && crowd < sparse_crowd;
+  }
+  const Index num_isolated = points.cols() - static_cast<Index>(columns.size());
+  return num_isolated > num_sparse ? columns : allOf(points);
+}
+
+std::vector<Index>
 evenlyThinned(const Eigen::Matrix3Xf& points, Index count)
 {
   if (points.cols() <= count)
     return allOf(points);
-  const Eigen::Matrix3Xd centred =
-      points.cast<double>().colwise() - points.cast<double>().rowwise().mean();
-  const double extent =
-      std::sqrt(centred.squaredNorm() / static_cast<double>(points.cols()));
-  const double cube = cube_of_sheet * extent / std::sqrt(static_cast<double>(count));
-  const OccupiedCubes cubes(
-      points, std::max(static_cast<float>(cube), std::numeric_limits<float>::min()));
+  const OccupiedCubes cubes(points, cubeOfSheet(points, count));
   const std::vector<double> crowds = cubes.crowds();
   const double share = shareOf(cubes.counts(), crowds, static_cast<double>(count));
   Random random(1, 4);

@@ -1,5 +1,6 @@
 #include "calibrated/surface/prepared_surface.h"
 
+#include "calibrated/surface/even_choice.h"
 #include "search/finite_columns.h"
 #include "summary/plain_text.h"
 
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp {
@@ -61,9 +63,26 @@ complaintAbout(const SurfaceModel& model)
 }
 
 PreparedSurface
-withoutSurface(Status status, const std::string& complaint)
+withoutSurface(Status status,
+               const std::string& complaint,
+               std::vector<Index> columns = {})
 {
-  return {SurfaceModel(Matrix3Xd(3, 0)), complaint, status};
+  return {SurfaceModel(Matrix3Xd(3, 0)), complaint, status, std::move(columns)};
+}
+
+/** Those of the finite columns of \p points that are not stray. */
+std::vector<Index>
+usedColumns(const Matrix3Xd& points,
+            const std::vector<Index>& finite,
+            const SurfaceModelOptions& options)
+{
+  const Matrix3Xd chosen = points(Eigen::all, finite);
+  const Eigen::Vector3d centroid = chosen.rowwise().mean();
+  std::vector<Index> used =
+      withoutStray((chosen.colwise() - centroid).cast<float>(), options.maxPoints());
+  for (Index& column : used)
+    column = finite[static_cast<std::size_t>(column)];
+  return used;
 }
 
 } // namespace
@@ -77,13 +96,16 @@ prepareSurface(const Matrix3Xd& points, int num_threads)
                           "the target has " + std::to_string(finite.size()) +
                               " finite points, but preset calibrated needs " +
                               std::to_string(min_calibrated_points));
+  const SurfaceModelOptions options;
+  std::vector<Index> columns = usedColumns(points, finite, options);
   PreparedSurface surface = {
-      SurfaceModel(points, finite, SurfaceModelOptions(), num_threads), {}, {}};
+      SurfaceModel(points, columns, options, num_threads), {}, {}, std::move(columns)};
   if (surface.model.patches().size() < std::size_t(min_calibrated_points))
     return withoutSurface(Status::TooFewCorrespondences,
                           "the target has no surface: only " +
                               std::to_string(surface.model.patches().size()) +
-                              " of its points differ");
+                              " of its points differ and are not stray",
+                          finite);
   surface.complaint = complaintAbout(surface.model);
   if (!surface.complaint.empty())
     surface.status = Status::TooFewCorrespondences;

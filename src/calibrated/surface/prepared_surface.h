@@ -9,6 +9,7 @@
 #include <bayesian_icp/summary.h>
 
 #include <string>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -19,6 +20,8 @@ struct PreparedSurface {
   std::string complaint;
   /** Status that belongs to the complaint. */
   Status status = Status::NotRun;
+  /** Columns of the points that are used: finite and not stray. */
+  std::vector<Eigen::Index> columns;
 };
 
 /** \brief Make the surface of a target. Each of its finite points counts once: merged

@@ -17,9 +17,6 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** Number of points that neighbourhoods are taken from, per patch. */
-constexpr Index points_to_patches = 4;
-
 /** Keeps the first of equal points, in their order. */
 void
 removeRepeated(Matrix3Xf& points)
@@ -95,9 +92,8 @@ SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
   origin_ = centroidOf(target_points, columns);
   Matrix3Xf points = relativeTo(origin_, target_points, columns);
   removeRepeated(points);
-  const Index max_points = points_to_patches * Index(options.max_patches);
-  if (points.cols() > max_points)
-    points = points(Eigen::all, evenlyThinned(points, max_points)).eval();
+  if (points.cols() > options.maxPoints())
+    points = points(Eigen::all, evenlyThinned(points, options.maxPoints())).eval();
   SurfaceBuilder builder(points, options, num_threads);
   builder.fitPatches();
   builder.poolNoise();

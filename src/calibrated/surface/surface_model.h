@@ -110,6 +110,13 @@ struct SurfaceModelOptions {
    * target evenly, get a patch. Neighbourhoods come from four times as many points, so
    * that patches overlap in the same way at any density of the target. */
   int max_patches = 20000;
+
+  /** \brief Largest number of points in neighbourhoods. */
+  Eigen::Index
+  maxPoints() const
+  {
+    return 4 * static_cast<Eigen::Index>(max_patches);
+  }
 };
 
 /** \brief Patches that cover a cloud evenly, and a tree to find them.
