@@ -57,8 +57,9 @@ printHelp(std::ostream& stream)
     stream << "  " << std::left << std::setw(14) << command.name << command.summary
            << '\n';
   stream
-      << "\nCOMMAND --help tells its options. Exit codes: 0 good, 1 a result is not\n"
-         "to be relied on, 2 usage, 3 cannot read or write a file.\n";
+      << "\nCOMMAND --help tells its options, --version the version. Exit codes: 0 "
+         "good,\n1 a result is not to be relied on, 2 usage, 3 cannot read or write a "
+         "file.\n";
 }
 
 int
@@ -67,6 +68,10 @@ runTool(int argc, const char* const* argv)
   const std::string name = argc > 1 ? argv[1] : "";
   if (name == "--help") {
     printHelp(std::cout);
+    return Good;
+  }
+  if (name == "--version") {
+    io::print("pcl_bayesian_icp_evaluate " BAYESIAN_ICP_VERSION "\n");
     return Good;
   }
   for (const SubCommand& command : subCommands())

@@ -67,7 +67,7 @@ check(const ChainOptions& chains, Checker& checker)
   checker.require(chains.num_draws >= chains.num_chains,
                   "num_draws",
                   chains.num_draws,
-                  "at least num_chains (one draw a chain)");
+                  "at least the number of chains (one draw a chain)");
   checker.atLeast("num_threads", chains.num_threads, 0);
 }
 

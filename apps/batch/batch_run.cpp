@@ -93,7 +93,7 @@ private:
   give(const BatchPair& pair, const Run& run, double seconds)
   {
     const Summary& summary = run.result.summary;
-    if (!options_.output_folder.empty() && summary.num_draws > 0) {
+    if (!options_.output_folder.empty()) {
       const std::filesystem::path root(options_.output_folder);
       io::OutputFolder folder((root / pair.name).string());
       addPosteriorFiles(run, folder);

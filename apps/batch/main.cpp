@@ -13,6 +13,8 @@
 
 #include <bayesian_icp/summary.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <sstream>
@@ -52,8 +54,8 @@ describeOptions(Request& request)
      "Write the lines to this file, and skip pairs that already have a line in it. "
      "(default: standard output)")
     ("output,o", io::fileName("DIR", request.output_folder),
-     "Write DIR/NAME/posterior.json and samples.csv for each pair. Without it, only "
-     "the lines are written.")
+     "Write DIR/NAME/posterior.json and samples.csv for each pair that has no line yet. "
+     "Without it, only the lines are written.")
     ("suggested-prior", io::flag(request.use_suggested_prior),
      "Use a prior about the guess and the source's centroid, with the standard "
      "deviations 'suggested_prior_sigma' of each pair. Without it, all pairs have the "
@@ -213,6 +215,27 @@ shareOf(const Ranks& ranks,
   return share;
 }
 
+/** Pairs that have a line from a run without --output are not registered again for
+ * their files. */
+void
+tellMissingFiles(const Request& request,
+                 const std::vector<BatchPair>& pairs,
+                 const std::vector<std::size_t>& remaining)
+{
+  if (request.output_folder.empty())
+    return;
+  std::size_t num_missing = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    num_missing +=
+        !std::binary_search(remaining.begin(), remaining.end(), k) &&
+        !std::filesystem::exists(std::filesystem::path(request.output_folder) /
+                                 pairs[k].name / "posterior.json");
+  if (num_missing > 0)
+    tell(io::textOf(num_missing) + " pairs have a line in " + request.results_file +
+         " but no files in " + request.output_folder +
+         ", and get none; take another --results for them");
+}
+
 /** Process 0 owns the file; the others write theirs, which it takes in at the end. */
 int
 runToFile(const Request& request,
@@ -228,6 +251,7 @@ runToFile(const Request& request,
     if (num_finished > 0 && !request.is_quiet)
       tell(io::textOf(num_finished) + " of " + io::textOf(pairs.size()) +
            " pairs already have a line in " + request.results_file);
+    tellMissingFiles(request, pairs, file->remaining());
   }
   const auto share = shareOf(ranks, ranks.broadcast(positions), pairs);
   std::optional<io::LineFile> part;
@@ -264,8 +288,12 @@ runTool(int argc, char** argv, const Ranks& ranks)
   const auto pairs = readManifest(
       request.manifest_file, request.settings, request.use_suggested_prior);
   io::catchInterrupt();
-  return request.results_file.empty() ? runToStandardOutput(request, ranks, pairs)
-                                      : runToFile(request, ranks, pairs);
+  const int exit_code = request.results_file.empty()
+                            ? runToStandardOutput(request, ranks, pairs)
+                            : runToFile(request, ranks, pairs);
+  if (exit_code == Interrupted && ranks.rank() == 0)
+    tell("interrupted; the pairs under way are abandoned");
+  return exit_code;
 }
 
 } // namespace

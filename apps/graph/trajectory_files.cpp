@@ -28,6 +28,20 @@ estimateOf(const GaussianPose& pose)
   return estimate;
 }
 
+/** The time with the fewest decimals that is the same number: what it was read from
+ * [s], in ns. */
+std::int64_t
+nanosecondsOf(double time)
+{
+  constexpr double all = 1e9;
+  const double whole = std::floor(time);
+  double parts = 1.0; // of a second
+  while (parts < all && whole + std::round((time - whole) * parts) / parts != time)
+    parts *= 10.0;
+  return std::llround(whole) * std::llround(all) +
+         std::llround(std::round((time - whole) * parts) * (all / parts));
+}
+
 template <typename LineOf>
 std::string
 linesOf(const std::vector<double>& times,
@@ -37,7 +51,7 @@ linesOf(const std::vector<double>& times,
   std::string text;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     ExportOptions options;
-    options.timestamp_ns = std::llround(times.at(k) * 1e9);
+    options.timestamp_ns = nanosecondsOf(times.at(k));
     text += lineOf(estimateOf(poses[k]), options);
   }
   return text;

@@ -3,6 +3,7 @@
 #include "io/cloud_format.h"
 #include "io/errors.h"
 #include "io/field_triple.h"
+#include "io/numbers.h"
 
 #include <pcl/console/print.h>
 #include <pcl/io/pcd_io.h>
@@ -12,7 +13,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -171,6 +174,7 @@ readCloud(const std::string& name)
   if (!xyz.isComplete())
     throw FileError(name, "has no floating-point fields x, y and z");
   copyPoints(*blob, xyz, cloud);
+  cloud.has_doubles = xyz.areDoubles();
   if (cloud.num_finite < 3)
     throw FileError(name,
                     cloud.num_finite == 0
@@ -179,6 +183,20 @@ readCloud(const std::string& name)
                               " finite points; three are needed");
   cloud.blob = blob;
   return cloud;
+}
+
+std::string
+noteOfLostDigits(const CloudFile& cloud)
+{
+  constexpr double noticeable = 1e-3;
+  const auto largest = static_cast<float>(cloud.largest_coordinate);
+  const double resolution =
+      double(std::nextafter(largest, std::numeric_limits<float>::infinity())) - largest;
+  if (!(resolution > noticeable))
+    return "";
+  return cloud.file + ": note: coordinates of up to " +
+         textOf(cloud.largest_coordinate, 4) + " m are kept to " +
+         textOf(resolution, 2) + " m only; move the clouds towards the origin for more";
 }
 
 Eigen::Matrix3Xf

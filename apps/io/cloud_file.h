@@ -34,7 +34,14 @@ struct CloudFile {
   std::size_t num_finite = 0;
   /** Largest |x|, |y|, |z| of the finite points [m]. */
   double largest_coordinate = 0.0;
+  /** Whether \p blob has coordinates of 64 bits. */
+  bool has_doubles = false;
 };
+
+/** \brief What coordinates of 32 bits lose where they are large, for the user; empty if
+ * they are good to a millimetre. */
+std::string
+noteOfLostDigits(const CloudFile& cloud);
 
 /** \brief Read a .pcd (any encoding) or .ply file. Coordinates may be of 32 or 64 bits.
  * \throws FileError if the file cannot be read or has fewer than three finite points */

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <vector>
@@ -37,6 +38,13 @@ public:
   isComplete() const
   {
     return fields_.size() == 3;
+  }
+
+  /** \brief Whether all three are of 64 bits. */
+  bool
+  areDoubles() const
+  {
+    return std::all_of(fields_.begin(), fields_.end(), isDouble);
   }
 
   /** \brief The vector of point \p index. */

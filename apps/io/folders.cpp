@@ -2,6 +2,8 @@
 
 #include "io/errors.h"
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
@@ -58,6 +60,8 @@ scansOf(const std::vector<std::string>& arguments)
 {
   std::error_code error;
   if (arguments.size() != 1 || !fs::is_directory(arguments[0], error)) {
+    if (arguments.size() == 1 && !fs::exists(arguments[0], error))
+      throw FileError(arguments[0], "no such folder");
     if (arguments.size() < 2)
       throw UsageError("a folder or at least two scans are needed");
     return arguments;
@@ -65,7 +69,7 @@ scansOf(const std::vector<std::string>& arguments)
   std::vector<std::string> scans;
   for (fs::directory_iterator entry(arguments[0], error), end; !error && entry != end;
        entry.increment(error))
-    if (entry->path().extension() == ".pcd")
+    if (boost::iequals(entry->path().extension().string(), ".pcd"))
       scans.push_back(entry->path().string());
   if (error)
     throw FileError(arguments[0], error.message());

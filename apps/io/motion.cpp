@@ -3,6 +3,7 @@
 #include "io/errors.h"
 #include "io/input_file.h"
 #include "io/numbers.h"
+#include "io/posterior_file.h"
 
 #include <bayesian_icp/pose.h>
 
@@ -61,6 +62,8 @@ readMotion(const std::string& option, const std::string& text)
   bool is_pose = items.size() == 6;
   for (std::size_t k = 0; is_pose && k < 6; ++k)
     is_pose = readNumber(items[k], pose[static_cast<Eigen::Index>(k)]);
+  if (is_pose && !pose.allFinite())
+    throw UsageError("--" + option + ": must be finite");
   if (is_pose)
     return matrixOf(pose);
   std::error_code ignored;
@@ -68,7 +71,13 @@ readMotion(const std::string& option, const std::string& text)
     throw UsageError("--" + option + ": " + io::inQuotes(text) +
                      " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad] nor "
                      "a file");
-  return readMatrixFile(text);
+  if (std::filesystem::path(text).extension() != ".json")
+    return readMatrixFile(text);
+  const Eigen::Matrix4d mean = matrixOf(readPosterior(text).mean);
+  const std::string complaint = complaintAboutMotion(mean);
+  if (!complaint.empty())
+    throw FileError(text, "posterior.mean: " + complaint);
+  return mean;
 }
 
 } // namespace bayesian_icp::io

@@ -20,10 +20,11 @@ complaintAboutMotion(const Eigen::Matrix4d& matrix);
 Eigen::Matrix4d
 readMatrixFile(const std::string& file);
 
-/** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], or of a file as
- * readMatrixFile() takes it.
+/** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], of a file as readMatrixFile()
+ * takes it, or of the mean of a posterior.json (a name that ends in .json).
  * \param[in] option its name in errors, without the dashes
- * \throws UsageError if it is neither, FileError if the file has something else */
+ * \throws UsageError if it is none of them or not finite, FileError if the file has
+ * something else */
 Eigen::Matrix4d
 readMotion(const std::string& option, const std::string& text);
 

@@ -81,8 +81,8 @@ inline std::string
 wrapped(std::string_view text, std::size_t width, const std::string& indent = "")
 {
   std::string lines, line;
+  bool is_first = true; // of its line
   for (const std::string_view word : words(text, " ")) {
-    const bool is_first = line.size() <= indent.size();
     if (!is_first && line.size() + 1 + word.size() > width) {
       lines += line + '\n';
       line = indent;
@@ -90,6 +90,7 @@ wrapped(std::string_view text, std::size_t width, const std::string& indent = ""
     else if (!is_first)
       line += ' ';
     line += word;
+    is_first = false;
   }
   return lines + line;
 }

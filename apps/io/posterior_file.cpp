@@ -33,6 +33,14 @@ checkSchema(const std::string& name, const json& document)
                         textOf(posterior_schema_version));
 }
 
+Eigen::Index
+countOf(const JsonNode& count)
+{
+  if (!count.json().is_number_unsigned())
+    count.refuse("a whole number from 0 on");
+  return count.json().get<Eigen::Index>();
+}
+
 Vector6d
 meanOf(const JsonNode& mean)
 {
@@ -94,6 +102,9 @@ try {
   PosteriorFile posterior;
   posterior.source_file = root["source"]["file"].text();
   posterior.target_file = root["target"]["file"].text();
+  posterior.num_source_points = countOf(root["source"]["points"]);
+  posterior.num_target_points = countOf(root["target"]["points"]);
+  posterior.num_draws = countOf(root["posterior"]["draws"]);
   posterior.status = root["status"]["name"].text();
   posterior.status_message = root["status"]["message"].text();
   posterior.guess =

@@ -24,6 +24,10 @@ struct PosteriorFile {
   /** Names of the clouds' files as they were given to the program. */
   std::string source_file;
   std::string target_file;
+  /** Of all points of the clouds, finite or not, and of the draws in samples.csv. */
+  Eigen::Index num_source_points = 0;
+  Eigen::Index num_target_points = 0;
+  Eigen::Index num_draws = 0;
   /** Short name of the Status, and the status in words. */
   std::string status;
   std::string status_message;

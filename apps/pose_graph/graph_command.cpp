@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <sstream>
 
@@ -36,7 +37,8 @@ describeOptionsOfGraph(GraphCommand& command)
     ("span", io::number("N", command.request.span),
      "Also register each scan to those up to N before it. (default 1)")
     ("loop", po::value<std::vector<std::string>>()->value_name("I,J"),
-     "Also register scan J to scan I, counted from 0. May be given several times.")
+     "Also register scan J to scan I, counted from 0; not to its neighbour. May be given "
+     "several times.")
     ("loops", io::number("M", command.request.loop_radius),
      "Also register each scan to the nearest earlier one within M metres according to "
      "the chain, if the sensor was more than 2 M away in between. Such an edge must "
@@ -76,6 +78,9 @@ loopOf(const std::string& text, std::size_t num_scans)
     throw io::UsageError("--loop: " + io::inQuotes(text) +
                          " is not two different scans I,J from 0 to " +
                          io::textOf(num_scans - 1));
+  if (std::abs(target - source) == 1)
+    throw io::UsageError("--loop: " + io::inQuotes(text) +
+                         " are neighbours, which have an edge of the chain already");
   return {target, source};
 }
 

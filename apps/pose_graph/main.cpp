@@ -114,8 +114,10 @@ makeGraph(const GraphCommand& command)
         if (!is_ok || !command.is_quiet)
           tell(line);
       });
-  if (io::wasInterrupted())
+  if (io::wasInterrupted()) {
+    tell("interrupted; nothing is written");
     return Interrupted;
+  }
   std::optional<OptimizedPoses> optimum;
   if (optimized_folder) {
     optimum = optimized(graph, command.loss);

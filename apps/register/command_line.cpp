@@ -3,7 +3,9 @@
 #include "io/command_line.h"
 #include "register/settings_options.h"
 
+#include <filesystem>
 #include <sstream>
+#include <system_error>
 
 namespace bayesian_icp::app {
 
@@ -84,6 +86,22 @@ refuseExportOptionsWithoutExport(const po::variables_map& given)
                            ": has no effect without --export");
 }
 
+/** \throws io::UsageError if a cloud of a former run would be replaced while it is used
+ */
+void
+refuseToReplaceInput(const Request& request)
+{
+  const auto aligned = std::filesystem::path(request.output_folder) / "aligned.pcd";
+  for (const std::string& file : {request.source_file, request.target_file}) {
+    std::error_code ignored;
+    if (!request.output_folder.empty() &&
+        std::filesystem::equivalent(file, aligned, ignored))
+      throw io::UsageError("--output: " + io::inQuotes(request.output_folder) +
+                           " has the input " + file +
+                           ", which would be replaced; take another folder");
+  }
+}
+
 /** \throws io::UsageError if what is exported cannot be printed */
 void
 checkExports(const Request& request)
@@ -155,7 +173,9 @@ describeOptions(Request& request)
     ("output,o", io::fileName("DIR", request.output_folder),
      "Write aligned.pcd, samples.csv, posterior.json and report.html to this folder, "
      "and create it if it is missing. report.html shows everything on one page and "
-     "needs gnuplot. Without this option no file is written.")
+     "needs gnuplot. If there are no draws, only posterior.json is written, and the "
+     "other files of an older result are removed. Without this option no file is "
+     "written.")
     ("no-report", "With --output: do not write report.html.")
     ("json", io::flag(request.is_json),
      "Print the content of posterior.json instead of the table.")
@@ -209,6 +229,7 @@ parseCommandLine(int argc, const char* const* argv)
   io::takeClouds(given, "cloud", request.source_file, request.target_file);
   refuseExportOptionsWithoutExport(given);
   io::takeOptions(given, options);
+  refuseToReplaceInput(request);
   request.wants_report = given.count("no-report") == 0;
   if (!request.wants_report && request.output_folder.empty())
     throw io::UsageError("--no-report: has no effect without --output");

@@ -86,6 +86,13 @@ exportText(const std::string& format,
   return filesOf(format).front().text(estimate, options);
 }
 
+void
+leaveOutExports(io::OutputFolder& folder)
+{
+  for (const ExportFile& file : export_files)
+    folder.leaveOut(file.name);
+}
+
 std::vector<std::string>
 addExports(const ExportRequest& request,
            const PoseEstimate& estimate,

@@ -37,6 +37,10 @@ exportText(const std::string& format,
            const PoseEstimate& estimate,
            const ExportOptions& options);
 
+/** \brief Leave out all files that addExports() can add. */
+void
+leaveOutExports(io::OutputFolder& folder);
+
 /** \brief Add pose_ros.yaml, pose.g2o, pose_gtsam.txt, pose_tum.txt with
  * pose_tum_covariance.txt, and pose.csv, as asked for.
  * \return the formats to which the posterior cannot be exported, with the reason, one

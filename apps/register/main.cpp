@@ -14,7 +14,6 @@
 #include "report/report_html.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <optional>
 
@@ -30,30 +29,16 @@ tell(const std::string& message)
   std::cerr << "pcl_bayesian_icp: " << message << '\n';
 }
 
-/** PCL registers coordinates of 32 bits. */
-void
-warnOfLostDigits(const io::CloudFile& cloud)
-{
-  constexpr double noticeable = 1e-3;
-  const auto largest = static_cast<float>(cloud.largest_coordinate);
-  const double resolution =
-      double(std::nextafter(largest, std::numeric_limits<float>::infinity())) - largest;
-  if (resolution > noticeable)
-    tell(cloud.file + ": note: coordinates of up to " +
-         io::textOf(cloud.largest_coordinate, 4) + " m are kept to " +
-         io::textOf(resolution, 2) +
-         " m only; move the clouds towards the origin for more");
-}
-
 Run
 runRegistration(const Request& request)
 {
   io::silencePcl();
   Run run = readRun(request.source_file, request.target_file, request.settings);
-  if (!request.is_quiet) {
-    warnOfLostDigits(run.source);
-    warnOfLostDigits(run.target);
-  }
+  // PCL registers coordinates of 32 bits.
+  for (const io::CloudFile* cloud : {&run.source, &run.target})
+    if (const std::string note = io::noteOfLostDigits(*cloud);
+        !note.empty() && !request.is_quiet)
+      tell(note);
   ProgressBar bar(!request.is_quiet);
   io::catchInterrupt();
   registerClouds(
@@ -121,6 +106,19 @@ writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
   return refusals.empty();
 }
 
+/** Without draws there is posterior.json alone, which says why. No file of an older
+ * result stays beside it. */
+void
+writeFailure(const Run& run, io::OutputFolder& folder)
+{
+  leaveOutExports(folder);
+  for (const char* name : {"aligned.pcd", "report.html"})
+    folder.leaveOut(name);
+  addPosteriorFiles(run, folder);
+  folder.commit();
+  tell("there are no draws, so no files but posterior.json are written");
+}
+
 /** \return whether all that was asked for could be exported */
 bool
 report(const Request& request, const Run& run)
@@ -153,7 +151,7 @@ registerAsAsked(const Request& request)
   if (folder && has_draws)
     is_exported = writeFiles(request, run, *folder);
   else if (folder)
-    tell("there are no draws, so no files are written");
+    writeFailure(run, *folder);
   is_exported &= report(request, run);
   if (io::wasInterrupted())
     return Interrupted;

@@ -241,6 +241,8 @@ posteriorJson(const Run& run)
       {"posterior", posteriorOf(result)},
       {"data", dataJson(result.summary.data)},
       {"options", jsonOf(run.settings)},
+      {"prior_frame",
+       toString(priorFrameOf(run.settings.options, run.source.points.cast<double>()))},
       {"time", timeJson(run)}};
   // Names of files need not be UTF-8.
   return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
@@ -265,8 +267,11 @@ writeSamples(const std::vector<Chain>& chains, std::ostream& stream)
 void
 addPosteriorFiles(const Run& run, io::OutputFolder& folder)
 {
-  folder.add("samples.csv",
-             [&](std::ostream& stream) { writeSamples(run.result.chains, stream); });
+  if (run.result.summary.num_draws > 0)
+    folder.add("samples.csv",
+               [&](std::ostream& stream) { writeSamples(run.result.chains, stream); });
+  else
+    folder.leaveOut("samples.csv");
   folder.add("posterior.json", posteriorJson(run));
 }
 

@@ -28,9 +28,15 @@ coordinateTable(const Summary& summary)
 {
   constexpr std::size_t num_wide_columns = 4;
   std::vector<std::vector<std::string>> rows = coordinateCells(summary, "deg", "-");
-  rows.insert(
-      rows.begin(),
-      {"", "mean", "std. dev.", "2.5 %", "97.5 %", "R-hat", "bulk ESS", "tail ESS"});
+  rows.insert(rows.begin(),
+              {"",
+               "mean pose",
+               "std. dev.",
+               "2.5 %",
+               "97.5 %",
+               "R-hat",
+               "bulk ESS",
+               "tail ESS"});
   std::string table;
   for (const auto& row : rows) {
     table += leftAligned(row[0], label_width);
@@ -124,8 +130,10 @@ coordinateCells(const Summary& summary,
   const auto addRow = [&](int k, const std::string& unit, double factor, int decimals) {
     const CoordinateSummary& c = summary.coordinates[static_cast<std::size_t>(k)];
     rows.push_back({nameWithUnit(k, unit)});
-    for (const double value :
-         {c.mean, c.standard_deviation, c.quantile_2_5, c.quantile_97_5})
+    for (const double value : {meanPoseCoordinate(summary, k),
+                               c.standard_deviation,
+                               c.quantile_2_5,
+                               c.quantile_97_5})
       rows.back().push_back(numberText(factor * value, decimals, unknown));
   };
   for (int k = 0; k < 6; ++k) {
@@ -138,6 +146,14 @@ coordinateCells(const Summary& summary,
   for (int k = 3; k < 6; ++k)
     addRow(k, degree, degrees_per_radian, 4);
   return rows;
+}
+
+double
+meanPoseCoordinate(const Summary& summary, int coordinate)
+{
+  const double mean = summary.mean[coordinate];
+  const double nearby = summary.coordinates[static_cast<std::size_t>(coordinate)].mean;
+  return isAngle(coordinate) ? nearby + wrapAngle(mean - nearby) : mean;
 }
 
 std::string

@@ -15,9 +15,15 @@ namespace bayesian_icp::app {
 std::string
 reportText(const Run& run);
 
-/** \brief The table of the coordinates: mean, deviation, interval and diagnostics of
- * each [m, rad], then the first four of the angles in degrees. The first cell of a row
- * is the coordinate's name with its unit. \param[in] degree name of that unit
+/** \brief A coordinate of the mean pose T_mean, which is a pose of the posterior's also
+ * where the means of the coordinates, each on its own, are none [m, rad]. An angle is
+ * unwrapped about its own mean, as its quantiles are. */
+double
+meanPoseCoordinate(const Summary& summary, int coordinate);
+
+/** \brief The table of the coordinates: mean pose, deviation, interval and diagnostics
+ * of each [m, rad], then the first four of the angles in degrees. The first cell of a
+ * row is the coordinate's name with its unit. \param[in] degree name of that unit
  * \param[in] unknown stands for numbers that are not finite */
 std::vector<std::vector<std::string>>
 coordinateCells(const Summary& summary,

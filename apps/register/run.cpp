@@ -183,8 +183,6 @@ readRun(const std::string& source_file,
   run.target = io::readCloud(target_file);
   run.reading_seconds = Seconds(Clock::now() - start).count();
   run.settings = settings;
-  run.settings.options.prior.frame =
-      priorFrameOf(settings.options, run.source.points.cast<double>());
   run.settings.scaleToClouds(
       run.source.num_finite,
       std::max(run.source.largest_coordinate, run.target.largest_coordinate));

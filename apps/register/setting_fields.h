@@ -24,7 +24,8 @@ visitRegistration(SettingsT& settings, Visitor& visit)
   constexpr const char* group = "registration";
   visit({group, "guess_matrix", "guess", "POSE|FILE",
          "Initial guess of the source-to-target pose: x,y,z,roll,pitch,yaw [m, rad] "
-         "with R = Rz(yaw) Ry(pitch) Rx(roll), or a text file with the 4x4 matrix."},
+         "with R = Rz(yaw) Ry(pitch) Rx(roll); a text file with the 4x4 matrix; or a "
+         "posterior.json (a name that ends in .json), whose mean it is."},
         settings.guess);
   visit({group, "max_distance_m", "max-distance,d", "M",
          "Largest distance of corresponding points [m]. With preset calibrated it "

@@ -61,7 +61,7 @@ poseTable(const Summary& summary)
 {
   std::vector<Cells> rows = coordinateCells(summary, "°", unknown);
   const Cells header = {
-      "", "mean", "std. dev.", "2.5 %", "97.5 %", "R-hat", "bulk ESS", "tail ESS"};
+      "", "mean pose", "std. dev.", "2.5 %", "97.5 %", "R-hat", "bulk ESS", "tail ESS"};
   for (Cells& cells : rows)
     cells.resize(header.size());
   return {"Pose that maps source points into the target frame; R = Rz(yaw) Ry(pitch) "

@@ -62,8 +62,8 @@ poseText(const Summary& summary)
 {
   Vector6d mean, standard_deviations;
   for (int k = 0; k < 6; ++k) {
-    const auto& coordinate = summary.coordinates[k];
-    mean[k] = coordinate.mean;
+    const auto& coordinate = summary.coordinates[static_cast<std::size_t>(k)];
+    mean[k] = meanPoseCoordinate(summary, k);
     standard_deviations[k] = coordinate.standard_deviation;
   }
   return poseText(mean, standard_deviations);

@@ -101,7 +101,7 @@ describeOptions(Request& request)
       po::options_description("Other errors of the sensor")};
   auto& general = groups[static_cast<std::size_t>(OptionGroup::General)];
   auto& views = groups[static_cast<std::size_t>(OptionGroup::Views)];
-  general.add_options()("help,h", "Show this text.");
+  general.add_options()("help,h", "Show this text.")("version", "Show the version.");
   SimulationOptions& options = request.options;
   visitOptions(options, [&groups, &options](const OptionField& field, auto& value) {
     groups[static_cast<std::size_t>(field.group)].add_options()(
@@ -154,6 +154,19 @@ sceneList()
   return list.str();
 }
 
+/** \throws io::UsageError of an option of another kind of sensor, unless it is 0 */
+void
+refuseOptionsWithoutEffect(const po::variables_map& given,
+                           const SimulationOptions& options)
+{
+  visitOptions(options, [&given](const OptionField& field, const auto& value) {
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>)
+      if (given.count(field.name) > 0 && !field.is_recorded && value != 0)
+        throw io::UsageError(std::string("--") + field.name +
+                             ": has no effect with this sensor and its other options");
+  });
+}
+
 } // namespace
 
 std::optional<Request>
@@ -162,7 +175,9 @@ parseCommandLine(int argc, const char* const* argv)
   Request request;
   const po::options_description options = describeOptions(request);
   const po::variables_map given = io::splitCommandLine(argc, argv, options, nullptr);
-  if (io::printHelpOrVersion(given, "", [&options] { return helpText(options); }))
+  if (io::printHelpOrVersion(given,
+                             "pcl_bayesian_icp_simulate " BAYESIAN_ICP_VERSION,
+                             [&options] { return helpText(options); }))
     return std::nullopt;
   if (given.count("list-scenes") > 0) {
     io::print(sceneList());
@@ -179,6 +194,7 @@ parseCommandLine(int argc, const char* const* argv)
   if (is_same_view && given.count("source-look-at") == 0)
     source.look_at = request.options.target_view.look_at;
   validate(request.options);
+  refuseOptionsWithoutEffect(given, request.options);
   return request;
 }
 

@@ -126,8 +126,10 @@ makeTrack(const TrackCommand& command)
     trimMemory(track.size());
   }
   writeFiles(command, track, folder);
-  if (io::wasInterrupted())
+  if (io::wasInterrupted()) {
+    tell("interrupted; the same command goes on");
     return Interrupted;
+  }
   const bool are_all_good = std::all_of(
       track.steps().begin(), track.steps().end(), [](const TrackStep& step) {
         return step.kind == StepKind::Registered;

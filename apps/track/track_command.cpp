@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <sstream>
 
 namespace bayesian_icp::app {
@@ -20,7 +19,7 @@ namespace {
  */
 constexpr double time_limit = 2147483648.0, shortest_interval = 1e-9;
 /** Larger ones are a mistake, and overflow in time. */
-constexpr double max_acceleration = 1e6;
+constexpr double max_acceleration = 1e6, min_acceleration = 1e-9;
 /** [m] */
 constexpr double min_voxel_size = 1e-6;
 constexpr int max_map_scans = 1000;
@@ -159,10 +158,12 @@ check(const po::variables_map& given, const TrackCommand& command)
   const TrackRequest& request = command.request;
   if (command.output_folder.empty())
     throw io::UsageError("--output is needed");
-  const double tiny = std::numeric_limits<double>::min();
-  requireWithin(request.acceleration, tiny, max_acceleration, "acceleration");
   requireWithin(
-      request.angular_acceleration, tiny, max_acceleration, "angular-acceleration");
+      request.acceleration, min_acceleration, max_acceleration, "acceleration");
+  requireWithin(request.angular_acceleration,
+                min_acceleration,
+                max_acceleration,
+                "angular-acceleration");
   if (given.count("map") > 0)
     requireWithin(request.voxel_size, min_voxel_size, 1e6, "map");
   else if (given.count("map-scans") > 0)

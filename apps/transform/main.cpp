@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include <filesystem>
+#include <iostream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -143,11 +144,18 @@ transformCloud(const Request& request)
   io::OutputFolder folder(io::folderOf(request.output_file));
   io::catchInterrupt(); // from here on a whole file or none
   const std::string name = fs::path(request.output_file).filename().string();
+  std::string note;
   folder.addByName(name, [&](const std::string& path) {
     const Eigen::Affine3d applied = request.is_inverse ? motion.inverse() : motion;
-    io::writeCloud(io::movedCloud(cloud, applied.matrix()), format, path);
+    io::CloudFile moved = io::movedCloud(cloud, applied.matrix());
+    moved.file = request.output_file;
+    io::writeCloud(moved, format, path);
+    if (!moved.has_doubles)
+      note = io::noteOfLostDigits(moved);
   });
   folder.commit();
+  if (!note.empty())
+    std::cerr << "pcl_bayesian_icp_transform: " << note << '\n';
 }
 
 int

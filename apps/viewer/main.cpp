@@ -74,6 +74,8 @@ prepareScene(const Request& request, std::optional<Window>& window)
   if (!request.posterior_file.empty()) {
     Scene scene =
         readScene(request.posterior_file, request.source_file, request.target_file);
+    if (!scene.note.empty())
+      tell("warning: not of one registration: " + scene.note);
     requireDisplay();
     return scene;
   }

@@ -49,6 +49,8 @@ struct Scene {
   /** Short name of the Status, and the status in words. */
   std::string status;
   std::string status_message;
+  /** What speaks against that all of this belongs together; empty if nothing. */
+  std::string note;
 };
 
 /** \brief How many times larger deviations are to be drawn so that the largest is at

@@ -1,6 +1,7 @@
 #include "viewer/scene_files.h"
 
 #include "io/errors.h"
+#include "io/numbers.h"
 #include "io/posterior_file.h"
 
 #include <filesystem>
@@ -72,6 +73,16 @@ readScene(const std::string& posterior_file,
   scene.draws = io::readSamples((folder / "samples.csv").string());
   scene.status = posterior.status;
   scene.status_message = posterior.status_message;
+  const auto compare =
+      [&](const std::string& what, Eigen::Index found, Eigen::Index stated) {
+        if (found != stated)
+          scene.note += (scene.note.empty() ? "" : "; ") + what + " has " +
+                        io::textOf(found) + " in place of the " + io::textOf(stated) +
+                        " of " + posterior_file;
+      };
+  compare("the source", scene.source.cols(), posterior.num_source_points);
+  compare("the target", scene.target.cols(), posterior.num_target_points);
+  compare("samples.csv", scene.draws.rows(), posterior.num_draws);
   return scene;
 }
 

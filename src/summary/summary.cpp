@@ -241,6 +241,12 @@ messageOf(const Summary& summary, const ChainSet& set, const WorstDiagnostics& w
         worst.rhat,
         worst.ess);
   default:
+    if (std::isnan(worst.rhat) && static_cast<double>(summary.num_draws) < min_ess)
+      return formatted(
+          "%ld draws are too few to tell whether the chains mixed or did "
+          "not mix; mean and covariance describe these draws, not reliably "
+          "the posterior",
+          summary.num_draws);
     return formatted(
         "the chains did not mix: largest R-hat %.3f (at most %.2f is good), "
         "smallest effective sample size %.0f (at least %.0f is good); mean and "

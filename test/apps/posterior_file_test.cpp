@@ -71,6 +71,8 @@ runWith(const PoseMatrix& draws)
   app::Run run;
   run.source.file = "a \"quoted\" name.pcd";
   run.target.file = "target.ply";
+  run.source.points.setZero(3, 3);
+  run.target.points.setZero(3, 4);
   run.result.chains = {{draws, false}};
   ChainSet set;
   set.chains = run.result.chains;
@@ -103,6 +105,9 @@ TEST_F(PosteriorFiles, PosteriorReadsBackWithoutLoss)
   const auto read = io::readPosterior(file("p.json", app::posteriorJson(run)));
   EXPECT_EQ(read.source_file, run.source.file);
   EXPECT_EQ(read.target_file, run.target.file);
+  EXPECT_EQ(read.num_source_points, 3);
+  EXPECT_EQ(read.num_target_points, 4);
+  EXPECT_EQ(read.num_draws, 50);
   EXPECT_EQ(read.status, toString(run.result.summary.status));
   EXPECT_EQ(read.status_message, run.result.summary.message);
   EXPECT_EQ(read.final_matrix, run.result.final_matrix);
@@ -160,6 +165,7 @@ TEST_F(PosteriorFiles, BadValuesAreNamed)
   } cases[] = {
       {"/source", 3, "source is '3', but must be an object"},
       {"/source/file", nullptr, "source.file"},
+      {"/target/points", -1, "target.points"},
       {"/status/name", 1, "status.name"},
       {"/final_transformation/T_target_source/2/1", "1", "T_target_source[2][1]"},
       {"/final_transformation/T_target_source/2", {1, 2, 3}, "T_target_source[2]"},

@@ -39,7 +39,9 @@ summaryWith(Status status)
   summary.num_chains = 4;
   summary.num_draws = 2000;
   for (std::size_t k = 0; k < 6; ++k) {
-    summary.coordinates[k].mean = k < 3 ? 0.0213 : 0.5;
+    // The pose is that of the mean, not of the coordinates' own means.
+    summary.mean[static_cast<Eigen::Index>(k)] = k < 3 ? 0.0213 : 0.5;
+    summary.coordinates[k].mean = k < 3 ? 0.0113 : 0.4;
     summary.coordinates[k].standard_deviation = k < 3 ? 0.0004 : 0.1 * pi / 180.0;
     summary.coordinates[k].rhat = 1.1;
   }
@@ -133,7 +135,7 @@ TEST(Verdict, WhatNotToTrustComesFirst)
   summary.status = Status::Cancelled;
   verdict = verdictOf(summary, Preset::Calibrated);
   EXPECT_EQ(verdict.heading, "Interrupted: do not trust the ±");
-  EXPECT_NE(verdict.sentence.find("until then, 2000 draws"), std::string::npos);
+  EXPECT_NE(verdict.sentence.find("until then (2000)"), std::string::npos);
 }
 
 TEST(Verdict, SeveralModesHaveAPoseEach)

@@ -118,7 +118,10 @@ class BatchResults(BatchTest):
                 {"name": "last", **good},
             ]
         )
-        result = run_batch(manifest, *FAST, "-d", 0.5)
+        apart = self.folder / "files" / "apart"
+        apart.mkdir(parents=True)
+        (apart / "samples.csv").write_text("of an older posterior")
+        result = run_batch(manifest, *FAST, "-d", 0.5, "-o", apart.parent)
         self.assertEqual(result.returncode, 1, result.stderr)
         lines = results_of(result.stdout)
         self.assertEqual(len(lines), 7)
@@ -134,6 +137,7 @@ class BatchResults(BatchTest):
             self.assertEqual(lines[name].keys(), lines["first"].keys())
         self.assertEqual(lines["apart"]["status"], "too_few_correspondences")
         self.assertIsNone(lines["apart"]["mean"]["x_m"])
+        self.assertEqual([path.name for path in apart.iterdir()], ["posterior.json"])
         self.assertEqual(lines["first"]["mean"], lines["last"]["mean"])
         self.assertGreater(lines["first"]["draws"], 0)
         self.assertEqual(len(result.stderr.splitlines()), 7)
@@ -262,6 +266,10 @@ class BatchResume(BatchTest):
         self.assertIn("3 of 3 pairs", result.stderr)
         self.assertEqual(self.results.read_bytes(), text)
         self.assertEqual(result.returncode, 1)  # what it was in the first run
+        self.assertNotIn("no files", result.stderr)
+        output = self.folder / "output"
+        result = run_batch(manifest, *FAST, "--results", self.results, "-o", output, "--quiet")
+        self.assert_refused(1, result, f"3 pairs have a line in {self.results} but no files")
 
     def test_results_of_something_else(self):
         manifest = self.seeds(2)
@@ -282,8 +290,9 @@ class BatchResume(BatchTest):
         with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
             process.stderr.readline()
             process.send_signal(signal.SIGINT)
-            process.communicate(timeout=30)
+            _, errors = process.communicate(timeout=30)
         self.assertEqual(process.returncode, 130)
+        self.assertIn("pcl_bayesian_icp_batch: interrupted; the pairs under way", errors)
         self.assertIn(len(results_of(self.results.read_text())), range(1, 9))
         self.assertEqual(self.resumed(manifest, *SLOW), self.whole_run(manifest, *SLOW))
 

@@ -74,6 +74,16 @@ class OwnLayout(ConfigTest):
         self.assertEqual(options["chains"]["seed"], 5)
         self.assertEqual(options["chains"]["num_chains"], 4)  # the default
 
+    def test_guess_of_a_posterior(self):
+        _, document = self.run_to_files(*self.small_pair(), *FAST)
+        file = self.folder / "output" / "posterior.json"
+        result = run(*self.small_pair(), *FAST, "--guess", file, "--json")
+        guess = strict_json(result.stdout)["options"]["registration"]["guess_matrix"]
+        self.assertEqual(guess, document["posterior"]["mean"]["T_target_source"])
+        no_posterior = self.file("no.json", "{}")
+        result = run(*self.small_pair(), *FAST, "--guess", no_posterior)
+        self.assert_refused(3, result, "no.json: is not a posterior.json")
+
     def test_broken_files(self):
         self.refuse(3, "", "is empty")
         self.refuse(3, '{\n  "chains": {"seed" 5}\n}', "broken JSON", "line 2, column 21")
@@ -126,6 +136,18 @@ class OwnLayout(ConfigTest):
         ):
             self.assertEqual(options[group][key], "automatic")
         self.refuse(2, {"chains": {"thinning": "automatic"}}, "chains.thinning is '\"automatic\"'")
+
+    def test_automatic_frame_is_found_anew(self):
+        options = ["--preset=calibrated", "--samples=60", "--json"]
+        near, target = self.small_pair()
+        far = [(x + 9, y, z) for x, y, z in cloud_files.box_surface(seed=2)]
+        far = self.file("far.pcd", cloud_files.pcd_bytes(far))
+        first = run(near, target, *options).stdout
+        config = self.config(first)
+        second = run(far, target, *options, "--guess=-9,0,0,0,0,0", "--config", config).stdout
+        for document, frame in ((strict_json(first), "origin"), (strict_json(second), "source-centroid")):
+            self.assertEqual(document["options"]["prior"]["frame"], "automatic")
+            self.assertEqual(document["prior_frame"], frame)
 
     def test_malformed_values(self):
         bad = [

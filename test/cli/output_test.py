@@ -100,14 +100,36 @@ class Files(ToolTest):
         result = subprocess.run(command, stdout=subprocess.PIPE, check=False)
         self.assertEqual(strict_json(result.stdout.decode())["source"]["points"], 300)
 
+    def test_input_is_not_replaced(self):
+        source, target = self.small_pair()
+        aligned = source.rename(self.folder / "aligned.pcd")
+        content = aligned.read_bytes()
+        for clouds in ([aligned, target], [target, aligned]):
+            result = run(*clouds, *FAST, "-o", self.folder)
+            self.assert_refused(2, result, "--output", f"has the input {aligned}")
+        self.assertEqual(aligned.read_bytes(), content)
+        self.assertFalse((self.folder / "posterior.json").exists())
+
     def test_no_draws_no_files(self):
         output = self.folder / "output"
         options = ["--preset=paper", "--step-size=10", "--samples=400", "-o", output]
         result = run(*self.small_pair(), *options)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("no files are written", result.stderr)
+        self.assertIn("no files but posterior.json are written", result.stderr)
         self.assertIn("Status: diverged: 4 of 4 chains", result.stdout)
-        self.assertEqual(list(output.iterdir()), [])
+        self.assertEqual([path.name for path in output.iterdir()], ["posterior.json"])
+
+    def test_failure_replaces_an_older_result(self):
+        output = self.folder / "output"
+        self.run_to_files(*self.small_pair(), *FAST, "--export=csv,tum", "--export-unreliable")
+        self.assertGreater(len(list(output.iterdir())), 4)
+        other = self.file("other.txt", "mine").rename(output / "other.txt")
+        result = run(*self.small_pair(), "--guess=9,9,9,0,0,0", "-d1", "--json", "-o", output)
+        self.assertEqual(result.returncode, 1)
+        written = (output / "posterior.json").read_text()
+        self.assertEqual(strict_json(written), strict_json(result.stdout))
+        self.assertEqual(strict_json(written)["status"]["name"], "too_few_correspondences")
+        self.assertEqual(sorted(output.iterdir()), [other, output / "posterior.json"])
 
 
 class AlignedCloud(ToolTest):
@@ -138,9 +160,10 @@ class Printed(ToolTest):
             label = f"{coordinate['name']} [{coordinate['unit']}]"
             row = next(line for line in text.splitlines() if line.startswith(label))
             numbers = row[len(label) :].split()
-            keys = ["mean", "standard_deviation", "quantile_2.5_percent", "quantile_97.5_percent"]
-            for number, key in zip(numbers, keys):
-                self.assertAlmostEqual(float(number), coordinate[key], delta=0.6e-6)
+            mean = document["posterior"]["mean"][f"{coordinate['name']}_{coordinate['unit']}"]
+            keys = ["standard_deviation", "quantile_2.5_percent", "quantile_97.5_percent"]
+            for number, value in zip(numbers, [mean, *map(coordinate.get, keys)]):
+                self.assertAlmostEqual(float(number), value, delta=0.6e-6)
             self.assertAlmostEqual(float(numbers[4]), coordinate["rhat"], delta=0.6e-3)
         self.assertIn("yaw [deg]", text)
         self.assertIn("R-hat  bulk ESS  tail ESS", text)

@@ -193,11 +193,11 @@ class PoseGraphEdges(PoseGraphTest):
         """In its plane a bare table top is held by the prior alone."""
         source, target = scans("table_top")
         variance = 0.01
-        options = ["--loop", "0,1", "--prior-variance", variance]
-        result = call(POSE_GRAPH, target, source, "-o", self.graph, *options)
+        options = ["--loop", "0,2", "--prior-variance", variance]
+        result = call(POSE_GRAPH, target, source, source, "-o", self.graph, *options)
         self.assertIn(result.returncode, (0, 1), result.stderr)
         lines = [line for line in self.graph.read_text().splitlines() if "EDGE" in line]
-        chain, loop = (inv(read_g2o_edge(line)[4]) for line in lines)
+        chain, _, loop = (inv(read_g2o_edge(line)[4]) for line in lines)
         for axis in (0, 1):
             # To 20 %: axes are tilted, and a variance of 2000 draws is known to 3 %.
             self.assertAlmostEqual(chain[axis][axis], variance, delta=0.2 * variance)
@@ -217,6 +217,8 @@ class PoseGraphEdges(PoseGraphTest):
             (2, [source, target], "--output"),
             (2, [source, target, "-o", "g", "--loop", "0,2"], "--loop: '0,2'"),
             (2, [source, target, "-o", "g", "--loop", "1,1"], "--loop: '1,1'"),
+            (2, [source, target, "-o", "g", "--loop", "0,1"], "--loop: '0,1' are neighbours"),
+            (2, [source, target, "-o", "g", "--loop", "1,0"], "--loop: '1,0' are neighbours"),
             (2, [source, target, "-o", "g", "--sigma", "1"], "--sigma"),
             (2, [source, target, "-o", "g", "--span", "0"], "--span is 0, but must be from 1"),
             (2, [source, target, "-o", "g", "--loops", "0"], "--loops is 0, but must be above"),
@@ -225,6 +227,7 @@ class PoseGraphEdges(PoseGraphTest):
             (2, [source, target, "--optimize", "g", "--robust-loss", "tukey"], "'tukey' is not"),
             (3, [source, target, "--optimize", "/proc/none/g"], "/proc/none"),
             (3, [self.folder / "scans", "-o", "g"], "fewer than two"),
+            (3, [self.folder / "none", "-o", "g"], "none: no such folder"),
             (3, [source, target, "-o", "/proc/none/g"], "/proc/none"),
         ):
             with self.subTest(words=words):

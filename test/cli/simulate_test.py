@@ -47,6 +47,11 @@ class Simulate(ToolTest):
         listed = call(SIMULATE, "-list-scenes").stdout
         self.assertEqual(re.findall(r"^(\w+): ", listed, re.MULTILINE), SCENES)
 
+    def test_version(self):
+        version = call(SIMULATE, "--version")
+        self.assertEqual(version.returncode, 0)
+        self.assertTrue(version.stdout.startswith("pcl_bayesian_icp_simulate 0."), version.stdout)
+
     def test_one_or_two_dashes_and_negative_numbers(self):
         once = self.simulate("-scene can -offset -0.1,-.2,3e-1,0,0,0 -seed=7", "once")
         self.assertEqual(
@@ -85,6 +90,11 @@ class Simulate(ToolTest):
             "--scene street --sensor lidar12",
             "--scene street --sweep-motion 2",
             "--scene can --sweep-motion 0.5",
+            "--scene can --rings 3",
+            "--scene mug --ring-offset 0.1",
+            "--scene mug --range-noise 5",
+            "--scene room --width 100",
+            "--scene can --noise-correlation-pixels 4",
             "--scene can --frame world",
             "--scene can --quantisation fine",
             "--scene room --quantisation kinect",

@@ -224,10 +224,26 @@ class TrackUsage(TrackTest):
         result = self.run_track(first, second, "--times", "names")
         self.assertIn(result.returncode, (0, 1), result.stderr)
         self.assertEqual(self.times(), [17.25, 17.5])
+        # As they went in, though numbers of 64 bits are 240 ns apart there.
+        first = first.rename(self.folder / "1700000000.25.pcd")
+        second = second.rename(self.folder / "1700000000.350001.pcd")
+        self.track = self.folder / "of_today"
+        self.assertIn(self.run_track(first, second, "--times", "names").returncode, (0, 1))
+        for name in ("trajectory_tum.txt", "trajectory_covariance.txt"):
+            stamps = [line.split()[0] for line in (self.track / name).read_text().splitlines()]
+            self.assertEqual(stamps[-2:], ["1700000000.250000000", "1700000000.350001000"])
         times = self.file("times.txt", "3.00000000000\n4.50000000000\n")
         self.track = self.folder / "another"
         self.assertIn(self.run_track(first, second, "--times", times).returncode, (0, 1))
         self.assertEqual(self.times(), [3.0, 4.5])
+
+    def test_folder_of_capitals(self):
+        scans = self.folder / "scans"
+        scans.mkdir()
+        for k, scan in enumerate(self.small_pair()):
+            scan.rename(scans / f"{k}.PCD")
+        self.assertIn(self.run_track(scans).returncode, (0, 1))
+        self.assertEqual(len(self.times()), 2)
 
     def test_refused(self):
         source, target = self.small_pair()
@@ -235,7 +251,7 @@ class TrackUsage(TrackTest):
         (self.folder / "empty").mkdir()
         for code, words, part in (
             (2, [target], "at least two scans"),
-            (2, [*two, "--acceleration", 0], "--acceleration is 0, but must be from"),
+            (2, [*two, "--acceleration", 0], "--acceleration is 0, but must be from 1e-09 to"),
             (2, [*two, "--period", "-1"], "--period is -1"),
             (2, [*two, "--map", 0], "--map is 0"),
             (2, [*two, "--span", 0], "--span is 0"),
@@ -252,6 +268,7 @@ class TrackUsage(TrackTest):
             (3, [*two, "--times", self.file("short.txt", "1\n")], "has 1 times for 2 scans"),
             (3, [*two, "--times", self.file("back.txt", "2 1")], "is not after"),
             (3, [self.folder / "empty"], "fewer than two"),
+            (3, [self.folder / "none"], "none: no such folder"),
         ):
             with self.subTest(words=words):
                 self.assert_refused(code, self.run_track(*words), part)

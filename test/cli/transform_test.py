@@ -152,6 +152,16 @@ class TransformMotion(TransformTest):
         self.assert_moved(before, after, cloud_files.matrix_of(*POSE), normals=False)
 
 
+    def test_digits_that_32_bits_lose_are_told(self):
+        output = self.folder / "out.pcd"
+        result = transform(self.cloud(), output, "--pose", "500000,5000000,0,0,0,0")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, rf"{output}: note: .* kept to 0.5 m only")
+        fields = [(name, "d") for name in "xyz"]
+        doubles = self.file("double.pcd", cloud_files.pcd_bytes([(1, 2, 3)] * 3, fields))
+        self.assert_done(transform(doubles, output, "--pose", "500000,5000000,0,0,0,0"))
+
+
 class TransformRefusals(TransformTest):
     def test_input_is_not_overwritten_unless_asked_for(self):
         source = self.cloud()
@@ -170,6 +180,8 @@ class TransformRefusals(TransformTest):
         self.assert_refused(2, transform(source, "--pose", WORDS), "expected two files")
         self.assert_refused(2, transform(source, output), "--pose is missing")
         self.assert_refused(2, transform(source, output, "--pose", "1,2,3"), "--pose: '1,2,3'")
+        for words in ("nan,0,0,0,0,0", "0,0,0,0,0,inf"):
+            self.assert_refused(2, transform(source, output, "--pose", words), "--pose: must be finite")
         self.assert_refused(2, transform(source, output, "--pose", WORDS, "--use=x"), "--use: 'x'")
         self.assert_refused(2, transform(source, output, "--poses", WORDS), "--poses")
         self.assertFalse(output.exists())

@@ -70,6 +70,7 @@ class Usage(ToolTest):
     def test_values_out_of_range(self):
         of_paper = [
             ("samples", "0", "num_draws is 0"),
+            ("samples", "3", "at least the number of chains (one draw a chain)"),
             ("chains", "0", "num_chains is 0"),
             ("burn-in", "-1", "num_burn_in is -1"),
             ("thinning", "0", "thinning is 0"),

@@ -202,6 +202,18 @@ class Pictures(ScreenTest):
         shown = self.picture(moved, *scans("mug"), "--show", "draws")
         self.assert_same_pixels(shown, self.saved("mug", "--show", "draws"))
 
+    def test_files_that_do_not_belong_together_are_told(self):
+        saved = self.results / "mug" / "posterior.json"
+        (self.results / "mixed").mkdir()
+        mixed = shutil.copy(saved, self.results / "mixed")
+        lines = (saved.parent / "samples.csv").read_text().splitlines(keepends=True)
+        (self.results / "mixed" / "samples.csv").write_text("".join(lines[:100]))
+        words = ["--screenshot", self.folder / "picture.png", "--size", "200x150"]
+        result = view(mixed, *scans("can"), *words, display=self.display)
+        self.assertEqual(result.returncode, 0)
+        for part in ("the source has ", "the target has ", "samples.csv has 99 in place of the"):
+            self.assertIn(part, result.stderr)
+
     def test_bad_camera(self):
         saved = self.results / "mug" / "posterior.json"
         words = ["--screenshot", self.folder / "picture.png", "-cam", "1/2"]

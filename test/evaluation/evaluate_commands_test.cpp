@@ -22,6 +22,13 @@ using CommandLines = std::pair<std::string, std::vector<std::string>>;
 
 } // namespace
 
+TEST_F(EvaluateCommands, HasAVersion)
+{
+  const CommandResult result = run("--version");
+  EXPECT_EQ(result.exit_code, 0);
+  expectIn(result.output, "pcl_bayesian_icp_evaluate 0.");
+}
+
 TEST_F(EvaluateCommands, CoverageRunsOnceAndMakesTheReport)
 {
   const std::string command =

@@ -329,6 +329,8 @@ TEST(Summary, TooFewDrawsForDiagnosticsAreNotMixed)
   const Summary summary = summarize(mixedChains(random, 4, 2));
   EXPECT_EQ(summary.status, Status::NotMixed);
   EXPECT_TRUE(std::isnan(summary.coordinates[0].rhat));
+  EXPECT_EQ(summary.message.rfind("8 draws are too few to tell", 0), 0u)
+      << summary.message;
 }
 
 TEST(Summary, DivergedChainsAreLeftOutAndReported)
