@@ -1,5 +1,5 @@
 /** \file
- * rief Numbers, matrices and settings to JSON, which has no infinity and no NaN: they
+ * \brief Numbers, matrices and settings to JSON, which has no infinity and no NaN: they
  * are null.
  */
 #pragma once

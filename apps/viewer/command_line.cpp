@@ -152,7 +152,7 @@ describeOptions(Request& request)
     ("fc", oncePerCloud("R,G,B", readColor, &PointStyle::color, view, color),
      "Colour of a cloud. (default depends on the cloud)")
     ("ps", oncePerCloud("N", within(1, 64), &PointStyle::size, view, "a point size, 1 to 64"),
-     "Point size, 1 to 64. (default 3)")
+     "Point size, 1 to 64. (default 3; 2 for the target)")
     ("opaque", oncePerCloud("X", within(0.0, 1.0), &PointStyle::opacity, view, "an opacity, 0 to 1"),
      "Opacity, 0 to 1. (default 1)")
     ("ax", value("X", within(0.0, largest), view.axes_scale, "a length [m]"),

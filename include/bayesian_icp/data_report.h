@@ -121,8 +121,8 @@ struct BAYESIAN_ICP_EXPORT DataReport {
    * directions. Its covariance is the posterior's, widened by half the noise, because
    * starts do not converge further. */
   double basin_distance = std::numeric_limits<double>::quiet_NaN();
-  /** Mean capped residual at the worse of the two ends, divided by that at the better
-   * one. */
+  /** Cost at the worse of the two ends, divided by that at the better one. A cost is
+   * the mean capped residual of the source points. */
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
   /** Probability that a pose drawn from the prior is further from the prior's mean than
    * the posterior's mean is, without PriorOnly directions. Uniform in [0, 1] if the

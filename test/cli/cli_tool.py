@@ -99,7 +99,7 @@ class ToolTest(unittest.TestCase):
             self.assertIn(str(part), lines[0])
 
     def assert_close(self, found, expected, delta):
-        """Numbers, or lists of the same shape of these, that differ by \p delta at most."""
+        """Numbers, or lists of the same shape of these, that differ by \\p delta at most."""
         if isinstance(expected, (int, float)):
             self.assertAlmostEqual(found, expected, delta=delta)
             return
