@@ -57,9 +57,9 @@ printHelp(std::ostream& stream)
     stream << "  " << std::left << std::setw(14) << command.name << command.summary
            << '\n';
   stream
-      << "\nCOMMAND --help tells its options, --version the version. Exit codes: 0 "
-         "good,\n1 a result is not to be relied on, 2 usage, 3 cannot read or write a "
-         "file.\n";
+      << "\nCOMMAND --help tells its options, pcl_bayesian_icp_evaluate --version the "
+         "version.\nExit codes: 0 good, 1 a result is not to be relied on, 2 usage, 3 "
+         "cannot read or\nwrite a file.\n";
 }
 
 int

@@ -224,16 +224,18 @@ tellMissingFiles(const Request& request,
 {
   if (request.output_folder.empty())
     return;
+  std::error_code error;
   std::size_t num_missing = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k)
     num_missing +=
         !std::binary_search(remaining.begin(), remaining.end(), k) &&
         !std::filesystem::exists(std::filesystem::path(request.output_folder) /
-                                 pairs[k].name / "posterior.json");
+                                     pairs[k].name / "posterior.json",
+                                 error);
   if (num_missing > 0)
     tell(io::textOf(num_missing) + " pairs have a line in " + request.results_file +
          " but no files in " + request.output_folder +
-         ", and get none; take another --results for them");
+         ", and are not run again; docs/batch.md says how to");
 }
 
 /** Process 0 owns the file; the others write theirs, which it takes in at the end. */

@@ -150,8 +150,10 @@ registerAsAsked(const Request& request)
   bool is_exported = true;
   if (folder && has_draws)
     is_exported = writeFiles(request, run, *folder);
-  else if (folder)
+  else if (folder && run.result.summary.status != Status::Cancelled)
     writeFailure(run, *folder);
+  else if (folder)
+    tell("there are no draws, so no files are written");
   is_exported &= report(request, run);
   if (io::wasInterrupted())
     return Interrupted;

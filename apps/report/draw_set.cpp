@@ -1,6 +1,7 @@
 #include "report/draw_set.h"
 
 #include "io/coordinates.h"
+#include "register/report_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,16 +15,18 @@ namespace {
 constexpr double rounding = 1e-12;
 
 Axis
-axisOf(int k, const CoordinateSummary& coordinate)
+axisOf(int k, const Summary& summary)
 {
+  const CoordinateSummary& coordinate = summary.coordinates[k];
+  const double mean = meanPoseCoordinate(summary, k);
   Axis axis;
   axis.name = coordinate_names[k];
   const LengthUnit unit = unitFor(coordinate.standard_deviation);
   axis.unit = isAngle(k) ? "°" : unit.name;
   axis.factor = isAngle(k) ? degrees_per_radian : unit.per_metre;
   axis.standard_deviation = axis.factor * coordinate.standard_deviation;
-  axis.quantile_2_5 = axis.factor * (coordinate.quantile_2_5 - coordinate.mean);
-  axis.quantile_97_5 = axis.factor * (coordinate.quantile_97_5 - coordinate.mean);
+  axis.quantile_2_5 = axis.factor * (coordinate.quantile_2_5 - mean);
+  axis.quantile_97_5 = axis.factor * (coordinate.quantile_97_5 - mean);
   return axis;
 }
 
@@ -32,7 +35,7 @@ meansOf(const Summary& summary)
 {
   Vector6d means;
   for (int k = 0; k < 6; ++k)
-    means[k] = summary.coordinates[k].mean;
+    means[k] = meanPoseCoordinate(summary, k);
   return means;
 }
 
@@ -63,7 +66,7 @@ drawSetOf(const RegistrationResult& result)
 {
   DrawSet set;
   for (int k = 0; k < 6; ++k)
-    set.axes[k] = axisOf(k, result.summary.coordinates[k]);
+    set.axes[k] = axisOf(k, result.summary);
   const Vector6d means = meansOf(result.summary);
   for (std::size_t i = 0; i < result.chains.size(); ++i) {
     const Chain& chain = result.chains[i];

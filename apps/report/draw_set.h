@@ -1,6 +1,6 @@
 /** \file
- * \brief Draws in the form in which charts show them: differences from the mean
- * of each coordinate in readable units, few enough to be drawn.
+ * \brief Draws in the form in which charts show them: differences from the mean pose,
+ * coordinate by coordinate, in readable units, few enough to be drawn.
  */
 #pragma once
 
@@ -27,7 +27,7 @@ struct Axis {
   double quantile_97_5 = 0.0;
 };
 
-/** \brief What charts of the differences from the mean show, with its unit. */
+/** \brief What charts of the differences from the mean pose show, with its unit. */
 std::string
 differenceLabel(const Axis& axis);
 
@@ -35,8 +35,8 @@ differenceLabel(const Axis& axis);
 struct ChainDraws {
   /** Index among all chains, the diverged ones included. */
   int chain = 0;
-  /** A draw a row: differences from the mean of each coordinate in the units of the
-   * axes, angles wrapped about it. */
+  /** A draw a row: differences from the mean pose, coordinate by coordinate, in the
+   * units of the axes, angles wrapped about it. */
   Eigen::MatrixXd errors;
 };
 

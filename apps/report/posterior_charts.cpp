@@ -199,7 +199,7 @@ pairChart(const DrawSet& draws, const Matrix6d& covariance)
                  : column > row ? correlationPanel(covariance, row, column)
                                 : scatterPanel(draws, reaches, row, column));
   const std::string caption =
-      "Each pair of coordinates, as differences from their means: up to " +
+      "Each pair of coordinates, as differences from the mean pose: up to " +
       io::textOf(max_pair_draws) +
       " draws, coloured by chain (a few outliers lie outside); above the diagonal, the "
       "correlations of all draws.";

@@ -280,8 +280,9 @@ reportSections(const Run& run, const std::string& command)
   sections.push_back(
       {"densities",
        "Posterior of each coordinate",
-       html::paragraphHtml("Density of the draws about the mean (dashed); filled: the "
-                           "95 % interval."),
+       html::paragraphHtml(
+           "Density of the draws about the mean pose (dashed); filled: the "
+           "95 % interval."),
        chartsOf(draws, densityChart)});
   sections.push_back(
       {"pairs",

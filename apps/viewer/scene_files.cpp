@@ -70,7 +70,8 @@ readScene(const std::string& posterior_file,
   takeClouds(source, target, scene);
   scene.guess = posterior.guess;
   scene.final_matrix = posterior.final_matrix;
-  scene.draws = io::readSamples((folder / "samples.csv").string());
+  if (posterior.num_draws > 0)
+    scene.draws = io::readSamples((folder / "samples.csv").string());
   scene.status = posterior.status;
   scene.status_message = posterior.status_message;
   const auto compare =
@@ -80,8 +81,8 @@ readScene(const std::string& posterior_file,
                         io::textOf(found) + " in place of the " + io::textOf(stated) +
                         " of " + posterior_file;
       };
-  compare("the source", scene.source.cols(), posterior.num_source_points);
-  compare("the target", scene.target.cols(), posterior.num_target_points);
+  compare("the source", scene.num_source_points, posterior.num_source_points);
+  compare("the target", scene.num_target_points, posterior.num_target_points);
   compare("samples.csv", scene.draws.rows(), posterior.num_draws);
   return scene;
 }

@@ -46,7 +46,8 @@ simulate(const std::vector<std::string>& arguments)
     const auto request =
         simulator::parseCommandLine(static_cast<int>(words.size()), words.data());
     if (!request)
-      throw std::invalid_argument("help is no option of simulate()");
+      throw std::invalid_argument(
+          "help, version and list_scenes are no options of simulate()");
     pair = simulator::simulate(request->options);
   }
   return py::make_tuple(RowMajorPoints(pair.source.transpose()),

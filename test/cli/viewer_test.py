@@ -3,6 +3,7 @@
 Pictures need an X server; where Xvfb is missing their tests are skipped and say so."""
 
 import colorsys
+import math
 import os
 import shutil
 import signal
@@ -14,6 +15,7 @@ import PIL.Image
 
 import x_server
 from cli_tool import CALIBRATED, DATA, ToolTest, run, scans
+from cloud_files import box_surface, pcd_bytes
 from faults import VIEWER, call
 
 WIDTH, HEIGHT = 480, 360
@@ -213,6 +215,27 @@ class Pictures(ScreenTest):
         self.assertEqual(result.returncode, 0)
         for part in ("the source has ", "the target has ", "samples.csv has 99 in place of the"):
             self.assertIn(part, result.stderr)
+
+    def saved_result(self, points, *options):
+        """posterior.json of a cloud registered to itself."""
+        cloud = self.file("cloud.pcd", pcd_bytes(points))
+        result = run(cloud, cloud, *options, "-o", self.folder / "result", "--no-report")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        return self.folder / "result" / "posterior.json"
+
+    def test_points_that_are_not_finite_count(self):
+        saved = self.saved_result([*box_surface(), (math.nan, 0, 0)], "--preset=exact")
+        words = ["--screenshot", self.folder / "picture.png", "--size", "200x150"]
+        result = view(saved, *words, display=self.display)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("in place of", result.stderr)
+
+    def test_run_without_draws_is_shown(self):
+        saved = self.saved_result(box_surface(), "--preset=paper", "--step-size=10")
+        words = ["--screenshot", self.folder / "picture.png", "--size", "200x150"]
+        result = view(saved, *words, display=self.display)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertTrue((self.folder / "picture.png").exists())
 
     def test_bad_camera(self):
         saved = self.results / "mug" / "posterior.json"
