@@ -127,13 +127,12 @@ coordinateCells(const Summary& summary,
                 const std::string& unknown)
 {
   std::vector<std::vector<std::string>> rows;
+  const Vector6d mean_pose = meanPoseCoordinates(summary);
   const auto addRow = [&](int k, const std::string& unit, double factor, int decimals) {
     const CoordinateSummary& c = summary.coordinates[static_cast<std::size_t>(k)];
     rows.push_back({nameWithUnit(k, unit)});
-    for (const double value : {meanPoseCoordinate(summary, k),
-                               c.standard_deviation,
-                               c.quantile_2_5,
-                               c.quantile_97_5})
+    for (const double value :
+         {mean_pose[k], c.standard_deviation, c.quantile_2_5, c.quantile_97_5})
       rows.back().push_back(numberText(factor * value, decimals, unknown));
   };
   for (int k = 0; k < 6; ++k) {
@@ -148,12 +147,15 @@ coordinateCells(const Summary& summary,
   return rows;
 }
 
-double
-meanPoseCoordinate(const Summary& summary, int coordinate)
+Vector6d
+meanPoseCoordinates(const Summary& summary)
 {
-  const double mean = summary.mean[coordinate];
-  const double nearby = summary.coordinates[static_cast<std::size_t>(coordinate)].mean;
-  return isAngle(coordinate) ? nearby + wrapAngle(mean - nearby) : mean;
+  Vector6d mean = summary.mean;
+  for (int k = 3; k < 6; ++k) {
+    const double nearby = summary.coordinates[static_cast<std::size_t>(k)].mean;
+    mean[k] = nearby + wrapAngle(mean[k] - nearby);
+  }
+  return mean;
 }
 
 std::string

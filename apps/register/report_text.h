@@ -15,11 +15,11 @@ namespace bayesian_icp::app {
 std::string
 reportText(const Run& run);
 
-/** \brief A coordinate of the mean pose T_mean, which is a pose of the posterior's also
- * where the means of the coordinates, each on its own, are none [m, rad]. An angle is
+/** \brief The coordinates of the mean pose T_mean, which is a pose of the posterior
+ * also where the separate means of the coordinates are not [m, rad]. An angle is
  * unwrapped about its own mean, as its quantiles are. */
-double
-meanPoseCoordinate(const Summary& summary, int coordinate);
+Vector6d
+meanPoseCoordinates(const Summary& summary);
 
 /** \brief The table of the coordinates: mean pose, deviation, interval and diagnostics
  * of each [m, rad], then the first four of the angles in degrees. The first cell of a

@@ -15,10 +15,8 @@ namespace {
 constexpr double rounding = 1e-12;
 
 Axis
-axisOf(int k, const Summary& summary)
+axisOf(int k, const CoordinateSummary& coordinate, double mean)
 {
-  const CoordinateSummary& coordinate = summary.coordinates[k];
-  const double mean = meanPoseCoordinate(summary, k);
   Axis axis;
   axis.name = coordinate_names[k];
   const LengthUnit unit = unitFor(coordinate.standard_deviation);
@@ -30,22 +28,13 @@ axisOf(int k, const Summary& summary)
   return axis;
 }
 
-Vector6d
-meansOf(const Summary& summary)
-{
-  Vector6d means;
-  for (int k = 0; k < 6; ++k)
-    means[k] = meanPoseCoordinate(summary, k);
-  return means;
-}
-
 Eigen::MatrixXd
-errorsOf(const PoseMatrix& draws, const Vector6d& means, const DrawSet& set)
+errorsOf(const PoseMatrix& draws, const Vector6d& mean, const DrawSet& set)
 {
   Eigen::MatrixXd errors(draws.rows(), 6);
   for (Eigen::Index i = 0; i < draws.rows(); ++i) {
     const Vector6d error =
-        poseError(draws.row(i).transpose(), means, CovarianceConvention::Parameters);
+        poseError(draws.row(i).transpose(), mean, CovarianceConvention::Parameters);
     for (int k = 0; k < 6; ++k)
       errors(i, k) =
           std::abs(error[k]) < rounding ? 0.0 : set.axes[k].factor * error[k];
@@ -65,13 +54,13 @@ DrawSet
 drawSetOf(const RegistrationResult& result)
 {
   DrawSet set;
+  const Vector6d mean = meanPoseCoordinates(result.summary);
   for (int k = 0; k < 6; ++k)
-    set.axes[k] = axisOf(k, result.summary);
-  const Vector6d means = meansOf(result.summary);
+    set.axes[k] = axisOf(k, result.summary.coordinates[k], mean[k]);
   for (std::size_t i = 0; i < result.chains.size(); ++i) {
     const Chain& chain = result.chains[i];
     if (!chain.diverged && chain.draws.rows() > 0)
-      set.chains.push_back({static_cast<int>(i), errorsOf(chain.draws, means, set)});
+      set.chains.push_back({static_cast<int>(i), errorsOf(chain.draws, mean, set)});
   }
   return set;
 }

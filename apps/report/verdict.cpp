@@ -60,13 +60,11 @@ poseText(const Vector6d& mean, const Vector6d& standard_deviations)
 std::string
 poseText(const Summary& summary)
 {
-  Vector6d mean, standard_deviations;
-  for (int k = 0; k < 6; ++k) {
-    const auto& coordinate = summary.coordinates[static_cast<std::size_t>(k)];
-    mean[k] = meanPoseCoordinate(summary, k);
-    standard_deviations[k] = coordinate.standard_deviation;
-  }
-  return poseText(mean, standard_deviations);
+  Vector6d standard_deviations;
+  for (int k = 0; k < 6; ++k)
+    standard_deviations[k] =
+        summary.coordinates[static_cast<std::size_t>(k)].standard_deviation;
+  return poseText(meanPoseCoordinates(summary), standard_deviations);
 }
 
 std::string

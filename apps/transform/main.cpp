@@ -119,11 +119,10 @@ parseCommandLine(int argc, const char* const* argv)
 Eigen::Matrix4d
 motionOf(const Request& request)
 {
-  if (fs::path(request.pose).extension() != ".json")
+  // Of a posterior.json it takes the mean.
+  if (request.use_mean || fs::path(request.pose).extension() != ".json")
     return io::readMotion("pose", request.pose);
-  const io::PosteriorFile posterior = io::readPosterior(request.pose);
-  Eigen::Matrix4d motion =
-      request.use_mean ? matrixOf(posterior.mean) : posterior.final_matrix;
+  const Eigen::Matrix4d motion = io::readPosterior(request.pose).final_matrix;
   const std::string complaint = io::complaintAboutMotion(motion);
   if (!complaint.empty())
     throw io::FileError(request.pose, complaint);

@@ -65,9 +65,9 @@ complaintAbout(const SurfaceModel& model)
 PreparedSurface
 withoutSurface(Status status,
                const std::string& complaint,
-               std::vector<Index> columns = {})
+               const std::vector<Index>& columns)
 {
-  return {SurfaceModel(Matrix3Xd(3, 0)), complaint, status, std::move(columns)};
+  return {SurfaceModel(Matrix3Xd(3, 0)), complaint, status, columns};
 }
 
 /** Those of the finite columns of \p points that are not stray. */
@@ -76,10 +76,8 @@ usedColumns(const Matrix3Xd& points,
             const std::vector<Index>& finite,
             const SurfaceModelOptions& options)
 {
-  const Matrix3Xd chosen = points(Eigen::all, finite);
-  const Eigen::Vector3d centroid = chosen.rowwise().mean();
-  std::vector<Index> used =
-      withoutStray((chosen.colwise() - centroid).cast<float>(), options.maxPoints());
+  std::vector<Index> used = withoutStray(
+      relativeTo(centroidOf(points, finite), points, finite), options.maxPoints());
   for (Index& column : used)
     column = finite[static_cast<std::size_t>(column)];
   return used;
@@ -95,7 +93,8 @@ prepareSurface(const Matrix3Xd& points, int num_threads)
     return withoutSurface(Status::InvalidInput,
                           "the target has " + std::to_string(finite.size()) +
                               " finite points, but preset calibrated needs " +
-                              std::to_string(min_calibrated_points));
+                              std::to_string(min_calibrated_points),
+                          finite);
   const SurfaceModelOptions options;
   std::vector<Index> columns = usedColumns(points, finite, options);
   PreparedSurface surface = {

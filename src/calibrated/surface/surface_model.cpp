@@ -49,7 +49,8 @@ removeRepeated(Matrix3Xf& points)
   points.conservativeResize(3, count);
 }
 
-/** \p columns of points, relative to \p origin. */
+} // namespace
+
 Matrix3Xf
 relativeTo(const Vector3d& origin,
            const Matrix3Xd& points,
@@ -62,7 +63,6 @@ relativeTo(const Vector3d& origin,
   return relative;
 }
 
-/** Centroid of \p columns of points. */
 Vector3d
 centroidOf(const Matrix3Xd& points, const std::vector<Index>& columns)
 {
@@ -71,8 +71,6 @@ centroidOf(const Matrix3Xd& points, const std::vector<Index>& columns)
     sum += points.col(column);
   return sum / static_cast<double>(columns.size());
 }
-
-} // namespace
 
 SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
                            const SurfaceModelOptions& options,

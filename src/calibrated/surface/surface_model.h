@@ -119,6 +119,16 @@ struct SurfaceModelOptions {
   }
 };
 
+/** \brief Centroid of \p columns of \p points, of which there is at least one [m]. */
+Eigen::Vector3d
+centroidOf(const Eigen::Matrix3Xd& points, const std::vector<Eigen::Index>& columns);
+
+/** \brief \p columns of \p points, relative to \p origin [m]. */
+Eigen::Matrix3Xf
+relativeTo(const Eigen::Vector3d& origin,
+           const Eigen::Matrix3Xd& points,
+           const std::vector<Eigen::Index>& columns);
+
 /** \brief Patches that cover a cloud evenly, and a tree to find them.
  *
  * Internal coordinates are relative to origin(), so that scans far from the origin of
