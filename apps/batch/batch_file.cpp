@@ -87,6 +87,7 @@ batchLine(const BatchResult& result)
   line["time"]["total_s"] = result.seconds;
   line["seed"] = result.pair.settings.options.chains.seed;
   line["settings_id"] = result.pair.settings_id;
+  line["files_state"] = result.files_state;
   // Names of files need not be UTF-8.
   return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
@@ -102,32 +103,39 @@ BatchFile::BatchFile(const std::string& name, const std::vector<BatchPair>& pair
 , pairs_(pairs)
 {
   for (const BatchPair& pair : pairs)
-    settings_ids_[pair.name] = pair.settings_id;
+    pairs_by_name_[pair.name] = &pair;
   file_ = std::make_unique<io::LineFile>(
-      name, [this](const std::string& line) { note(line); });
+      name, [this](const std::string& line) { return note(line); });
   takeRankFiles();
 }
 
 bool
 BatchFile::note(const std::string& line)
 {
-  std::string pair, settings_id, status;
+  std::string pair, settings_id, files_state, status;
   try {
     const auto document = nlohmann::json::parse(line);
     document.at("name").get_to(pair);
     document.at("settings_id").get_to(settings_id);
+    document.at("files_state").get_to(files_state);
     document.at("status").get_to(status);
   }
   catch (const nlohmann::json::exception&) {
     throw io::FileError(name_,
                         "has a line that is not a result: " + io::inQuotes(line));
   }
-  const auto found = settings_ids_.find(pair);
-  if (found != settings_ids_.end() && found->second != settings_id)
+  const auto found = pairs_by_name_.find(pair);
+  if (found != pairs_by_name_.end() && found->second->settings_id != settings_id)
     throw io::FileError(name_,
                         "has a result of pair " + io::inQuotes(pair) +
                             " with other settings, files or program version; use "
                             "another file, or remove its line");
+  const std::string state =
+      found != pairs_by_name_.end() ? found->second->filesState() : "";
+  if (!state.empty() && state != files_state) {
+    ++num_changed_;
+    return false;
+  }
   return statuses_.emplace(pair, status).second;
 }
 
@@ -138,6 +146,7 @@ BatchFile::takeRankFiles()
     const io::LineFile part(name, [this](const std::string& line) {
       if (note(line))
         file_->add(line);
+      return true;
     });
     std::error_code error;
     if (!fs::remove(name, error))
@@ -166,9 +175,9 @@ bool
 BatchFile::areAllOk() const
 {
   const std::string ok = toString(Status::Ok);
-  return std::none_of(pairs_.begin(), pairs_.end(), [&](const BatchPair& pair) {
+  return std::all_of(pairs_.begin(), pairs_.end(), [&](const BatchPair& pair) {
     const auto found = statuses_.find(pair.name);
-    return found != statuses_.end() && found->second != ok;
+    return found != statuses_.end() && found->second == ok;
   });
 }
 

@@ -25,16 +25,24 @@ batchLine(const BatchResult& result);
  * each pair has at most one line. */
 class BatchFile {
 public:
-  /** \brief Read what earlier runs have finished, and take their rank files in.
-   * \throws io::FileError if it cannot be written, is in use, has something else than
-   *         lines, or a pair of \p pairs with other settings */
+  /** \brief Read what earlier runs have finished, and take their rank files in. Lines
+   * of pairs whose files have changed are removed. \throws io::FileError if it cannot
+   * be written, is in use, has something else than lines, or a pair of \p pairs with
+   * other settings */
   BatchFile(const std::string& name, const std::vector<BatchPair>& pairs);
 
   /** \brief Positions in the manifest of the pairs that have no line yet. */
   std::vector<std::size_t>
   remaining() const;
 
-  /** \brief Whether no pair of the manifest has a line whose status is not "ok". */
+  /** \brief Number of lines that were removed because files have changed. */
+  int
+  numChanged() const
+  {
+    return num_changed_;
+  }
+
+  /** \brief Whether all pairs of the manifest have a line whose status is "ok". */
   bool
   areAllOk() const;
 
@@ -48,7 +56,8 @@ public:
   takeRankFiles();
 
 private:
-  /** Remember that the line's pair is done. \return whether that was new */
+  /** Remember that the line's pair is done.
+   * \return whether that was new, and true of the files as they are now */
   bool
   note(const std::string& line);
 
@@ -56,7 +65,8 @@ private:
   const std::vector<BatchPair>& pairs_;
   /** Statuses of what is in the file, by the name of the pair. */
   std::map<std::string, std::string> statuses_;
-  std::map<std::string, std::string> settings_ids_;
+  std::map<std::string, const BatchPair*> pairs_by_name_;
+  int num_changed_ = 0;
   std::unique_ptr<io::LineFile> file_;
 };
 

@@ -69,6 +69,7 @@ private:
   {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
+    const std::string state = pair.filesState();
     const auto seconds = [start] {
       return std::chrono::duration<double>(Clock::now() - start).count();
     };
@@ -84,13 +85,13 @@ private:
       complaint = error.what();
     }
     if (!run)
-      give({pair, nullptr, error_status, complaint, seconds()});
+      give({pair, nullptr, error_status, complaint, seconds(), state});
     else if (run->result.summary.status != Status::Cancelled)
-      give(pair, *run, seconds());
+      give(pair, *run, seconds(), state);
   }
 
   void
-  give(const BatchPair& pair, const Run& run, double seconds)
+  give(const BatchPair& pair, const Run& run, double seconds, const std::string& state)
   {
     const Summary& summary = run.result.summary;
     if (!options_.output_folder.empty()) {
@@ -99,7 +100,7 @@ private:
       addPosteriorFiles(run, folder);
       folder.commit();
     }
-    give({pair, &run, toString(summary.status), summary.message, seconds});
+    give({pair, &run, toString(summary.status), summary.message, seconds, state});
   }
 
   void

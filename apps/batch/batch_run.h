@@ -34,6 +34,8 @@ struct BatchResult {
   std::string message;
   /** From reading the clouds to the posterior. */
   double seconds;
+  /** BatchPair::filesState() before they were read. */
+  std::string files_state;
 };
 
 /** \brief Register the pairs, reading the clouds of each when its turn comes.

@@ -51,8 +51,8 @@ describeOptions(Request& request)
     ("help,h", "Show this text.")
     ("version", "Show the version.")
     ("results", io::fileName("FILE", request.results_file),
-     "Write the lines to this file, and skip pairs that already have a line in it. "
-     "(default: standard output)")
+     "Write the lines to this file, and skip pairs that already have a line in it, "
+     "unless their files have changed. (default: standard output)")
     ("output,o", io::fileName("DIR", request.output_folder),
      "Write DIR/NAME/posterior.json and samples.csv for each pair that has no line yet. "
      "Without it, only the lines are written.")
@@ -95,8 +95,9 @@ number of threads of the whole process: each pair has one thread if there are
 more pairs than threads. docs/batch.md describes the keys of a line.
 
 A batch that was stopped continues if it is started again with the same
---results. If a pair cannot be read or registered, its line has the status
-"error", and the other pairs continue.
+--results. Pairs of which a file has another size or modification time than when
+it was read lose their line and are registered again. If a pair cannot be read
+or registered, its line has the status "error", and the other pairs continue.
 )" << options
        << R"(
 Exit codes:
@@ -253,13 +254,16 @@ runToFile(const Request& request,
     if (num_finished > 0 && !request.is_quiet)
       tell(io::textOf(num_finished) + " of " + io::textOf(pairs.size()) +
            " pairs already have a line in " + request.results_file);
+    if (file->numChanged() > 0)
+      tell(io::textOf(file->numChanged()) +
+           " pairs are registered again, because their files have changed");
     tellMissingFiles(request, pairs, file->remaining());
   }
   const auto share = shareOf(ranks, ranks.broadcast(positions), pairs);
   std::optional<io::LineFile> part;
   if (ranks.rank() > 0)
     part.emplace(rankFileName(request.results_file, ranks.rank()),
-                 [](const std::string&) {});
+                 [](const std::string&) { return true; });
   ProgressLines progress(ranks, share.size(), !request.is_quiet);
   runBatch(share, runOptionsOf(request), [&](const BatchResult& result) {
     if (file)

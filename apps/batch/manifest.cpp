@@ -1,5 +1,6 @@
 #include "batch/manifest.h"
 
+#include "io/input_file.h"
 #include "io/json_file.h"
 #include "io/text_hash.h"
 #include "register/settings_json.h"
@@ -148,6 +149,15 @@ placeIn(const std::filesystem::path& folder, std::string& name)
 }
 
 } // namespace
+
+std::string
+BatchPair::filesState() const
+{
+  std::vector<std::string> files = {source_file, target_file};
+  if (!guess_file.empty())
+    files.push_back(guess_file);
+  return io::stateOf(files);
+}
 
 std::vector<BatchPair>
 readManifest(const std::string& file,

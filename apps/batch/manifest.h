@@ -21,6 +21,10 @@ struct BatchPair {
   /** Differs if something that the manifest or the command line says of the pair does:
    * a result with another one is not this pair's. */
   std::string settings_id;
+
+  /** \brief io::stateOf() the files that the pair consists of. */
+  std::string
+  filesState() const;
 };
 
 /** \brief Read a manifest: a JSON list of pairs, as docs/batch.md describes.

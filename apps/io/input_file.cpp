@@ -1,6 +1,7 @@
 #include "io/input_file.h"
 
 #include "io/errors.h"
+#include "io/text_hash.h"
 
 #include <cerrno>
 #include <filesystem>
@@ -70,6 +71,21 @@ readText(const std::string& name, std::uint64_t max_size)
   if (!file.stream.read(text.data(), static_cast<std::streamsize>(text.size())))
     throw FileError(name, "cannot be read");
   return text;
+}
+
+std::string
+stateOf(const std::vector<std::string>& files)
+{
+  std::uint64_t hash = hash_of_nothing;
+  for (const std::string& file : files) {
+    std::error_code error;
+    const auto time = fs::last_write_time(file, error).time_since_epoch().count();
+    const auto size = error ? 0 : fs::file_size(file, error);
+    if (error)
+      return "";
+    hash = hashOf(std::to_string(time) + ' ' + std::to_string(size) + '\n', hash);
+  }
+  return textOfHash(hash);
 }
 
 } // namespace bayesian_icp::io

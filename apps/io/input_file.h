@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace bayesian_icp::io {
 
@@ -37,5 +38,10 @@ openInput(const std::string& name);
  * \throws FileError also if it is larger than \p max_size bytes */
 std::string
 readText(const std::string& name, std::uint64_t max_size);
+
+/** \brief Differs if the size or the modification time of one of the files does; empty
+ * if one is missing. */
+std::string
+stateOf(const std::vector<std::string>& files);
 
 } // namespace bayesian_icp::io

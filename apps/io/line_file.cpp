@@ -2,6 +2,7 @@
 
 #include "io/errors.h"
 #include "io/folders.h"
+#include "io/output_folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -9,8 +10,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 namespace bayesian_icp::io {
 
@@ -42,7 +45,7 @@ LineFile::LineFile(const std::string& name, int descriptor)
 
 // Delegates, so that the destructor closes the file if something goes wrong here.
 LineFile::LineFile(const std::string& name,
-                   const std::function<void(const std::string& line)>& read_line)
+                   const std::function<bool(const std::string& line)>& read_line)
 : LineFile(name, openToAppend(name))
 {
   struct stat status = {};
@@ -55,15 +58,23 @@ LineFile::LineFile(const std::string& name,
   if (!stream)
     throw FileError(name, "cannot be read");
   long complete_size = 0;
-  std::string line;
+  std::string line, kept;
   while (std::getline(stream, line) && !stream.eof()) {
     complete_size += static_cast<long>(line.size()) + 1;
-    read_line(line);
+    if (read_line(line))
+      kept += line + '\n';
   }
   is_new_ = complete_size == 0;
   if (is_new_ && !line.empty())
     throw FileError(name, "has no complete line: it is not a file of results");
   cutTo(complete_size);
+  if (static_cast<long>(kept.size()) == complete_size)
+    return;
+  OutputFolder folder(folderOf(name));
+  folder.add(std::filesystem::path(name).filename().string(), kept);
+  folder.commit();
+  LineFile replaced(name, [](const std::string&) { return true; });
+  std::swap(descriptor_, replaced.descriptor_);
 }
 
 LineFile::~LineFile() { close(descriptor_); }

@@ -14,11 +14,12 @@ class LineFile {
 public:
   /** \brief Open \p name, or make it and its folder, keep other processes from it, and
    * read what is there. A last line that was cut off is removed.
-   * \param[in] read_line gets each complete line, without its line break
+   * \param[in] read_line gets each complete line, without its line break, and returns
+   *            whether it stays in the file
    * \throws FileError if the file cannot be written, is in use by another process or
    *         has text but no complete line, and what \p read_line throws */
   LineFile(const std::string& name,
-           const std::function<void(const std::string& line)>& read_line);
+           const std::function<bool(const std::string& line)>& read_line);
   ~LineFile();
   LineFile(const LineFile&) = delete;
   LineFile&

@@ -33,15 +33,21 @@ tell(const std::string& message)
   std::cerr << "pcl_bayesian_icp_track: " + message + '\n';
 }
 
-/** The steps that an interrupted track has left. */
-void
+/** The steps that an interrupted track has left.
+ * \return whether it is one: its files have not changed */
+bool
 takeLine(const std::string& file,
          const std::string& line,
          const TrackRequest& request,
          Track& track)
 {
   try {
-    track.take(readTrackLine(line, request, track.size()));
+    const TrackStep step = readTrackLine(line, request, track.size());
+    const std::string state = request.filesState(step.scan);
+    if (!state.empty() && state != step.files_state)
+      return false;
+    track.take(step);
+    return true;
   }
   catch (const std::exception& error) {
     throw io::FileError(file,
@@ -107,8 +113,14 @@ makeTrack(const TrackCommand& command)
               request.voxel_size > 0.0 ? request.map_scans : 1);
   const std::string edges =
       (std::filesystem::path(command.output_folder) / "edges.jsonl").string();
-  const io::LineFile file(
-      edges, [&](const std::string& line) { takeLine(edges, line, request, track); });
+  bool has_changed = false;
+  const io::LineFile file(edges, [&](const std::string& line) {
+    has_changed = has_changed || !takeLine(edges, line, request, track);
+    return !has_changed;
+  });
+  if (has_changed)
+    tell("scan 0 or " + io::textOf(track.size()) +
+         " has changed, so the track goes on from scan " + io::textOf(track.size()));
   if (track.size() > 1 && !command.is_quiet)
     tell(io::textOf(track.size() - 1) + " of " + io::textOf(request.scans.size() - 1) +
          " steps are in " + edges + " already");

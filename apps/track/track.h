@@ -67,6 +67,8 @@ struct TrackStep {
   std::vector<TrackEdge> more_edges;
   /** For reading the cloud and registering it. */
   double seconds = 0.0;
+  /** TrackRequest::filesState() before it was read. */
+  std::string files_state;
 };
 
 /** \brief The steps so far, and what follows from them. It never reads a cloud, so that

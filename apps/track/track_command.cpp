@@ -42,7 +42,7 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
     ("version", "Show the version.")
     ("output,o", io::fileName("FOLDER", command.output_folder),
      "Folder for the results. If it has the results of the same track, interrupted, "
-     "the track continues. (required)")
+     "the track continues, from the first scan on whose file has changed. (required)")
     ("span", io::number("N", request.span),
      "Also register each scan to those up to N before it. These edges go to edges.jsonl "
      "and graph.g2o only. (default 1)")

@@ -103,7 +103,8 @@ trackLine(const TrackRequest& request, const Track& track)
                              {"innovation", track.innovations().back()},
                              {"pose_in_scan_0", poseJson(track.poses().back())},
                              {"seconds", step.seconds},
-                             {"settings_id", settingsIdOf(request)}};
+                             {"settings_id", settingsIdOf(request)},
+                             {"files_state", step.files_state}};
   return textOf(line);
 }
 
@@ -131,6 +132,7 @@ readTrackLine(const std::string& line, const TrackRequest& request, int scan)
     step.more_edges.push_back(readEdge(edge));
   step.is_velocity_doubted = document.at("is_velocity_doubted");
   step.seconds = document.at("seconds");
+  step.files_state = document.at("files_state");
   return step;
 }
 

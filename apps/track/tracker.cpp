@@ -2,6 +2,7 @@
 
 #include "io/cloud_file.h"
 #include "io/errors.h"
+#include "io/input_file.h"
 #include "localization/stated_pose.h"
 
 #include <boost/functional/hash.hpp>
@@ -45,6 +46,12 @@ motionModelOf(const TrackRequest& request)
   model.acceleration = request.acceleration;
   model.angular_acceleration = request.angular_acceleration;
   return model;
+}
+
+std::string
+TrackRequest::filesState(int scan) const
+{
+  return io::stateOf({scans.front(), scans.at(static_cast<std::size_t>(scan))});
 }
 
 Tracker::Tracker(const TrackRequest& request, const Track& track)
@@ -158,6 +165,7 @@ Tracker::registerNext(const ProgressCallback& progress)
                   prepared_.lower_bound(track_.size() - request_.span));
   TrackStep step;
   step.scan = track_.size();
+  step.files_state = request_.filesState(step.scan);
   Registration result;
   result.status = "error";
   try {

@@ -35,6 +35,10 @@ struct TrackRequest {
   double voxel_size = 0.0;
   /** Scans that make a map. */
   int map_scans = 5;
+
+  /** \brief io::stateOf() scan 0, in whose frame all poses are, and another scan. */
+  std::string
+  filesState(int scan) const;
 };
 
 /** \brief The motion before the scans are seen: the velocity is that of the guess, as

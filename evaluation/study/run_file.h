@@ -173,7 +173,7 @@ public:
     catch (const std::exception&) {
       throw io::FileError(file, "bad line '" + line + "'");
     }
-    has_header = true;
+    return has_header = true;
   })
   {
     if (file_.isNew())

@@ -271,6 +271,27 @@ class BatchResume(BatchTest):
         result = run_batch(manifest, *FAST, "--results", self.results, "-o", output, "--quiet")
         self.assert_refused(1, result, f"3 pairs have a line in {self.results} but no files")
 
+    def test_pairs_of_changed_files_are_run_again(self):
+        self.small_pair()
+        pair = {"target": "target.pcd"}
+        names = ("source", "broken", "gone")
+        manifest = self.manifest([{"name": n, "source": f"{n}.pcd", **pair} for n in names])
+        good = (self.folder / "source.pcd").read_bytes()
+        self.file("broken.pcd", b"rubbish")
+        gone = self.file("gone.pcd", good)
+        first = self.resumed(manifest, *FAST)
+        self.assertEqual(first["broken"]["status"], "error")
+        gone.unlink()
+        self.file("broken.pcd", good)
+        output = self.folder / "output"
+        result = run_batch(manifest, *FAST, "--results", self.results, "-o", output)
+        self.assertIn("1 pairs are registered again", result.stderr)
+        again = without_times(results_of(self.results.read_text()))
+        self.assertEqual([path.name for path in output.iterdir()], ["broken"])
+        self.assertEqual(again["broken"]["mean"], first["source"]["mean"])
+        for name in ("source", "gone"):
+            self.assertEqual(again[name], first[name])
+
     def test_results_of_something_else(self):
         manifest = self.seeds(2)
         self.resumed(manifest, *FAST)

@@ -136,6 +136,15 @@ class TrackOfSimulatedScans(TrackTest):
                 self.assertEqual((self.track / name).read_text(), text, name)
         result = self.run_track(scans, "--acceleration", 1)
         self.assert_refused(3, result, "edges.jsonl", "other settings")
+        kept = self.lines()
+        for k, num_kept in ((3, 2), (0, 0)):
+            scan = scans / f"scan_{k}.pcd"
+            scan.write_bytes(scan.read_bytes())
+            result = self.run_track(scans)
+            self.assertIn(f"so the track goes on from scan {num_kept + 1}\n", result.stderr)
+            self.assertEqual(self.lines()[:num_kept], kept[:num_kept])
+            self.assertEqual(result.stderr.count(" s)"), 4 - num_kept)
+            self.assertEqual((self.track / "graph.g2o").read_text(), expected["graph.g2o"])
         (scans / "scan_2.pcd").rename(scans / "scan_5.pcd")
         result = self.run_track(scans)
         self.assert_refused(3, result, "edges.jsonl", "scan 2 is another file here")

@@ -16,8 +16,10 @@ std::vector<std::string>
 readLines(const std::string& file)
 {
   std::vector<std::string> lines;
-  const io::LineFile file_of_lines(
-      file, [&lines](const std::string& line) { lines.push_back(line); });
+  const io::LineFile file_of_lines(file, [&lines](const std::string& line) {
+    lines.push_back(line);
+    return true;
+  });
   return lines;
 }
 
