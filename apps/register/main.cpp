@@ -14,6 +14,7 @@
 #include "report/report_html.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <optional>
 
@@ -29,6 +30,27 @@ tell(const std::string& message)
   std::cerr << "pcl_bayesian_icp: " << message << '\n';
 }
 
+/** A hint where the source is larger than any LiDAR scan, and the default prior the
+ * only one: its rotation moves such points hundreds of times as far as its translation.
+ * Empty if all is plausible. */
+std::string
+noteOfSize(const Run& run)
+{
+  constexpr double implausible = 500.0; // [m]
+  const Eigen::Matrix3Xd points = io::finitePoints(run.source).cast<double>();
+  const Eigen::Vector3d centroid = points.rowwise().mean();
+  const double radius =
+      (points.colwise() - centroid).norm() / std::sqrt(double(points.cols()));
+  if (radius <= implausible ||
+      run.settings.options.prior.variance != PriorOptions().variance)
+    return "";
+  return run.source.file + ": note: the points are " + io::fixedTextOf(radius, 0) +
+         " m from their centroid (root mean square), for which the default prior of "
+         "0.35 m and 0.35 rad is hardly meant. If the clouds are in millimetres, scale "
+         "them: pcl_transform_point_cloud IN OUT -scale 0.001,0.001,0.001. If they are "
+         "in metres, state --prior-variance.";
+}
+
 Run
 runRegistration(const Request& request)
 {
@@ -39,6 +61,8 @@ runRegistration(const Request& request)
     if (const std::string note = io::noteOfLostDigits(*cloud);
         !note.empty() && !request.is_quiet)
       tell(note);
+  if (const std::string note = noteOfSize(run); !note.empty() && !request.is_quiet)
+    tell(note);
   ProgressBar bar(!request.is_quiet);
   io::catchInterrupt();
   registerClouds(

@@ -240,6 +240,14 @@ class DegenerateClouds(ToolTest):
         self.assertEqual(strict_json(result.stdout)["source"]["finite_points"], 50)
         self.assertIn("kept to 0.062 m", result.stderr)
 
+    def test_hardly_in_metres(self):
+        path = self.file("cloud.pcd", pcd_bytes([tuple(6000 * a for a in p) for p in POINTS]))
+        result = run(path, path, *FAST)
+        self.assert_ran(result)
+        self.assertRegex(result.stderr, r"cloud.pcd: note: the points are [0-9]+ m from .* -scale")
+        for words in (["--prior-variance", "100"], ["--quiet"]):
+            self.assertNotIn("-scale", run(path, path, *FAST, *words).stderr)
+
     def test_nothing_within_the_distance(self):
         far = [tuple(a + 100 for a in p) for p in POINTS]
         source = self.file("source.pcd", pcd_bytes(POINTS))
