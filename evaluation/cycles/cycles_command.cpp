@@ -140,8 +140,8 @@ A table goes to the standard output; every cycle is a row of a CSV file.
 Below the table, one chi-square test takes all cycles together, and knows
 which edges they have in common. If all covariances are right, it fails for
 one graph in a thousand.
-Exit codes: 0 good, 1 that test has failed, 2 usage, 3 cannot read or write a
-file.
+Exit codes: 0 good, 1 that test has failed, or there is no cycle to test,
+2 usage, 3 cannot read or write a file.
 )";
 
 po::typed_value<double>*
@@ -187,14 +187,21 @@ runCyclesCommand(int argc, const char* const* argv)
     edge.shared = options.shared;
   const std::vector<ClosedCycle> cycles =
       app::closedCycles(edges, static_cast<std::size_t>(options.max_length));
-  if (cycles.empty())
-    throw io::FileError(files[0],
-                        "has no cycle of at most " + io::textOf(options.max_length) +
-                            " edges that the clouds have seen");
+  const std::string csv =
+      std::filesystem::path(options.result.file).filename().string();
   io::OutputFolder folder(io::folderOf(options.result.file));
-  folder.add(std::filesystem::path(options.result.file).filename().string(),
-             csvOf(cycles));
+  if (cycles.empty())
+    folder.leaveOut(csv);
+  else
+    folder.add(csv, csvOf(cycles));
   folder.commit();
+  if (cycles.empty()) {
+    io::print(files[0] + " has no cycle of at most " + io::textOf(options.max_length) +
+              " edges that the clouds have seen, so nothing tells whether its "
+              "covariances are right. A chain of scans has none: make the graph with "
+              "pcl_bayesian_icp_track --span 3, or see --max-length.\n");
+    return 1;
+  }
   const app::JointClosure joint = app::jointClosureOf(edges, cycles);
   io::print(tableOf(cycles) + jointText(joint) + failuresText(cycles) +
             suspectsText(edges, cycles));

@@ -1,6 +1,7 @@
 """pcl_bayesian_icp_track: a camera that moves about a table."""
 
 import random
+import re
 
 import numpy as np
 from numpy.linalg import inv
@@ -116,6 +117,12 @@ class TrackOfSimulatedScans(TrackTest):
         result = call(EVALUATE, "cycles", graph, "--output", csv)
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
         self.assertRegex(result.stdout, r"Edges none of whose cycles closes:\n  1-2: all \d cycles\n$")
+        # Without the edges of --span a chain is left.
+        chain = [line for line in lines if not re.match(r"EDGE_SE3:QUAT (0 [2-9]|1 [3-9]|2 4)", line)]
+        result = call(EVALUATE, "cycles", self.file("chain.g2o", "\n".join(chain)), "--output", csv)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertRegex(result.stdout, "chain.g2o has no cycle of at most 4 edges .* --span 3")
+        self.assertFalse(csv.exists())
 
     def test_goes_on(self):
         scans, _ = self.trajectory(EYES)
