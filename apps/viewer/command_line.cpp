@@ -3,6 +3,8 @@
 #include "io/command_line.h"
 #include "register/settings_options.h"
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -188,8 +190,8 @@ describeOptions(Request& request)
      "Show ICP's iterations and the chains while they run, then the result. Without "
      "it, only the result is shown.")
     ("screenshot", io::fileName("FILE", view.screenshot_file),
-     "Write a PNG file instead of opening a window. With --live, it shows the chains' "
-     "last state.")
+     "Write this file, a .png, instead of opening a window. With --live, it shows "
+     "the chains' last state.")
     ("size", value("WxH", readSize, view, "WIDTHxHEIGHT in pixels, each 64 to 8192"),
      "Size of window or picture [pixels]. (default 1280x960)");
   // clang-format on
@@ -280,6 +282,11 @@ parseCommandLine(int argc, const char* const* argv)
     return std::nullopt;
   takeFiles(given, request);
   io::takeOptions(given, options);
+  const std::string& picture = request.view.screenshot_file;
+  if (!picture.empty() &&
+      !boost::iequals(std::filesystem::path(picture).extension().string(), ".png"))
+    throw io::UsageError("--screenshot: writes PNG files only, and " +
+                         io::inQuotes(picture) + " does not end in .png");
   if (given.count("show") > 0 && request.view.is_multiview)
     throw io::UsageError("--show and -multiview 1 exclude each other");
   if (request.posterior_file.empty())

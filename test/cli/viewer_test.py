@@ -291,6 +291,7 @@ class ViewerUsage(ViewerTest):
             (["--size", "800"], "--size"),
             (["--size", "10x10"], "--size"),
             (["--screenshot="], "--screenshot"),
+            (["--screenshot", "picture.jpg"], "--screenshot", "'picture.jpg' does not end in .png"),
             (["--preset", "best"], "--preset"),
             (["--nonsense"], "nonsense"),
         ):
