@@ -172,10 +172,11 @@ describeOptions(Request& request)
      "bayesian-icp)")
     ("output,o", io::fileName("DIR", request.output_folder),
      "Write aligned.pcd, samples.csv, posterior.json and report.html to this folder, "
-     "and create it if it is missing. report.html shows everything on one page and "
-     "needs gnuplot. If there are no draws, only posterior.json is written, and the "
-     "other files of an older result are removed. Without this option no file is "
-     "written.")
+     "and create it if it is missing. aligned.pcd is the source in the target's frame, "
+     "with the target's VIEWPOINT, so that pcl_viewer shows both in one place. "
+     "report.html shows everything on one page and needs gnuplot. If there are no "
+     "draws, only posterior.json is written, and the other files of an older result are "
+     "removed. Without this option no file is written.")
     ("no-report", "With --output: do not write report.html.")
     ("json", io::flag(request.is_json),
      "Print the content of posterior.json instead of the table.")
