@@ -14,6 +14,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 namespace bayesian_icp::app {
@@ -84,10 +85,26 @@ private:
     catch (const std::exception& error) {
       complaint = error.what();
     }
-    if (!run)
+    if (!run) {
+      removeFiles(pair);
       give({pair, nullptr, error_status, complaint, seconds(), state});
+    }
     else if (run->result.summary.status != Status::Cancelled)
       give(pair, *run, seconds(), state);
+  }
+
+  /** Nothing of an older result stays where a pair cannot be registered. */
+  void
+  removeFiles(const BatchPair& pair) const
+  {
+    const auto folder = std::filesystem::path(options_.output_folder) / pair.name;
+    std::error_code error;
+    if (options_.output_folder.empty() || !std::filesystem::exists(folder, error))
+      return;
+    io::OutputFolder files(folder.string());
+    for (const char* const name : {"posterior.json", "samples.csv"})
+      files.leaveOut(name);
+    files.commit();
   }
 
   void

@@ -178,12 +178,17 @@ sgdJson(const SgdRun& run)
   return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
 }
 
+/** Without a step there is sgd_icp.json alone, which says why, and no older aligned.pcd
+ * beside it. */
 void
 writeFiles(const SgdRun& run, io::OutputFolder& folder)
 {
-  folder.add("aligned.pcd", [&](std::ostream& stream) {
-    writeAligned(run.source, run.target, matrixOf(run.result.pose), stream);
-  });
+  if (run.result.num_iterations > 0)
+    folder.add("aligned.pcd", [&](std::ostream& stream) {
+      writeAligned(run.source, run.target, matrixOf(run.result.pose), stream);
+    });
+  else
+    folder.leaveOut("aligned.pcd");
   folder.add("sgd_icp.json", sgdJson(run));
   folder.commit();
 }
@@ -198,10 +203,12 @@ runSgdIcp(const Request& request)
     folder.emplace(request.output_folder);
   const SgdRun run = registerFiles(request);
   const bool has_moved = run.result.num_iterations > 0;
-  if (folder && has_moved)
+  const bool has_files = has_moved || run.result.end != DescentEnd::Cancelled;
+  if (folder && has_files)
     writeFiles(run, *folder);
-  else if (folder)
-    std::cerr << "pcl_bayesian_icp: no step was made, so no files are written\n";
+  if (folder && !has_moved)
+    std::cerr << "pcl_bayesian_icp: no step was made, so no files "
+              << (has_files ? "but sgd_icp.json " : "") << "are written\n";
   if (!request.is_quiet)
     io::print(request.is_json ? sgdJson(run) : sgdReportText(run));
   // The table has the status already.

@@ -145,7 +145,8 @@ own, --iterations ()"
       text << toString(optimizer) << ' ' << defaultStepSize(optimizer)
            << (optimizer == SgdOptimizer::RmsProp ? "; adadelta has none" : ", ");
   text << R"(). Other
-options are errors. The exit code is 0 if the descent came to rest, else 1.
+options are errors. The exit code is 0 if the descent came to rest, else 1. If
+no step was made, only sgd_icp.json is written, and an older aligned.pcd removed.
 )";
   return text.str();
 }

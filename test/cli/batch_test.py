@@ -118,9 +118,11 @@ class BatchResults(BatchTest):
                 {"name": "last", **good},
             ]
         )
-        apart = self.folder / "files" / "apart"
-        apart.mkdir(parents=True)
-        (apart / "samples.csv").write_text("of an older posterior")
+        apart, missing = (self.folder / "files" / name for name in ("apart", "missing"))
+        for folder in (apart, missing):
+            folder.mkdir(parents=True)
+            for name in ("posterior.json", "samples.csv"):
+                (folder / name).write_text("of an older posterior")
         result = run_batch(manifest, *FAST, "-d", 0.5, "-o", apart.parent)
         self.assertEqual(result.returncode, 1, result.stderr)
         lines = results_of(result.stdout)
@@ -138,6 +140,9 @@ class BatchResults(BatchTest):
         self.assertEqual(lines["apart"]["status"], "too_few_correspondences")
         self.assertIsNone(lines["apart"]["mean"]["x_m"])
         self.assertEqual([path.name for path in apart.iterdir()], ["posterior.json"])
+        strict_json((apart / "posterior.json").read_text())
+        self.assertEqual(list(missing.iterdir()), [])
+        self.assertFalse((apart.parent / "broken").exists())
         self.assertEqual(lines["first"]["mean"], lines["last"]["mean"])
         self.assertGreater(lines["first"]["draws"], 0)
         self.assertEqual(len(result.stderr.splitlines()), 7)

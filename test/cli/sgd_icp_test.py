@@ -83,14 +83,16 @@ class SgdIcp(ToolTest):
     def test_no_pairs_within_the_gate(self):
         output = self.folder / "out"
         pair = self.small_pair()
+        run(*pair, *SGD, "-o", output, "--quiet")
         words = ["--guess", "9,0,0,0,0,0", "-d", "0.1", "--json", "-o", output]
         result = run(*pair, *SGD, *words)
         self.assertEqual(result.returncode, 1)
         document = strict_json(result.stdout)
         self.assertEqual(document["end"], "too_few_correspondences")
         self.assertEqual((document["iterations"], document["pose"]["x_m"]), (0, 9))
-        self.assertIn("no files are written", result.stderr)
-        self.assertEqual(list(output.iterdir()), [])
+        self.assertIn("no files but sgd_icp.json are written", result.stderr)
+        self.assertEqual([path.name for path in output.iterdir()], ["sgd_icp.json"])
+        self.assertEqual(strict_json((output / "sgd_icp.json").read_text()), document)
 
     def test_a_scan_with_holes(self):
         points = cloud_files.box_surface(seed=1) + [(math.nan, 0.0, 0.0)]
