@@ -1,7 +1,5 @@
 #include "graph/optimization.h"
 
-#include "graph/closed_cycles.h"
-
 #include <boost/pending/disjoint_sets.hpp>
 
 #include <Eigen/Cholesky>
@@ -356,13 +354,13 @@ optimizedPoses(const std::vector<Eigen::Matrix4d>& poses,
 }
 
 std::vector<Disagreement>
-disagreementsOf(const std::vector<GraphEdge>& edges, const OptimizedPoses& optimum)
+disagreementsOf(const std::vector<ClosedCycle>& cycles, const OptimizedPoses& optimum)
 {
-  std::vector<std::size_t> num_open(edges.size(), 0);
-  for (const Suspect& suspect : suspectsOf(closedCycles(edges, edges.size() + 1)))
+  std::vector<std::size_t> num_open(optimum.squared_errors.size(), 0);
+  for (const Suspect& suspect : suspectsOf(cycles))
     num_open[suspect.edge] = suspect.num_cycles;
   std::vector<Disagreement> found;
-  for (std::size_t k = 0; k < edges.size(); ++k)
+  for (std::size_t k = 0; k < num_open.size(); ++k)
     if (isContradiction(optimum.squared_errors[k]) || num_open[k] > 0)
       found.push_back({k, optimum.squared_errors[k], num_open[k]});
   return found;

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "graph/pose_graph.h"
+#include "graph/closed_cycles.h"
 
 #include <array>
 #include <string>
@@ -91,8 +91,9 @@ struct Disagreement {
 };
 
 /** \brief Edges with isContradiction(), or none of whose cycles closes.
- * \param[in] optimum of \p edges */
+ * \param[in] cycles closedCycles() of the edges, of any length
+ * \param[in] optimum of the same edges */
 std::vector<Disagreement>
-disagreementsOf(const std::vector<GraphEdge>& edges, const OptimizedPoses& optimum);
+disagreementsOf(const std::vector<ClosedCycle>& cycles, const OptimizedPoses& optimum);
 
 } // namespace bayesian_icp::app

@@ -171,13 +171,11 @@ contradictionsHtml(const std::vector<ScanEdge>& edges,
 std::string
 graphReportHtml(const GraphCommand& command,
                 const ScanGraph& graph,
-                const OptimizedPoses& optimum)
+                const OptimizedPoses& optimum,
+                const std::vector<ClosedCycle>& cycles)
 {
   const std::vector<ScanEdge> edges = graph.taken();
-  const std::vector<GraphEdge> plain_edges = edgesOf(edges);
-  const std::vector<ClosedCycle> cycles =
-      closedCycles(plain_edges, plain_edges.size() + 1);
-  const std::vector<Disagreement> disagreements = disagreementsOf(plain_edges, optimum);
+  const std::vector<Disagreement> disagreements = disagreementsOf(cycles, optimum);
   PathData path{optimum.poses, graph.chain, {}};
   for (const ScanEdge& edge : edges)
     if (edge.isLoop())

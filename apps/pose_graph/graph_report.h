@@ -10,11 +10,12 @@
 namespace bayesian_icp::app {
 
 /** \brief A self-contained HTML page.
- * \param[in] optimum of the edges that \p graph has taken
+ * \param[in] optimum,cycles of the edges that \p graph has taken
  * \throws plot::GnuplotError if gnuplot does not draw */
 std::string
 graphReportHtml(const GraphCommand& command,
                 const ScanGraph& graph,
-                const OptimizedPoses& optimum);
+                const OptimizedPoses& optimum,
+                const std::vector<ClosedCycle>& cycles);
 
 } // namespace bayesian_icp::app

@@ -30,16 +30,17 @@ tell(const std::string& message)
   std::cerr << "pcl_bayesian_icp_pose_graph: " + message + '\n';
 }
 
-/** The most likely poses, if they can be found. */
+/** The most likely poses, if they can be found.
+ * \param[in] edges that \p graph has taken */
 std::optional<OptimizedPoses>
-optimized(const ScanGraph& graph, RobustLoss loss)
+optimized(const ScanGraph& graph, const std::vector<GraphEdge>& edges, RobustLoss loss)
 {
   std::vector<Eigen::Matrix4d> poses;
   for (const GaussianPose& pose : graph.chain)
     poses.push_back(matrixOf(pose.mean));
   std::string complaint;
   try {
-    OptimizedPoses found = optimizedPoses(poses, edgesOf(graph.taken()), loss);
+    OptimizedPoses found = optimizedPoses(poses, edges, loss);
     if (found.complaint.empty())
       return found;
     complaint = found.complaint;
@@ -54,10 +55,11 @@ optimized(const ScanGraph& graph, RobustLoss loss)
 
 /** \return whether there are none */
 bool
-tellDisagreements(const ScanGraph& graph, const OptimizedPoses& optimum)
+tellDisagreements(const std::vector<GraphEdge>& edges,
+                  const std::vector<ClosedCycle>& cycles,
+                  const OptimizedPoses& optimum)
 {
-  const std::vector<GraphEdge> edges = edgesOf(graph.taken());
-  const std::vector<Disagreement> all = disagreementsOf(edges, optimum);
+  const std::vector<Disagreement> all = disagreementsOf(cycles, optimum);
   for (const Disagreement& found : all)
     tell("edge " + nameOf(edges[found.edge]) + " contradicts the others: " +
          (isContradiction(found.squared_error)
@@ -71,6 +73,7 @@ tellDisagreements(const ScanGraph& graph, const OptimizedPoses& optimum)
 void
 addOptimum(const GraphCommand& command,
            const ScanGraph& graph,
+           const std::vector<ClosedCycle>& cycles,
            const std::optional<OptimizedPoses>& optimum,
            io::OutputFolder& folder)
 {
@@ -86,7 +89,7 @@ addOptimum(const GraphCommand& command,
   folder.add("trajectory_tum.txt", tumText(numbers, optimum->poses));
   folder.add("trajectory_covariance.txt", tumCovarianceText(numbers, optimum->poses));
   try {
-    folder.add("report.html", graphReportHtml(command, graph, *optimum));
+    folder.add("report.html", graphReportHtml(command, graph, *optimum, cycles));
   }
   catch (const plot::GnuplotError& error) {
     tell(std::string(error.what()) + "; report.html is left out");
@@ -118,14 +121,17 @@ makeGraph(const GraphCommand& command)
     tell("interrupted; nothing is written");
     return Interrupted;
   }
+  const std::vector<GraphEdge> edges = edgesOf(graph.taken());
   std::optional<OptimizedPoses> optimum;
   if (optimized_folder) {
-    optimum = optimized(graph, command.loss);
-    is_good = optimum && tellDisagreements(graph, *optimum) && is_good;
-    addOptimum(command, graph, optimum, *optimized_folder);
+    optimum = optimized(graph, edges, command.loss);
+    std::vector<ClosedCycle> cycles;
+    if (optimum)
+      cycles = closedCycles(edges, edges.size() + 1);
+    is_good = optimum && tellDisagreements(edges, cycles, *optimum) && is_good;
+    addOptimum(command, graph, cycles, optimum, *optimized_folder);
   }
-  const std::string text =
-      g2oText(optimum ? optimum->poses : graph.chain, edgesOf(graph.taken()));
+  const std::string text = g2oText(optimum ? optimum->poses : graph.chain, edges);
   if (folder_of_file)
     folder_of_file->add(file.filename().string(), text);
   if (optimized_folder)
