@@ -33,6 +33,10 @@ constexpr double lost_degrees_of_freedom = 13.0;
 constexpr int num_shells = 12;
 constexpr double shells_to_clusters = 1.0 / 1.43;
 
+/** Upper limit of kappa_inf in units of kappa_12, because the extrapolation of few
+ * clusters is noisy. */
+constexpr double max_extrapolation = 1.5;
+
 /** Upper limit of one cluster's share of the information. */
 constexpr double max_share = 0.9;
 
@@ -452,12 +456,15 @@ scoreCovariance(const PointScores& points,
   const Matrix6d J_48 = clustered.ofClusters(2);
   ScoreCovariance result;
   result.kappa_48 = kappa(J_48);
-  // Points at the border of a square cluster of side a miss a part of their neighbours
-  // that shrinks as 1 / a on each axis: sqrt(kappa) = sqrt(kappa_inf) (1 - b / a), and
-  // a is twice as large for 12 clusters as for 48, and for 24 as for 96.
-  const double root = std::sqrt(kappa_12) + std::sqrt(kappa_24) -
-                      0.5 * (std::sqrt(result.kappa_48) + std::sqrt(kappa_96));
-  result.kappa_inf = std::max({1.0, kappa_24, root * root});
+  // A square cluster of side a misses the neighbours of points at its border, on each
+  // axis: sqrt(kappa_inf / kappa) = 1 + b / a, and a is twice as large for 12 clusters
+  // as for 48, and for 24 as for 96.
+  const double root =
+      std::max(0.0,
+               1.0 / std::sqrt(kappa_12) + 1.0 / std::sqrt(kappa_24) -
+                   0.5 / std::sqrt(result.kappa_48) - 0.5 / std::sqrt(kappa_96));
+  result.kappa_inf = std::max(
+      {1.0, kappa_24, std::min(max_extrapolation * kappa_12, 1.0 / (root * root))});
   result.kappa =
       std::max(result.kappa_inf, shells_to_clusters * kappa(clustered.ofShells()));
   // Number of independent points to which the correlated ones are equivalent.
