@@ -83,8 +83,8 @@ struct DataFlags {
   bool misfit = false;
   /** The prior alone determines all six directions. */
   bool no_information = false;
-  /** The pose that the clouds determine has a probability below min_prior_probability
-   * under the prior: one of the two is wrong. */
+  /** The clouds determine a pose whose prior_probability is below
+   * min_prior_probability: the prior or the registration is wrong. */
   bool prior_conflict = false;
 
   bool
@@ -124,9 +124,10 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   /** Cost at the worse of the two ends, divided by that at the better one. A cost is
    * the mean capped residual of the source points. */
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
-  /** Probability that a pose drawn from the prior is further from the prior's mean than
-   * the posterior's mean is, without PriorOnly directions. Uniform in [0, 1] if the
-   * poses are drawn from the prior. */
+  /** Probability that the posterior's mean would be further from the prior's mean than
+   * it is if the prior were right, without PriorOnly directions. Uniform in [0, 1] if
+   * the poses are drawn from the prior. If the clouds meet clearly better outside of a
+   * narrow prior, it is at most the probability of being as far away as there. */
   double prior_probability = std::numeric_limits<double>::quiet_NaN();
   /** Centre of the twists: the moved source's centroid, target frame [m]. */
   Eigen::Vector3d centre =

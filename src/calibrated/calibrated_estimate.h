@@ -61,6 +61,10 @@ struct CalibratedEstimate {
   /** relativeCost() of the worse end of the two starts, in units of the better one; at
    * least 1. */
   double other_cost_ratio = 1.0;
+  /** Squared distance from the prior's mean, in standard deviations of the prior, of a
+   * pose at which the clouds meet clearly better than at the mode. 0 if none was found
+   * or looked for. */
+  double better_fit = 0.0;
   /** Nearest-neighbour queries used. */
   long num_queries = 0;
 };

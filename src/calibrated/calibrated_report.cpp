@@ -153,18 +153,27 @@ chiSquareTail(int degrees, double x)
   return tail;
 }
 
-/** See DataReport::prior_probability. */
+/** See DataReport::prior_probability. The directions are independent both in the prior
+ * and in the posterior. Along each of them, the posterior's mean deviates from the
+ * prior's by a variance that is the prior's, less the posterior's: the prior pulls the
+ * mean towards its own. */
 double
 priorProbability(const CalibratedEstimate& estimate,
                  const std::vector<DataDirection>& directions)
 {
-  const Axes free = freeAxes(directions);
-  const auto num_held = static_cast<int>(6 - free.cols());
-  if (num_held == 0)
-    return 1.0;
   const Vector6d deviation = estimate.prior.deviation + estimate.mean;
-  return chiSquareTail(num_held,
-                       squaredLengthBeyond(free, deviation, estimate.prior.precision));
+  int num_held = 0;
+  double squared = 0.0;
+  for (const DataDirection& direction : directions) {
+    if (direction.observability == Observability::PriorOnly)
+      continue;
+    const double z = direction.twist.dot(estimate.prior.precision * deviation) *
+                     direction.prior_standard_deviation;
+    squared += z * z * (1.0 + 1.0 / direction.relative_information);
+    ++num_held;
+  }
+  return std::min(num_held > 0 ? chiSquareTail(num_held, squared) : 1.0,
+                  chiSquareTail(6, estimate.better_fit));
 }
 
 } // namespace

@@ -164,7 +164,8 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
   CalibratedEstimate estimate = diagonalEstimate();
   estimate.prior.deviation << 0.5, 0.0, 0.0, 1e3, 1.0, 0.5;
   estimate.mean << 0.0, 0.0, 0.0, 0.0, 0.5, 0.0;
-  const double squared_distance = 1.0 + 9.0 + 1.0;
+  // The means' distances have 99/100, 399/400 and 8/9 of the prior's variance.
+  const double squared_distance = 1.0 / 0.99 + 9.0 * 400.0 / 399.0 + 9.0 / 8.0;
   const auto tail = [](int degrees, double x) {
     return cdf(complement(boost::math::chi_squared(degrees), x));
   };
@@ -183,13 +184,32 @@ TEST(Report, ThePriorsProbabilityIsOfWhatTheDataHold)
     for (int i = k + 1; i < 6; ++i)
       if (i != 3) {
         ++num_held;
-        distance += std::pow(2.0 * (estimate.prior.deviation + estimate.mean)[i], 2);
+        distance += std::pow(2.0 * (estimate.prior.deviation + estimate.mean)[i], 2) *
+                    (1.0 + 4.0 / estimate.information(i, i));
       }
     EXPECT_NEAR(dataReportOf(estimate, target()).prior_probability,
                 num_held > 0 ? tail(num_held, distance) : 1.0,
                 1e-12)
         << k;
   }
+}
+
+TEST(Report, ThePriorsProbabilityIsUniformForPosesOfThePrior)
+{
+  // One direction, half of whose variance the data take away: they tell the true pose
+  // with the prior's deviation, and the mean is half of what they tell.
+  CalibratedEstimate estimate = diagonalEstimate();
+  estimate.information.setZero();
+  estimate.information(0, 0) = estimate.prior.precision(0, 0);
+  Random random(7, 0);
+  constexpr int num_runs = 2000;
+  int num_below_half = 0;
+  for (int i = 0; i < num_runs; ++i) {
+    const double told = 0.5 * random.normal() + 0.5 * random.normal();
+    estimate.mean[0] = 0.5 * told;
+    num_below_half += dataReportOf(estimate, target()).prior_probability < 0.5;
+  }
+  EXPECT_NEAR(num_below_half, 0.5 * num_runs, 4.0 * std::sqrt(0.25 * num_runs));
 }
 
 TEST(Report, StartsMayDifferFreelyWherePriorOnlyHolds)
@@ -247,10 +267,13 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
   EXPECT_FALSE(flagsAfter([&](E& e) { hold_all(e, 9.99); }).any());
   EXPECT_TRUE(flagsAfter([&](E& e) { hold_all(e, 10.01); }).misfit);
   EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
-  // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2647)^2.
+  // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2533)^2 / 0.99.
   const auto deviate = [](E& e, double metres) { e.prior.deviation[0] = metres; };
-  EXPECT_FALSE(flagsAfter([&](E& e) { deviate(e, 2.264); }).any());
-  EXPECT_TRUE(flagsAfter([&](E& e) { deviate(e, 2.265); }).prior_conflict);
+  EXPECT_FALSE(flagsAfter([&](E& e) { deviate(e, 2.253); }).any());
+  EXPECT_TRUE(flagsAfter([&](E& e) { deviate(e, 2.254); }).prior_conflict);
+  // Of all six: 0.1 % are beyond 22.458.
+  EXPECT_FALSE(flagsAfter([](E& e) { e.better_fit = 22.45; }).any());
+  EXPECT_TRUE(flagsAfter([](E& e) { e.better_fit = 22.46; }).prior_conflict);
 }
 
 TEST(Report, WhatIsNotANumberIsFlagged)

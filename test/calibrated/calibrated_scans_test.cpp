@@ -161,6 +161,26 @@ TEST(CalibratedScans, StrayPointsDoNotTakeThePlaceOfSurfaces)
   EXPECT_LT(log_ratio, std::log(4.0));
 }
 
+TEST(CalibratedScans, AWrongPriorIsAConflictWithTheSurfaceItHides)
+{
+  // A table with things on it. From 15 standard deviations away, 52 mm, the things do
+  // not meet, and what is left of the clouds slides on the table.
+  const simulator::ScanPair scans = scansOf("table");
+  constexpr double sd = 0.0035;
+  Options options;
+  options.prior.frame = PriorFrame::Origin;
+  options.prior.variance << sd * sd, sd * sd, sd * sd, 1e-3, 1e-3, 1e-3;
+  options.prior.mean = poseOf(scans.T_target_source);
+  const Summary right = summaryOf(scans, options);
+  EXPECT_EQ(right.status, Status::Ok) << right.message;
+  EXPECT_LT(squaredErrorOf(right, scans), chi_square_999);
+  options.prior.mean[0] += 15.0 * sd;
+  const Summary wrong = summaryOf(scans, options);
+  EXPECT_EQ(wrong.status, Status::Doubtful) << wrong.message;
+  EXPECT_TRUE(wrong.data.flags.prior_conflict);
+  EXPECT_GT(squaredErrorOf(wrong, scans), chi_square_999);
+}
+
 TEST(CalibratedScans, ABowlTurnsAboutItsAxisWhicheverOfItsPointsAreUsed)
 {
   // data/bowl, and a prior that lets it turn by 0.35 rad.

@@ -62,6 +62,10 @@ constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 1
  */
 constexpr double astray_margin = 0.2;
 
+/** A prior so many times as wide does not keep the fit from a place where the clouds
+ * meet. */
+constexpr double widening = 10.0;
+
 /** For the path that connects two modes: fit steps at each place, and the largest
  * distance of the surface from the straight path, as a fraction of its length. */
 constexpr int num_way_steps = 6;
@@ -87,6 +91,13 @@ wideCoordinates(const SurfaceScorer& scorer, const Prior& prior)
         std::sqrt(prior.variance()[k]) >
         (k < 3 ? wide_part_of_extent * extent : wide_angle);
   return wide;
+}
+
+bool
+isWide(const SurfaceScorer& scorer, const Prior& prior)
+{
+  const auto wide = wideCoordinates(scorer, prior);
+  return std::any_of(wide.begin(), wide.end(), [](bool is_wide) { return is_wide; });
 }
 
 /** Deviations from the prior's mean: a Latin hypercube in the wide coordinates, draws
@@ -221,6 +232,15 @@ areConnected(const SurfaceScorer& subset,
   return true;
 }
 
+/** The fit at a pose that stays where it is. */
+RobustFit
+asItIs(const SurfaceScorer& subset, const Prior& prior, const Isometry3d& pose)
+{
+  RobustFitOptions fit;
+  fit.max_steps = 0;
+  return fitRobustly(subset, prior, pose, fit);
+}
+
 /** Where starts end. */
 std::vector<RobustFit>
 followStarts(const SurfaceScorer& subset,
@@ -282,6 +302,39 @@ endsOfStarts(const SurfaceScorer& subset,
   return ends;
 }
 
+/** Whether the prior has more to say about some direction than the clouds. */
+bool
+doesPriorHold(const CalibratedEstimate& e)
+{
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> relative(
+      e.information, e.prior.precision, Eigen::EigenvaluesOnly);
+  return !(relative.eigenvalues()[0] > 1.0);
+}
+
+/** See CalibratedEstimate::better_fit. */
+double
+betterFitOf(const SurfaceScorer& scorer,
+            const Prior& prior,
+            const CalibratedEstimate& estimate,
+            const ModeSearchOptions& options)
+{
+  const SurfaceScorer subset = scorer.ofFirst(options.num_points);
+  const Prior wide(prior.mean(),
+                   Vector6d(widening * widening * prior.variance()),
+                   prior.referencePoint());
+  const std::vector<RobustFit> ends =
+      followStarts(subset,
+                   wide,
+                   {isometryOf(prior.mean()), estimate.mode},
+                   options.estimate.num_threads);
+  const auto best = std::min_element(ends.begin(), ends.end(), costsLess);
+  if (!isClearlyWorse(asItIs(subset, prior, estimate.mode), *best, astray_margin))
+    return 0.0;
+  const TwistPrior there =
+      twistPrior(prior, best->pose, best->pose * subset.centroid());
+  return there.deviation.dot(there.precision * there.deviation);
+}
+
 } // namespace
 
 bool
@@ -289,9 +342,7 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
                     const Prior& prior,
                     const CalibratedEstimate& first)
 {
-  const auto wide = wideCoordinates(scorer, prior);
-  return first.cost > doubtful_cost ||
-         std::any_of(wide.begin(), wide.end(), [](bool is_wide) { return is_wide; });
+  return first.cost > doubtful_cost || isWide(scorer, prior);
 }
 
 ModeSearch
@@ -302,9 +353,7 @@ findModes(const SurfaceScorer& scorer,
 {
   const SurfaceScorer subset = scorer.ofFirst(options.num_points);
   const Index num_points = subset.sourcePoints().cols();
-  RobustFitOptions as_it_is;
-  as_it_is.max_steps = 0;
-  const RobustFit first_end = fitRobustly(subset, prior, first.mode, as_it_is);
+  const RobustFit first_end = asItIs(subset, prior, first.mode);
   const std::vector<RobustFit> ends =
       endsOfStarts(subset, prior, wideCoordinates(scorer, prior), first_end, options);
   ModeSearch search;
@@ -356,9 +405,13 @@ calibratedModes(const SurfaceScorer& scorer,
                 const ModeSearchOptions& options)
 {
   const CalibratedEstimate first = estimateCalibrated(scorer, prior, options.estimate);
-  if (!mayHaveSeveralModes(scorer, prior, first))
-    return {{first, 0.0}};
-  return significantModes(findModes(scorer, prior, first, options).modes);
+  std::vector<CalibratedMode> modes = {{first, 0.0}};
+  if (mayHaveSeveralModes(scorer, prior, first))
+    modes = significantModes(findModes(scorer, prior, first, options).modes);
+  CalibratedEstimate& heaviest = modes.front().estimate;
+  if (!isWide(scorer, prior) && doesPriorHold(heaviest))
+    heaviest.better_fit = betterFitOf(scorer, prior, heaviest, options);
+  return modes;
 }
 
 } // namespace bayesian_icp

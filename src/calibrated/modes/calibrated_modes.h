@@ -59,7 +59,8 @@ std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes);
 
 /** \brief The first estimate or, if mayHaveSeveralModes(), the significantModes() of
- * the search; heaviest first. */
+ * the search; heaviest first. In a narrow prior that holds a motion, a better fit
+ * outside of it is looked for (CalibratedEstimate::better_fit of the heaviest). */
 std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,
                 const Prior& prior,
