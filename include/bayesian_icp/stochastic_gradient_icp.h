@@ -52,7 +52,8 @@ enum class DescentEnd {
   Diverged,
   /** The progress callback asked for it. */
   Cancelled,
-  /** Bad options, fewer than three source points, or a non-finite initial pose. */
+  /** Bad options, fewer than three source points, or a non-finite initial pose. For the
+   * class of PCL, also indices outside their cloud. */
   InvalidInput
 };
 

@@ -45,7 +45,7 @@ enum class Status {
   TooFewCorrespondences,
   /** An option is outside its range. Nothing was drawn. */
   InvalidOptions,
-  /** The clouds or the guess cannot be used. Nothing was drawn. */
+  /** The clouds, their indices or the guess cannot be used. Nothing was drawn. */
   InvalidInput
 };
 

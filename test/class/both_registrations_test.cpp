@@ -6,6 +6,7 @@
 #include <pcl/registration/incremental_registration.h>
 #include <pcl/registration/stochastic_gradient_icp.h>
 
+#include <limits>
 #include <vector>
 
 namespace pcl::test {
@@ -53,6 +54,19 @@ expectNoResult(BayesianIcp& icp)
               icp.getSummary().status == bayesian_icp::Status::InvalidInput);
   EXPECT_EQ(icp.getSamples().rows(), 0);
   EXPECT_TRUE(icp.getCovariance().array().isNaN().all());
+}
+
+void
+expectInvalidInput(BayesianIcp& icp)
+{
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidInput);
+  expectNoResult(icp);
+}
+
+void
+expectInvalidInput(SgdIcp& icp)
+{
+  EXPECT_EQ(icp.getResult().end, bayesian_icp::DescentEnd::InvalidInput);
 }
 
 void
@@ -233,6 +247,33 @@ TYPED_TEST(BothRegistrations, AnEmptyListOfIndicesMeansTheWholeCloud)
   this->align(icp);
   this->align(plain);
   expectSameResult(icp, plain);
+}
+
+TYPED_TEST(BothRegistrations, IndicesOutsideTheirCloudAreAnInvalidInput)
+{
+  const auto& [source, target] = this->scans;
+  const auto expectRefused = [&](const Cloud::Ptr& cloud, TypeParam& icp) {
+    this->output = aligned(icp, cloud, target);
+    EXPECT_FALSE(icp.hasConverged());
+    expectInvalidInput(icp);
+    EXPECT_EQ(this->output.size(), cloud->size());
+  };
+  const auto size = static_cast<index_t>(source->size());
+  for (const index_t wrong : {size, index_t(-1), std::numeric_limits<index_t>::max()}) {
+    TypeParam icp;
+    icp.setIndices(IndicesPtr(new Indices{0, 1, 2, wrong}));
+    expectRefused(source, icp);
+    icp.setIndices(everyNth(0, size, 2));
+    this->align(icp);
+    expectResult(icp);
+    // The same indices for another source.
+    expectRefused(pcl::make_shared<Cloud>(*source, *everyNth(0, 200)), icp);
+  }
+  TypeParam icp;
+  const auto estimation = pcl::make_shared<Estimation>();
+  estimation->setIndicesTarget(everyNth(0, static_cast<index_t>(target->size()) + 1));
+  icp.setCorrespondenceEstimation(estimation);
+  expectRefused(source, icp);
 }
 
 TYPED_TEST(BothRegistrations, CloudsThatCannotBeRegisteredFail)

@@ -26,7 +26,8 @@ namespace pcl {
  * options. As with PCL's ICP, hasConverged() is also true if the iterations ran out,
  * unless convergence_criteria_ states otherwise; getResult() distinguishes the two.
  *
- * Non-finite points and indices are treated as in pcl::BayesianIterativeClosestPoint.
+ * Non-finite points, indices, are treated as in
+ * pcl::BayesianIterativeClosestPoint.
  * correspondences_ are those of the whole source at the final transformation. The same
  * seed gives the same result. Use one object from one thread at a time.
  *
@@ -135,10 +136,10 @@ protected:
                  const Matrix4& guess) override;
 
   void
-  keepFailure(bool is_guess_finite, const char* /* reason */) override
+  keepFailure(bool is_input_valid, const char* /* reason */) override
   {
-    result_.end = is_guess_finite ? bayesian_icp::DescentEnd::TooFewCorrespondences
-                                  : bayesian_icp::DescentEnd::InvalidInput;
+    result_.end = is_input_valid ? bayesian_icp::DescentEnd::TooFewCorrespondences
+                                 : bayesian_icp::DescentEnd::InvalidInput;
   }
 
 private:

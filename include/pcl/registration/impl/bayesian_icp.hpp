@@ -133,9 +133,9 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
 template <typename PointSource, typename PointTarget, typename Scalar>
 void
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::keepFailure(
-    bool is_guess_finite, const char* reason)
+    bool is_input_valid, const char* reason)
 {
-  estimate_.summary.status = is_guess_finite
+  estimate_.summary.status = is_input_valid
                                  ? bayesian_icp::Status::TooFewCorrespondences
                                  : bayesian_icp::Status::InvalidInput;
   estimate_.summary.message = reason;

@@ -19,6 +19,7 @@
 #include <memory>
 #include <new>
 #include <numeric>
+#include <string>
 #include <typeinfo>
 #include <utility>
 #include <vector>
@@ -102,6 +103,15 @@ isWholeCloud(const Indices& indices, std::size_t num_points)
     if (indices[i] != static_cast<index_t>(i))
       return (false);
   return (true);
+}
+
+/** Whether a cloud of \p num_points has all points of \p indices. */
+inline bool
+areWithin(const Indices& indices, std::size_t num_points)
+{
+  return (std::all_of(indices.begin(), indices.end(), [num_points](index_t index) {
+    return (static_cast<std::size_t>(index) < num_points); // nor is it negative
+  }));
 }
 
 /** Those of \p indices whose point can be searched for where it is and where \p guess
@@ -278,6 +288,28 @@ public:
     Base::setInputTarget(usable);
   }
 
+  /** \brief align() with the identity as guess. */
+  void
+  align(PointCloudSource& output)
+  {
+    align(output, Matrix4::Identity());
+  }
+
+  /** \brief Register, as PCL's. Indices outside their cloud are an invalid input. A
+   * pointer to PCL's class calls PCL's
+   * align(), which reads the points of all indices before they can be checked.
+   * \param[out] output the source, moved
+   * \param[in] guess initial source-to-target transformation */
+  void
+  align(PointCloudSource& output, const Matrix4& guess)
+  {
+    const std::string complaint = complaintAboutInput();
+    if (complaint.empty())
+      Base::align(output, guess);
+    else
+      fail(output, guess, false, complaint);
+  }
+
   /** \brief Set the search tree of the target, as PCL's. Refused, with a message, are a
    * null pointer, and a tree that cannot be told of the point representation that was
    * set: one without PCL's tree inside. The tree that was there is kept then.
@@ -361,6 +393,7 @@ protected:
   using Base::correspondence_estimation_;
   using Base::correspondence_rejectors_;
   using Base::correspondences_;
+  using Base::fake_indices_;
   using Base::final_transformation_;
   using Base::force_no_recompute_;
   using Base::indices_;
@@ -383,6 +416,11 @@ protected:
   void
   computeTransformation(PointCloudSource& output, const Matrix4& guess) override
   {
+    const std::string complaint = complaintAboutInput();
+    if (!complaint.empty()) {
+      fail(output, guess, false, complaint);
+      return;
+    }
     forgetResult();
     const PointCloudSourceConstPtr whole = input_;
     const SourceSelection<PointSource, PointTarget, Scalar> selection(
@@ -393,9 +431,13 @@ protected:
         std::any_of(target_->begin(), target_->end(), [](const PointTarget& point) {
           return (isXYZFinite(point));
         });
-    if (!float_guess.allFinite() || !is_target_usable ||
+    if (!float_guess.allFinite()) {
+      fail(output, guess, false, "the initial guess is not finite");
+      return;
+    }
+    if (!is_target_usable ||
         usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
-      failWithoutCorrespondences(output, guess);
+      fail(output, guess, true, "fewer finite points than the registration needs");
       return;
     }
 
@@ -437,9 +479,10 @@ protected:
                  PointCloudSource& output,
                  const Matrix4& guess) = 0;
 
-  /** Take note of clouds or a guess that cannot be registered; it has been reported. */
+  /** Take note of an input that is not valid, or has too few points; it has been
+   * reported. */
   virtual void
-  keepFailure(bool is_guess_finite, const char* reason) = 0;
+  keepFailure(bool is_input_valid, const char* reason) = 0;
 
   bool
   hasDefaultEstimation() const
@@ -526,27 +569,43 @@ private:
     return (is_refused);
   }
 
-  void
-  failWithoutCorrespondences(PointCloudSource& output, const Matrix4& guess)
+  /** What is wrong with clouds and indices; empty if nothing is, or PCL says it. */
+  std::string
+  complaintAboutInput() const
   {
-    const bool is_guess_finite = guess.template cast<float>().allFinite();
-    const char* reason = is_guess_finite
-                             ? "fewer finite points than the registration needs"
-                             : "the initial guess is not finite";
+    // PCL adapts indices of its own to the source.
+    if (input_ && indices_ && !fake_indices_ && !areWithin(*indices_, input_->size()))
+      return ("an index is outside the source of " + std::to_string(input_->size()) +
+              " points");
+    const IndicesConstPtr selected = correspondence_estimation_->getIndicesTarget();
+    if (target_ && selected && !force_no_recompute_ &&
+        !areWithin(*selected, target_->size()))
+      return ("an index is outside the target of " + std::to_string(target_->size()) +
+              " points");
+    return ("");
+  }
+
+  void
+  fail(PointCloudSource& output,
+       const Matrix4& guess,
+       bool is_input_valid,
+       const std::string& reason)
+  {
     PCL_ERROR("[pcl::%s::computeTransformation] No registration: %s.\n",
               getClassName().c_str(),
-              reason);
-    keepFailure(is_guess_finite, reason);
+              reason.c_str());
+    forgetResult();
+    keepFailure(is_input_valid, reason.c_str());
     nr_iterations_ = 0;
     converged_ = false;
     correspondences_->clear();
     convergence_criteria_->setConvergenceState(
         State::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
+    const bool is_guess_finite = guess.template cast<float>().allFinite();
+    final_transformation_ = is_guess_finite ? guess : Matrix4(Matrix4::Identity());
     output = *input_;
-    if (is_guess_finite) {
-      final_transformation_ = guess;
+    if (is_guess_finite)
       transformCloud(*input_, output, guess);
-    }
   }
 
   /** PCL's class keeps it for itself. */
