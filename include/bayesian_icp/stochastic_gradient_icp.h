@@ -53,7 +53,7 @@ enum class DescentEnd {
   /** The progress callback asked for it. */
   Cancelled,
   /** Bad options, fewer than three source points, or a non-finite initial pose. For the
-   * class of PCL, also indices outside their cloud. */
+   * class of PCL, also a refused cloud, or indices outside their cloud. */
   InvalidInput
 };
 

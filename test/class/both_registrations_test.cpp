@@ -276,6 +276,43 @@ TYPED_TEST(BothRegistrations, IndicesOutsideTheirCloudAreAnInvalidInput)
   expectRefused(source, icp);
 }
 
+TYPED_TEST(BothRegistrations, ARefusedCloudIsAnInvalidInputUntilAnotherIsSet)
+{
+  TypeParam icp;
+  Registration<PointXYZ, PointXYZ>& as_pcl_knows_it = icp;
+  for (const Cloud::Ptr& refused : {Cloud::Ptr(), Cloud::Ptr(new Cloud)})
+    for (const bool is_source : {true, false}) {
+      this->align(icp);
+      expectResult(icp);
+      if (is_source)
+        icp.setInputSource(refused);
+      else
+        icp.setInputTarget(refused);
+      for (const bool is_by_pcl : {false, true}) {
+        this->output.resize(3);
+        if (is_by_pcl)
+          as_pcl_knows_it.align(this->output);
+        else
+          icp.align(this->output);
+        EXPECT_FALSE(icp.hasConverged());
+        expectInvalidInput(icp);
+        EXPECT_EQ(this->output.size(), is_source ? 0 : this->scans.source->size());
+      }
+    }
+  this->align(icp);
+  expectResult(icp);
+}
+
+TYPED_TEST(BothRegistrations, AFirstCloudThatIsRefusedIsAnInvalidInput)
+{
+  TypeParam icp;
+  icp.setInputSource(Cloud::Ptr(new Cloud));
+  icp.setInputTarget(Cloud::Ptr());
+  icp.align(this->output);
+  EXPECT_FALSE(icp.hasConverged());
+  expectInvalidInput(icp);
+}
+
 TYPED_TEST(BothRegistrations, CloudsThatCannotBeRegisteredFail)
 {
   const Cloud::Ptr none(new Cloud(10, 1, PointXYZ(nan_value, 0.0f, 0.0f)));

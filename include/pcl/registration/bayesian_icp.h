@@ -40,9 +40,9 @@ namespace pcl {
  *
  * Unlike pcl::IterativeClosestPoint of PCL 1.13, this class skips source points that
  * are not finite (or further out than 1e18 m) and keeps them in the output. The
- * estimate uses only the given indices (the output is the whole cloud, as in PCL).
- * Indices outside their cloud give Status::InvalidInput. As in PCL, use one object from
- * one thread at a time.
+ * estimate uses only the given indices (the output is the whole cloud, as in PCL). A
+ * source or target that is empty or null, and indices outside their cloud, give
+ * Status::InvalidInput. As in PCL, use one object from one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration

@@ -266,17 +266,31 @@ public:
   operator delete(void* /* object */, void* /* place */) noexcept
   {}
 
-  /** \brief Set the cloud to register to. Points further out than 1e18 m, on which
-   * PCL's search tree aborts, are left out: the target is then a copy in which they are
-   * NaN.
+  /** \brief Set the cloud to register. A null pointer or an empty cloud is refused,
+   * with a message. PCL keeps the cloud before it; align() fails until a cloud is set.
+   */
+  void
+  setInputSource(const PointCloudSourceConstPtr& cloud) override
+  {
+    is_source_refused_ = !cloud || cloud->empty();
+    if (!refuse(!cloud, "setInputSource", "the cloud is a null pointer"))
+      Base::setInputSource(cloud);
+  }
+
+  /** \brief Set the cloud to register to. Refused as by setInputSource(). Points
+   * further out than 1e18 m, on which PCL's search tree aborts, are left out: the
+   * target is then a copy in which they are NaN.
    */
   void
   setInputTarget(const PointCloudTargetConstPtr& cloud) override
   {
+    is_target_refused_ = !cloud || cloud->empty();
+    if (refuse(!cloud, "setInputTarget", "the cloud is a null pointer"))
+      return;
     const auto is_too_far = [](const PointTarget& point) {
       return (isXYZFinite(point) && !canBeQueried(point.getVector3fMap()));
     };
-    if (!cloud || std::none_of(cloud->begin(), cloud->end(), is_too_far)) {
+    if (std::none_of(cloud->begin(), cloud->end(), is_too_far)) {
       Base::setInputTarget(cloud);
       return;
     }
@@ -295,10 +309,10 @@ public:
     align(output, Matrix4::Identity());
   }
 
-  /** \brief Register, as PCL's. Indices outside their cloud are an invalid input. A
-   * pointer to PCL's class calls PCL's
+  /** \brief Register, as PCL's. Indices outside their cloud, and a source or target
+   * that was refused, are an invalid input. A pointer to PCL's class calls PCL's
    * align(), which reads the points of all indices before they can be checked.
-   * \param[out] output the source, moved
+   * \param[out] output the source, moved; empty if the source was refused
    * \param[in] guess initial source-to-target transformation */
   void
   align(PointCloudSource& output, const Matrix4& guess)
@@ -573,6 +587,10 @@ private:
   std::string
   complaintAboutInput() const
   {
+    if (is_source_refused_)
+      return ("the source that was set last is empty or a null pointer");
+    if (is_target_refused_)
+      return ("the target that was set last is empty or a null pointer");
     // PCL adapts indices of its own to the source.
     if (input_ && indices_ && !fake_indices_ && !areWithin(*indices_, input_->size()))
       return ("an index is outside the source of " + std::to_string(input_->size()) +
@@ -603,10 +621,18 @@ private:
         State::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
     const bool is_guess_finite = guess.template cast<float>().allFinite();
     final_transformation_ = is_guess_finite ? guess : Matrix4(Matrix4::Identity());
+    if (is_source_refused_ || !input_) {
+      output.clear();
+      return;
+    }
     output = *input_;
     if (is_guess_finite)
       transformCloud(*input_, output, guess);
   }
+
+  /** Whether the cloud that was set last was refused, and PCL has an older one. */
+  bool is_source_refused_ = false;
+  bool is_target_refused_ = false;
 
   /** PCL's class keeps it for itself. */
   PointRepresentationConstPtr point_representation_;
