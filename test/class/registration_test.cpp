@@ -141,7 +141,9 @@ TEST_F(Posterior, OfPresetCalibratedRefusesAScale)
   icp.setMeasurementSigma(1.0); // the default, and yet stated
   align(icp);
   EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidOptions);
-  EXPECT_NE(icp.getSummary().message.find("measurement_sigma"), std::string::npos);
+  EXPECT_NE(icp.getSummary().message.find("setMeasurementSigma"), std::string::npos);
+  EXPECT_NE(icp.getSummary().message.find("setOptions(getOptions())"),
+            std::string::npos);
   EXPECT_EQ(icp.getSamples().rows(), 0);
   EXPECT_TRUE(icp.hasConverged());
   icp.setOptions(icp.getOptions());

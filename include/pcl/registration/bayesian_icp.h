@@ -136,7 +136,8 @@ public:
    * reports Status::InvalidOptions.
    * \{ */
 
-  /** \brief Set all options, including those without a setter here. */
+  /** \brief Set all options, including those without a setter here. Options of another
+   * preset than the chosen one have no effect. */
   void
   setOptions(const bayesian_icp::Options& options)
   {
@@ -192,7 +193,8 @@ public:
   }
 
   /** \brief Set N of eq. (5), for presets `paper` and `exact`. Preset `calibrated`
-   * estimates its scale itself: align() then reports Status::InvalidOptions. */
+   * estimates its scale itself: align() then reports Status::InvalidOptions, until
+   * setOptions() is called: setOptions(getOptions()) changes nothing else. */
   void
   setEffectivePoints(double effective_points)
   {

@@ -177,8 +177,8 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
       refusal.summary.status = bayesian_icp::Status::InvalidOptions;
       refusal.summary.message =
           "measurement_sigma and effective_points belong to presets paper and exact, "
-          "but one of them was set with preset calibrated, which finds its scale "
-          "itself";
+          "but setMeasurementSigma or setEffectivePoints was called, and preset "
+          "calibrated finds its scale itself; setOptions(getOptions()) undoes the call";
       return (refusal);
     }
     if (!hasPlainCorrespondences())
