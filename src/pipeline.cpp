@@ -11,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -68,6 +69,15 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   return checked;
 }
 
+/** \p result with the \p prior of its draws. */
+PosteriorEstimate
+withPrior(PosteriorEstimate result, const Prior& prior)
+{
+  if (result.summary.num_draws > 0)
+    result.prior = prior;
+  return result;
+}
+
 PosteriorEstimate
 estimate(const Eigen::Matrix3Xd& source_points,
          const CorrespondenceSearch& search,
@@ -98,16 +108,17 @@ estimate(const Eigen::Matrix3Xd& source_points,
     addDoubts(
         doubtsAbout(energy, result, thicknessOf(sampled_points), options.exact.scale),
         result.summary);
-    return result;
+    return withPrior(std::move(result), prior);
   }
-  return estimateOf(samplePaper(source_points,
-                                search,
-                                prior,
-                                initial_pose,
-                                options.paper,
-                                options.chains,
-                                has_diverged,
-                                progress));
+  return withPrior(estimateOf(samplePaper(source_points,
+                                          search,
+                                          prior,
+                                          initial_pose,
+                                          options.paper,
+                                          options.chains,
+                                          has_diverged,
+                                          progress)),
+                   prior);
 }
 
 } // namespace
@@ -181,13 +192,14 @@ estimatePosterior(const PreparedCloud& source,
         return cloud.parts().surface(num_threads);
       };
     };
-    return estimateCalibratedPosterior(source.points(),
-                                       target.points(),
-                                       surfaceOf(source),
-                                       surfaceOf(target),
-                                       initial_pose,
-                                       options,
-                                       progress);
+    return withPrior(estimateCalibratedPosterior(source.points(),
+                                                 target.points(),
+                                                 surfaceOf(source),
+                                                 surfaceOf(target),
+                                                 initial_pose,
+                                                 options,
+                                                 progress),
+                     priorOf(options, initial_pose, source.points()));
   }
   const std::string complaint = options.validate();
   if (!complaint.empty())

@@ -43,8 +43,11 @@ struct BAYESIAN_ICP_EXPORT PoseMeasurement {
  * Fusing the result with the prior again gives the posterior. The result is accurate if
  * the posterior is nearly Gaussian.
  * \param[in] posterior mean and covariances
- * \param[in] prior with which \p posterior was sampled
- * \return NaN if \p posterior has no finite mean and covariance */
+ * \param[in] prior with which \p posterior was sampled: PosteriorEstimate::prior, or
+ *            getPrior() of the class
+ * \return NaN if \p posterior has no finite mean and covariance, or \p prior no finite
+ * mean and positive variances. The status is then InvalidInput if that of \p posterior
+ * promises a mean. */
 BAYESIAN_ICP_EXPORT PoseMeasurement
 withoutPrior(const PoseEstimate& posterior, const Prior& prior);
 

@@ -7,6 +7,7 @@
 #include <bayesian_icp/kd_tree.h>
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/prepared_cloud.h>
+#include <bayesian_icp/prior.h>
 #include <bayesian_icp/summary.h>
 
 namespace bayesian_icp {
@@ -18,6 +19,10 @@ struct PosteriorEstimate {
   std::vector<Chain> chains;
   /** Draws of the chains that did not diverge, chain after chain. */
   PoseMatrix samples;
+  /** The prior that was sampled with, for withoutPrior(). Its mean is NaN without
+   * draws.
+   */
+  Prior prior{PriorOptions().mean, PriorOptions().variance};
 };
 
 /** \brief Smallest number of source points that must have a correspondence at the

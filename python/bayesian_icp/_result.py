@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,37 +15,16 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
-_CONVENTIONS = ("parameters", "r3xso3", "left_se3", "right_se3")
 
 
-class Measurement(NamedTuple):
-    """What the clouds alone say about the pose: a posterior without its prior."""
+class Pose:
+    """Mean and covariance of a pose that maps source points into the target frame."""
 
-    T_target_source: Array
-    """(4, 4) mean."""
-    covariances: dict[str, Array]
-    """(6, 6) of each convention [m, rad]."""
-    num_unmeasured: int
-    """Directions that the clouds do not see, 0 to 6; their deviation is 100 times the
-    prior's."""
-
-
-class Result:
-    """Posterior of the pose that maps source points into the target frame.
-
-    Made by `align`. Without a posterior all numbers are NaN and `samples` is empty.
-    """
-
-    def __init__(self, estimate: _core.Estimate, options: _core.Options, guess: Array, seconds: float) -> None:
-        self._estimate = estimate
-        self._options = options
-        self._guess = guess
-        self.seconds = seconds
-        """Wall time of the run [s]."""
+    _estimate: _core.Estimate | _core.PoseMeasurement
 
     @property
     def T_target_source(self) -> Array:
-        """(4, 4) posterior mean, the bi-invariant mean on SE(3)."""
+        """(4, 4) mean."""
         return _core.matrix_from_pose(self.mean)
 
     @property
@@ -54,7 +33,7 @@ class Result:
         return self._estimate.mean
 
     def covariance(self, convention: str = "parameters") -> Array:
-        """Second moment of the draws about the mean, translation first [m, rad].
+        """Covariance about the mean, translation first [m, rad].
 
         Parameters
         ----------
@@ -76,77 +55,10 @@ class Result:
         return self._estimate.covariance(convention)
 
     @property
-    def samples(self) -> Array:
-        """(chains, draws, 6) of the chains that did not diverge, cut to the shortest."""
-        return self._estimate.samples
-
-    def chain(self, index: int) -> Array:
-        """(draws, 6) of one chain, all of them, diverged or not."""
-        return self._estimate.chain(index)
-
-    @property
     def status(self) -> str:
         """Whether to trust it: "ok", or what is wrong, as "doubtful", "not_mixed",
         "several_modes", "diverged", "interrupted" or "too_few_correspondences"."""
         return self._estimate.status
-
-    @property
-    def message(self) -> str:
-        """The status in words, with the numbers behind it."""
-        return self._estimate.message
-
-    @property
-    def flags(self) -> tuple[str, ...]:
-        """Raised flags of preset calibrated: reasons to doubt the posterior, of
-        wrong_basin, low_support, few_patches, misfit, no_information, prior_conflict."""
-        return tuple(self._estimate.data.flags)
-
-    @property
-    def directions(self) -> list[_core.Direction]:
-        """Six motions of preset calibrated, best known first, and how each is known."""
-        return self._estimate.data.directions
-
-    @property
-    def data(self) -> _core.DataReport:
-        """All that preset calibrated says about the clouds: noise, support, warnings."""
-        return self._estimate.data
-
-    @property
-    def modes(self) -> list[_core.Mode]:
-        """The modes, heaviest first; empty if there is one, or nobody looked."""
-        return self._estimate.modes
-
-    @property
-    def coordinates(self) -> dict[str, _core.CoordinateSummary]:
-        """Mean, deviation, quantiles, R-hat and ESS of x, y, z, roll, pitch and yaw."""
-        return dict(zip(COORDINATES, self._estimate.coordinates))
-
-    @property
-    def num_diverged_chains(self) -> int:
-        """Chains that `samples` leaves out."""
-        return self._estimate.num_diverged_chains
-
-    @property
-    def options(self) -> _core.Options:
-        """A copy of the options of the run."""
-        return _core.Options(self._options)
-
-    def without_prior(self, source: Any) -> Measurement:
-        """Remove the prior, for filters and pose graphs that know it already.
-
-        Parameters
-        ----------
-        source : array_like, (N, 3)
-            The source of the run, which may have given the prior its frame [m].
-        """
-        T, covariances, num_unmeasured = self._estimate.without_prior(self._options, self._guess, source)
-        return Measurement(T, dict(zip(_CONVENTIONS, covariances)), num_unmeasured)
-
-    def to_arviz(self) -> dict[str, dict[str, Array]]:
-        """Groups and variables for ``arviz.from_dict``: ``from_dict(d)`` from ArviZ 1.0 on,
-        ``from_dict(**d)`` before it. Variables have the shape (chains, draws)."""
-        samples = self.samples
-        return {"posterior": {name: samples[:, :, k] for k, name in enumerate(COORDINATES)}}
 
     def to_ros(
         self, *, frame_id: str = "target", timestamp_ns: int = 0, accept_unreliable: bool = False
@@ -203,6 +115,111 @@ class Result:
         return _core.tum(self._estimate, _exports(timestamp_ns=timestamp_ns,
                                                   accept_unreliable=accept_unreliable))
 
+    def __repr__(self) -> str:
+        std = np.sqrt(np.diag(self.covariance()))
+        numbers = ", ".join(
+            f"{name}={mean:.4g}±{deviation:.2g}" for name, mean, deviation in zip(COORDINATES, self.mean, std)
+        )
+        return f"<bayesian_icp.{type(self).__name__} {self.status}: {numbers}{self._remark()}>"
+
+    def _remark(self) -> str:
+        return ""
+
+
+class Measurement(Pose):
+    """What the clouds alone say about the pose: a posterior without its prior.
+
+    Made by `Result.without_prior`.
+    """
+
+    def __init__(self, measurement: _core.PoseMeasurement) -> None:
+        self._estimate: _core.PoseMeasurement = measurement
+
+    @property
+    def num_unmeasured(self) -> int:
+        """Directions that the clouds do not see, 0 to 6; their deviation is 100 times
+        the prior's."""
+        return self._estimate.num_unmeasured
+
+    def _remark(self) -> str:
+        return f", {self.num_unmeasured} of 6 directions unmeasured"
+
+
+class Result(Pose):
+    """Posterior of the pose that maps source points into the target frame.
+
+    Made by `align`. The pose is the posterior mean, the bi-invariant mean of the draws on
+    SE(3), and the covariance is their second moment about it. Without a posterior all
+    numbers are NaN and `samples` is empty.
+    """
+
+    def __init__(self, estimate: _core.Estimate, options: _core.Options, guess: Array, seconds: float) -> None:
+        self._estimate: _core.Estimate = estimate
+        self._options = options
+        self._guess = guess
+        self.seconds = seconds
+        """Wall time of the run [s]."""
+
+    @property
+    def samples(self) -> Array:
+        """(chains, draws, 6) of the chains that did not diverge, cut to the shortest."""
+        return self._estimate.samples
+
+    def chain(self, index: int) -> Array:
+        """(draws, 6) of one chain, all of them, diverged or not."""
+        return self._estimate.chain(index)
+
+    @property
+    def message(self) -> str:
+        """The status in words, with the numbers behind it."""
+        return self._estimate.message
+
+    @property
+    def flags(self) -> tuple[str, ...]:
+        """Raised flags of preset calibrated: reasons to doubt the posterior, of
+        wrong_basin, low_support, few_patches, misfit, no_information, prior_conflict."""
+        return tuple(self._estimate.data.flags)
+
+    @property
+    def directions(self) -> list[_core.Direction]:
+        """Six motions of preset calibrated, best known first, and how each is known."""
+        return self._estimate.data.directions
+
+    @property
+    def data(self) -> _core.DataReport:
+        """All that preset calibrated says about the clouds: noise, support, warnings."""
+        return self._estimate.data
+
+    @property
+    def modes(self) -> list[_core.Mode]:
+        """The modes, heaviest first; empty if there is one, or nobody looked."""
+        return self._estimate.modes
+
+    @property
+    def coordinates(self) -> dict[str, _core.CoordinateSummary]:
+        """Mean, deviation, quantiles, R-hat and ESS of x, y, z, roll, pitch and yaw."""
+        return dict(zip(COORDINATES, self._estimate.coordinates))
+
+    @property
+    def num_diverged_chains(self) -> int:
+        """Chains that `samples` leaves out."""
+        return self._estimate.num_diverged_chains
+
+    @property
+    def options(self) -> _core.Options:
+        """A copy of the options of the run."""
+        return _core.Options(self._options)
+
+    def without_prior(self) -> Measurement:
+        """Remove the prior, for filters and pose graphs that know it already."""
+        return Measurement(self._estimate.without_prior())
+
+    def to_arviz(self) -> dict[str, dict[str, Array]]:
+        """Groups and variables for ``arviz.from_dict``: ``from_dict(d)`` from ArviZ 1.0 on,
+        ``from_dict(**d)`` before it. Variables have the shape (chains, draws)."""
+        samples = self.samples
+        return {"posterior": {name: samples[:, :, k] for k, name in enumerate(COORDINATES)}}
+
     def write_report(self, path: str | os.PathLike[str], *, source: Any, target: Any) -> None:
         """Write the HTML report: verdict, tables and charts on one page. Needs gnuplot.
 
@@ -226,13 +243,8 @@ class Result:
         _tools.write_report(self._estimate, self._options, self._guess, self.seconds,
                             os.fspath(path), source, target)
 
-    def __repr__(self) -> str:
-        std = np.sqrt(np.diag(self.covariance()))
-        numbers = ", ".join(
-            f"{name}={mean:.4g}±{deviation:.2g}" for name, mean, deviation in zip(COORDINATES, self.mean, std)
-        )
-        flags = f", flags: {', '.join(self.flags)}" if self.flags else ""
-        return f"<bayesian_icp.Result {self.status}: {numbers}{flags}>"
+    def _remark(self) -> str:
+        return f", flags: {', '.join(self.flags)}" if self.flags else ""
 
 
 def _exports(**fields: Any) -> _core.ExportOptions:

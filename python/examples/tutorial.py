@@ -90,10 +90,10 @@ clouds = {
 edges = []
 for target, source in (("A", "B"), ("B", "C"), ("A", "C")):
     result = bayesian_icp.align(source=clouds[source], target=clouds[target])
-    measured = result.without_prior(clouds[source])
-    information = np.linalg.inv(measured.covariances["right_se3"])
+    measured = result.without_prior()
+    information = np.linalg.inv(measured.covariance("right_se3"))
     edges.append((target, source, measured.T_target_source, information))
-    print(target, source, result.status, result.to_g2o()[:60], "...")
+    print(target, source, result.status, measured.to_g2o()[:60], "...")
 
 
 def residual(poses, target, source, T):

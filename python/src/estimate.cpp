@@ -188,6 +188,18 @@ bindEstimate(py::module_& module)
                std::to_string(target.prepared.points().cols()) + " points>";
       });
 
+  using M = PoseMeasurement;
+  py::class_<M>(module, "PoseMeasurement", "A posterior without its prior.")
+      .def_property_readonly("status", [](const M& m) { return m.estimate.status; })
+      .def_property_readonly("mean", [](const M& m) { return m.estimate.mean; })
+      .def(
+          "covariance",
+          [](const M& m, CovarianceConvention convention) {
+            return m.estimate.covariance(convention);
+          },
+          py::arg("convention"))
+      .def_readonly("num_unmeasured", &M::num_unmeasured);
+
   using E = PosteriorEstimate;
   py::class_<E>(module, "Estimate", "Draws and their summary.")
       .def_property_readonly("status", [](const E& e) { return e.summary.status; })
@@ -214,22 +226,8 @@ bindEstimate(py::module_& module)
           "chain",
           [](const E& e, std::size_t chain) { return e.chains.at(chain).draws; },
           py::arg("index"))
-      .def(
-          "without_prior",
-          [](const E& e,
-             const Options& options,
-             const Vector6d& guess,
-             const py::object& source) {
-            const Prior prior = priorOf(options, guess, pointsOf(source, "source").xyz);
-            const PoseMeasurement measured =
-                withoutPrior(PoseEstimate(e.summary), prior);
-            return py::make_tuple(matrixOf(measured.estimate.mean),
-                                  measured.estimate.covariances,
-                                  measured.num_unmeasured);
-          },
-          py::arg("options"),
-          py::arg("guess"),
-          py::arg("source"));
+      .def("without_prior",
+           [](const E& e) { return withoutPrior(PoseEstimate(e.summary), e.prior); });
   module.def("estimate",
              &estimate,
              py::arg("source"),

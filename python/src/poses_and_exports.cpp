@@ -3,6 +3,7 @@
 
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/exports.h>
+#include <bayesian_icp/measurement.h>
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/ros_messages.h>
 
@@ -59,7 +60,7 @@ rosDict(const PoseEstimate& estimate, const ExportOptions& options)
       "pose"_a = py::dict("pose"_a = pose, "covariance"_a = message.pose.covariance));
 }
 
-/** Binds an export of an estimate. */
+/** Binds an export of a posterior and of a measurement. */
 template <typename Function>
 void
 bindExport(py::module_& module, const char* name, const Function& function)
@@ -68,6 +69,11 @@ bindExport(py::module_& module, const char* name, const Function& function)
       name,
       [function](const PosteriorEstimate& estimate, const ExportOptions& options) {
         return function(PoseEstimate(estimate.summary), options);
+      });
+  module.def(
+      name,
+      [function](const PoseMeasurement& measurement, const ExportOptions& options) {
+        return function(measurement.estimate, options);
       });
 }
 

@@ -29,6 +29,13 @@ derivativeBetween(const Vector6d& mean,
   return derivative;
 }
 
+bool
+isUsable(const Prior& prior)
+{
+  return prior.mean().allFinite() && prior.referencePoint().allFinite() &&
+         (prior.variance().array() > 0.0).all();
+}
+
 } // namespace
 
 PoseEstimate
@@ -53,8 +60,11 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
   PoseMeasurement measurement;
   measurement.estimate.status = posterior.status;
   const Matrix6d& covariance = posterior.covariance(CovarianceConvention::LeftSE3);
-  if (!posterior.mean.allFinite() || !covariance.allFinite())
+  if (!posterior.mean.allFinite() || !covariance.allFinite() || !isUsable(prior)) {
+    if (hasUsableMean(posterior.status))
+      measurement.estimate.status = Status::InvalidInput;
     return measurement;
+  }
   const TwistPrior near_mean =
       twistPrior(prior, isometryOf(posterior.mean), Eigen::Vector3d::Zero());
   // In units of the prior's the variance along an axis is 1 / (1 + lambda), lambda the

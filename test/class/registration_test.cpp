@@ -151,6 +151,24 @@ TEST_F(Posterior, OfPresetCalibratedRefusesAScale)
   EXPECT_EQ(icp.getSamples().rows(), 40);
 }
 
+TEST_F(Posterior, HasThePriorThatWasSampledWith)
+{
+  EXPECT_TRUE(icp.getPrior().mean().array().isNaN().all());
+  align(icp, bayesian_icp::matrixOf(smallPose()).cast<float>());
+  EXPECT_LT((icp.getPrior().mean() - smallPose()).norm(), 1e-6);
+  EXPECT_EQ(icp.getPrior().referencePoint(), Eigen::Vector3d::Zero());
+  icp.setPrior(2.0 * smallPose(), bayesian_icp::Vector6d::Constant(0.02));
+  icp.setPriorFrame(bayesian_icp::PriorFrame::SourceCentroid);
+  align(icp);
+  EXPECT_EQ(icp.getPrior().mean(), 2.0 * smallPose());
+  EXPECT_EQ(icp.getPrior().variance(), bayesian_icp::Vector6d::Constant(0.02));
+  const Eigen::Matrix3Xd points = scans.source->getMatrixXfMap(3, 4, 0).cast<double>();
+  EXPECT_LT((icp.getPrior().referencePoint() - points.rowwise().mean()).norm(), 1e-12);
+  icp.setNumberOfSamples(0);
+  align(icp);
+  EXPECT_TRUE(icp.getPrior().mean().array().isNaN().all());
+}
+
 TEST_F(Posterior, OfPresetPaperHasAGateThatIsTheSmallerOfItsOwnAndPcls)
 {
   usePaper(icp);

@@ -113,6 +113,30 @@ TEST(WithoutPrior, NaNWithoutAPosterior)
   EXPECT_TRUE(measurement.estimate.covariance(left).array().isNaN().all());
 }
 
+TEST(WithoutPrior, APriorThatIsNotFiniteIsAnInvalidInput)
+{
+  PoseEstimate posterior;
+  posterior.status = Status::Ok;
+  posterior.mean = some_pose;
+  posterior.covariances.fill(1e-4 * Matrix6d::Identity());
+  const Vector6d ones = Vector6d::Ones();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(withoutPrior(posterior, Prior(some_pose, ones)).estimate.status,
+            Status::Ok);
+  for (const Prior& prior : {Prior(PriorOptions().mean, ones),
+                             Prior(some_pose, nan * ones),
+                             Prior(some_pose, 0.0 * ones),
+                             Prior(some_pose, ones, {0.0, nan, 0.0})}) {
+    const PoseEstimate estimate = withoutPrior(posterior, prior).estimate;
+    EXPECT_EQ(estimate.status, Status::InvalidInput);
+    EXPECT_TRUE(estimate.mean.array().isNaN().all());
+    EXPECT_TRUE(estimate.covariance(left).array().isNaN().all());
+  }
+  posterior.mean[0] = nan;
+  EXPECT_EQ(withoutPrior(posterior, Prior(some_pose, ones)).estimate.status,
+            Status::InvalidInput);
+}
+
 TEST(WithoutPrior, AnInfinitePriorChangesNothing)
 {
   PoseEstimate posterior;

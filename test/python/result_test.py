@@ -105,12 +105,17 @@ def test_to_arviz(result):
 def test_without_prior(mug):
     narrow = bayesian_icp.align(source=mug[0], target=mug[1], prior_mean=mug[2], prior_std=(0.005, 0.01))
     wide = bayesian_icp.align(source=mug[0], target=mug[1])
-    measured = narrow.without_prior(mug[0])
+    measured = narrow.without_prior()
     assert measured.num_unmeasured == 0
     assert np.allclose(measured.T_target_source, wide.T_target_source, atol=1e-3)
-    yaw = measured.covariances["parameters"][5, 5]
+    yaw = measured.covariance()[5, 5]
     assert yaw > narrow.covariance()[5, 5]
     assert yaw == pytest.approx(wide.covariance()[5, 5], rel=0.3)
+    assert measured.status == "ok"
+    assert measured.to_g2o().startswith("EDGE_SE3:QUAT 0 1 ")
+    assert measured.to_gtsam() != narrow.to_gtsam()
+    assert repr(measured).startswith("<bayesian_icp.Measurement ok: x=0.0")
+    assert repr(measured).endswith(", 0 of 6 directions unmeasured>")
 
 
 def test_result_shows_itself(result):

@@ -123,6 +123,13 @@ public:
     return (estimate_.summary.covariance(convention));
   }
 
+  /** \brief The prior of the draws, as bayesian_icp::withoutPrior() needs it. */
+  const bayesian_icp::Prior&
+  getPrior() const
+  {
+    return (estimate_.prior);
+  }
+
   /** \brief Status, marginals, R-hat and effective sample sizes. */
   const bayesian_icp::Summary&
   getSummary() const
