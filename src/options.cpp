@@ -68,6 +68,9 @@ check(const ChainOptions& chains, Checker& checker)
                   "num_draws",
                   chains.num_draws,
                   "at least the number of chains (one draw a chain)");
+  const std::string most = "at most " + std::to_string(max_draws);
+  checker.require(
+      chains.num_draws <= max_draws, "num_draws", chains.num_draws, most.c_str());
   checker.atLeast("num_threads", chains.num_threads, 0);
 }
 

@@ -137,6 +137,9 @@ TEST(OptionsValidation, NamesFieldValueAndRange)
   const BadOption bad_options[] = {
       {"prior.variance[yaw]", "nan", [=](Options& o) { o.prior.variance[5] = nan; }},
       {"num_draws", "3", [](Options& o) { o.chains.num_draws = 3; }},
+      {"num_draws",
+       "at most 10000000",
+       [](Options& o) { o.chains.num_draws = max_draws + 1; }},
   };
   for (const auto& bad : bad_options)
     expectRefused(Preset::Paper, bad);

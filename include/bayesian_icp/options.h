@@ -70,12 +70,18 @@ template <>
 inline Automatic<Vector6d>::Automatic(AutomaticTag) : value_(Vector6d::Zero())
 {}
 
+/** \brief Largest number of draws. They and their summary take about 2 GB. Their mean
+ * has an error of 0.0003 standard deviations, so more draws are of no use. */
+constexpr int max_draws = 10000000;
+
 /** \brief Number of chains and draws, random seed and number of threads. */
 struct ChainOptions {
   /** Number of independent chains, positive. */
   int num_chains = 4;
-  /** Total number of draws kept over all chains, at least one per chain. The first
-   * chains keep one more if the number is not divisible by the number of chains. */
+  /** Total number of draws kept over all chains, at least one per chain and at most
+   * max_draws. The first chains keep one more if the number is not divisible by the
+   * number of chains. Status::Ok needs effective sample sizes of min_ess: 1000 draws
+   * usually have them, fewer than 400 never. */
   int num_draws = 2000;
   /** Seed of all random numbers; chain i uses stream i of this seed. */
   std::uint64_t seed = 1;

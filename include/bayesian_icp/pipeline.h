@@ -39,8 +39,8 @@ constexpr std::size_t min_correspondences = 3;
  * \param[in] options preset, prior, chains and all other options of the preset
  * \param[in] progress called after every step; returns false to cancel
  * \return an estimate whose summary.status states the outcome. Bad options or input
- * result in a status, not in an exception. Exceptions of \p search and \p progress pass
- * through. */
+ * result in a status, not in an exception. Exceptions of \p search and \p progress, and
+ * std::bad_alloc, pass through. */
 BAYESIAN_ICP_EXPORT PosteriorEstimate
 estimatePosterior(const Eigen::Matrix3Xd& source_points,
                   const CorrespondenceSearch& search,

@@ -7,6 +7,7 @@
 #include <pcl/registration/stochastic_gradient_icp.h>
 
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 namespace pcl::test {
@@ -67,6 +68,19 @@ void
 expectInvalidInput(SgdIcp& icp)
 {
   EXPECT_EQ(icp.getResult().end, bayesian_icp::DescentEnd::InvalidInput);
+}
+
+void
+expectNotRun(BayesianIcp& icp)
+{
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::NotRun);
+  EXPECT_EQ(icp.getSamples().rows(), 0);
+}
+
+void
+expectNotRun(SgdIcp& icp)
+{
+  EXPECT_EQ(icp.getResult().num_iterations, 0);
 }
 
 void
@@ -311,6 +325,25 @@ TYPED_TEST(BothRegistrations, AFirstCloudThatIsRefusedIsAnInvalidInput)
   icp.align(this->output);
   EXPECT_FALSE(icp.hasConverged());
   expectInvalidInput(icp);
+}
+
+TYPED_TEST(BothRegistrations, ExceptionsOfTheCallbackPassThrough)
+{
+  for (const int last : {2, 20}) { // in ICP, and among the draws
+    TypeParam icp;
+    int num_calls = 0;
+    icp.setProgressCallback([&](auto...) -> bool {
+      if (++num_calls > last)
+        throw std::runtime_error("of the user");
+      return (true);
+    });
+    EXPECT_THROW(this->align(icp), std::runtime_error);
+    EXPECT_FALSE(icp.hasConverged());
+    expectNotRun(icp);
+    icp.setProgressCallback(nullptr);
+    this->align(icp);
+    expectResult(icp);
+  }
 }
 
 TYPED_TEST(BothRegistrations, CloudsThatCannotBeRegisteredFail)

@@ -204,7 +204,7 @@ INTERRUPTED = """
 import numpy, bayesian_icp
 scans = bayesian_icp.simulate("mug")
 options = bayesian_icp.Options()
-options.chains.num_draws = 100_000_000
+options.chains.num_draws = 10_000_000
 clouds = dict(source=numpy.repeat(scans.source, {repeat}, 0), target=numpy.repeat(scans.target, {repeat}, 0))
 print("begins", flush=True)
 try:

@@ -42,7 +42,9 @@ namespace pcl {
  * are not finite (or further out than 1e18 m) and keeps them in the output. The
  * estimate uses only the given indices (the output is the whole cloud, as in PCL). A
  * source or target that is empty or null, and indices outside their cloud, give
- * Status::InvalidInput. As in PCL, use one object from one thread at a time.
+ * Status::InvalidInput. Exceptions of callbacks and plug-ins, and std::bad_alloc, pass
+ * through align(): then hasConverged() is false and the status NotRun. As in PCL, use
+ * one object from one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration

@@ -26,7 +26,7 @@ namespace pcl {
  * options. As with PCL's ICP, hasConverged() is also true if the iterations ran out,
  * unless convergence_criteria_ states otherwise; getResult() distinguishes the two.
  *
- * Non-finite points, indices, refused clouds are treated as in
+ * Non-finite points, indices, refused clouds and exceptions are treated as in
  * pcl::BayesianIterativeClosestPoint.
  * correspondences_ are those of the whole source at the final transformation. The same
  * seed gives the same result. Use one object from one thread at a time.

@@ -466,10 +466,14 @@ protected:
     }
     PointCloudSource scratch;
     bool is_output_moved = false;
-    {
+    try {
       const Substitution<PointCloudSourceConstPtr> input(input_, source);
       is_output_moved =
           registerUsable(source, source == whole ? output : scratch, guess);
+    }
+    catch (...) { // of a callback, a plug-in or the memory
+      converged_ = false;
+      throw;
     }
     if (is_subset)
       for (auto& correspondence : *correspondences_)
