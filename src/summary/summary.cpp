@@ -2,6 +2,7 @@
 #include "summary/plain_text.h"
 
 #include <bayesian_icp/diagnostics.h>
+#include <bayesian_icp/options.h>
 #include <bayesian_icp/summary.h>
 
 #include <algorithm>
@@ -216,6 +217,17 @@ movedMessage(const ChainSet& chain_set)
                    chain_set.moved_by_nats);
 }
 
+/** Whether there are fewer draws than the diagnostics need, or the chains would pass
+ * them with more draws of the same kind. */
+bool
+areTooFewDraws(const Summary& summary, const WorstDiagnostics& worst)
+{
+  const auto num_draws = static_cast<double>(summary.num_draws);
+  // The effective share of the draws with which the default number passes.
+  const double share = min_ess / ChainOptions().num_draws;
+  return num_draws < min_ess || (worst.ess < min_ess && worst.ess > share * num_draws);
+}
+
 std::string
 messageOf(const Summary& summary, const ChainSet& set, const WorstDiagnostics& worst)
 {
@@ -241,12 +253,15 @@ messageOf(const Summary& summary, const ChainSet& set, const WorstDiagnostics& w
         worst.rhat,
         worst.ess);
   default:
-    if (std::isnan(worst.rhat) && static_cast<double>(summary.num_draws) < min_ess)
+    if (areTooFewDraws(summary, worst))
       return formatted(
-          "%ld draws are too few to tell whether the chains mixed or did "
-          "not mix; mean and covariance describe these draws, not reliably "
+          "%ld draws are too few to tell whether the chains mixed: every "
+          "effective sample size has to be at least %.0f, take %d draws or "
+          "more; mean and covariance describe these draws, not reliably "
           "the posterior",
-          summary.num_draws);
+          summary.num_draws,
+          min_ess,
+          ChainOptions().num_draws);
     return formatted(
         "the chains did not mix: largest R-hat %.3f (at most %.2f is good), "
         "smallest effective sample size %.0f (at least %.0f is good); mean and "

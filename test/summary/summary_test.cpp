@@ -333,6 +333,20 @@ TEST(Summary, TooFewDrawsForDiagnosticsAreNotMixed)
       << summary.message;
 }
 
+TEST(Summary, GoodChainsThatAreTooShortAreToldFromBadOnes)
+{
+  Random random(37, 0);
+  for (const int num_draws : {20, 90}) { // of each of four chains
+    const Summary summary = summarize(mixedChains(random, 4, num_draws));
+    EXPECT_EQ(summary.status, Status::NotMixed);
+    EXPECT_NE(summary.message.find("take 2000 draws or more"), std::string::npos)
+        << summary.message;
+  }
+  ChainSet chains = mixedChains(random, 4, 400);
+  chains.chains[2].draws.col(4).array() += 0.05;
+  EXPECT_EQ(summarize(chains).message.rfind("the chains did not mix", 0), 0u);
+}
+
 TEST(Summary, DivergedChainsAreLeftOutAndReported)
 {
   Random random(37, 0);

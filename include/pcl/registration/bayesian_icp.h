@@ -176,7 +176,8 @@ public:
     options_.chains.num_chains = num_chains;
   }
 
-  /** \brief Set the total number of draws kept, over all chains. */
+  /** \brief Set the total number of draws kept, over all chains. 1000 are usually
+   * enough for Status::Ok, fewer than 400 never. */
   void
   setNumberOfSamples(int num_draws)
   {
