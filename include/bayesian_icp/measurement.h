@@ -55,7 +55,7 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior);
  * \param[in] mean pose [m, rad]
  * \param[in] covariance about \p mean [m, rad]
  * \param[in] convention of \p covariance; the others follow from it to first order
- * \return status NotRun */
+ * \return status NotRun, which exports refuse: set the one that you want */
 BAYESIAN_ICP_EXPORT PoseEstimate
 estimateOf(const Vector6d& mean,
            const Matrix6d& covariance,
