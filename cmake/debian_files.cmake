@@ -54,6 +54,7 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   # The licence is in the copyright file, the changes are in the changelog.
   if(EXISTS ${root}/share/doc/pcl_bayesian_icp)
     file(RENAME ${root}/share/doc/pcl_bayesian_icp/README.md ${doc}/README.md)
+    file(RENAME ${root}/share/doc/pcl_bayesian_icp/docs ${doc}/docs)
     file(REMOVE_RECURSE ${root}/share/doc/pcl_bayesian_icp)
   endif()
   write_copyright(${doc}/copyright)

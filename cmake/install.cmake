@@ -75,3 +75,11 @@ install(FILES ${PROJECT_SOURCE_DIR}/package.xml
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/LICENSE
               ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT development)
+# The pages that README.md links to, with their pictures.
+install(
+  DIRECTORY ${PROJECT_SOURCE_DIR}/docs
+  DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT development
+  FILES_MATCHING
+  PATTERN "*.md"
+  PATTERN "*.png")

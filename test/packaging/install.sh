@@ -17,6 +17,7 @@ ls -d include/pcl/registration/bayesian_icp.h \
   "$libdir"/pkgconfig/pcl_bayesian_icp{,_core}.pc \
   share/pcl_bayesian_icp/package.xml \
   share/doc/pcl_bayesian_icp/{README.md,LICENSE,CHANGELOG.md}
+(cd share/doc/pcl_bayesian_icp && grep -o '](docs/[^)#]*' README.md | cut -c3- | xargs ls)
 
 # The build folder and the first prefix must be forgotten.
 if grep -rl -e "$build" -e "$prefix.first" --include='*.cmake' --include='*.pc' .; then
