@@ -17,6 +17,8 @@ import numpy as np
 import bayesian_icp
 
 FOLDER = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+if not FOLDER.is_dir():
+    sys.exit(f"{FOLDER} is no folder\n\n{__doc__}")
 
 # %% [markdown]
 # ## A mug in five lines
