@@ -38,7 +38,8 @@ enum class Status {
    * in most of its steps (white noise on the circle). Samples, mean and covariance
    * leave out its draws. */
   Diverged,
-  /** The callback stopped the run. The draws until then are available. */
+  /** The callback stopped the run. The draws until then are available. In files and
+   * texts: "interrupted". */
   Cancelled,
   /** At the initial guess, too few source points have a target point within the maximum
    * correspondence distance or, with preset `calibrated`, lie on a usable surface of
@@ -50,7 +51,8 @@ enum class Status {
   InvalidInput
 };
 
-/** \brief Short name of a status: "ok", "doubtful", "too_few_correspondences", ... */
+/** \brief Short name of a status: "ok", "doubtful", "too_few_correspondences", ...;
+ * that of Cancelled is "interrupted". */
 BAYESIAN_ICP_EXPORT const char*
 toString(Status status);
 

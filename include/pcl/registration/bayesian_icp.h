@@ -13,8 +13,9 @@ namespace pcl {
 /** \brief Iterative closest point with the posterior of its transformation.
  *
  * align() first runs pcl::IterativeClosestPoint. Final transformation, output,
- * convergence and correspondences are those of that class to the last bit, although
- * this library's tree finds the pairs (unless the user installs a search tree). align()
+ * convergence and correspondences are those of that class to the last bit (but for
+ * indices, see below), although this library's tree finds the pairs (unless the user
+ * installs a search tree). align()
  * then samples the posterior of the source-to-target pose with preconditioned Langevin
  * chains over mini-batches of the source (Maken, Ramos, Ott: Estimating Motion
  * Uncertainty with Bayesian ICP, ICRA 2020).
@@ -40,11 +41,11 @@ namespace pcl {
  *
  * Unlike pcl::IterativeClosestPoint of PCL 1.13, this class skips source points that
  * are not finite (or further out than 1e18 m) and keeps them in the output. The
- * estimate uses only the given indices (the output is the whole cloud, as in PCL). A
- * source or target that is empty or null, and indices outside their cloud, give
- * Status::InvalidInput. Exceptions of callbacks and plug-ins, and std::bad_alloc, pass
- * through align(): then hasConverged() is false and the status NotRun. As in PCL, use
- * one object from one thread at a time.
+ * estimate uses only the given indices (the output is the whole cloud, as in PCL; ICP
+ * of PCL registers the whole cloud). A source or target that is empty or null, and
+ * indices outside their cloud, give Status::InvalidInput. Exceptions of callbacks and
+ * plug-ins, and std::bad_alloc, pass through align(): then hasConverged() is false and
+ * the status NotRun. As in PCL, use one object from one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration
