@@ -105,9 +105,11 @@ estimate(const Eigen::Matrix3Xd& source_points,
                             options.exact.residual);
     PosteriorEstimate result = estimateOf(sampleExact(
         energy, initial_pose, options.exact, options.chains, has_diverged, progress));
-    addDoubts(
-        doubtsAbout(energy, result, thicknessOf(sampled_points), options.exact.scale),
-        result.summary);
+    addDoubts(doubtsAbout(energy,
+                          result,
+                          thicknessOf(sampled_points),
+                          options.exact.scale.measurement_sigma),
+              result.summary);
     return withPrior(std::move(result), prior);
   }
   return withPrior(estimateOf(samplePaper(source_points,

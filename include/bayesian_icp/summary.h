@@ -23,8 +23,9 @@ enum class Status {
   Ok,
   /** As Ok, but with a warning: the message has the reason. Flags of Summary::data
    * (preset `calibrated`) are some of the reasons. Others are, for example, coordinates
-   * that 32 bits keep too coarsely, a pitch of +-90 degrees, and a scale that was not
-   * stated (`exact`). The draws are good draws from a posterior that may be wrong. */
+   * that 32 bits keep too coarsely, a pitch of +-90 degrees, and a kernel that leaves
+   * out nearly all points (`exact`). The draws are good draws from a posterior that may
+   * be wrong. */
   Doubtful,
   /** Some R-hat > 1.01, or some bulk or tail ESS < 400, or one of them is undefined.
    * For Stein particles: their discrepancy is too large. Mean and covariance describe

@@ -117,7 +117,7 @@ std::vector<std::string>
 doubtsAbout(const PoseEnergy& energy,
             const PosteriorEstimate& estimate,
             double thickness,
-            const LikelihoodScale& scale)
+            double measurement_sigma)
 {
   const Vector6d& mean = estimate.summary.mean;
   if (!mean.allFinite())
@@ -125,20 +125,12 @@ doubtsAbout(const PoseEnergy& energy,
   const ResidualOptions& residual = energy.residual();
   const double distance = distanceOfBest(energy, estimate);
   std::vector<std::string> doubts;
-  const LikelihoodScale unstated;
-  if (scale.measurement_sigma == unstated.measurement_sigma &&
-      scale.effective_points == unstated.effective_points)
-    doubts.push_back(formatted(
-        "measurement_sigma (%g m) and effective_points (%g) were not stated: they set "
-        "the width of the posterior, and the defaults are the paper's",
-        scale.measurement_sigma,
-        scale.effective_points));
-  if (distance > max_distance_in_sigmas * scale.measurement_sigma)
+  if (distance > max_distance_in_sigmas * measurement_sigma)
     doubts.push_back(
         formatted("the source points stay %.2g m from the target (root mean square), "
                   "%.1f times measurement_sigma: they do not fit as well as was stated",
                   distance,
-                  distance / scale.measurement_sigma));
+                  distance / measurement_sigma));
   if (thickness < distance && residual.residual == Residual::PointToPoint)
     doubts.push_back(formatted(
         "the source is a plane or a line to within %.2g m, less than the %.2g m "

@@ -36,18 +36,17 @@ thicknessOf(const Eigen::Matrix3Xd& points);
 
 /** \brief Reasons for caution about an estimate.
  *
- * The scale is the default one, which is of no cloud in particular. The residuals are
- * much larger than was stated, because the target is another one or
+ * The residuals are much larger than was stated, because the target is another one or
  * elsewhere. The source has no shape, so the nearest target points say nothing about
  * motions along it. Tukey's kernel leaves out nearly all points: on that plateau the
  * prior alone decides, and chains agree.
  * \param[in] estimate of \p energy; without a finite mean there are no doubts
  * \param[in] thickness thicknessOf() the source [m]
- * \param[in] scale as stated */
+ * \param[in] measurement_sigma as stated [m] */
 std::vector<std::string>
 doubtsAbout(const PoseEnergy& energy,
             const PosteriorEstimate& estimate,
             double thickness,
-            const LikelihoodScale& scale);
+            double measurement_sigma);
 
 } // namespace bayesian_icp

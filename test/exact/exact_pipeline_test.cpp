@@ -145,21 +145,6 @@ TEST(Exact, AKernelThatLeavesOutAllPointsIsADoubt)
       << lost.summary.message;
 }
 
-TEST(Exact, ADefaultScaleIsADoubt)
-{
-  Options options = exactOptions();
-  options.exact.scale = LikelihoodScale();
-  options.chains.num_draws = 1000;
-  const Summary unstated = estimateFrom(Scans(), options).summary;
-  EXPECT_EQ(unstated.status, Status::Doubtful) << unstated.message;
-  EXPECT_NE(unstated.message.find("effective_points (6000) were not stated"),
-            std::string::npos)
-      << unstated.message;
-  options.exact.scale.effective_points = 5000.0;
-  const Summary stated = estimateFrom(Scans(), options).summary;
-  EXPECT_EQ(stated.message.find("not stated"), std::string::npos) << stated.message;
-}
-
 TEST(Exact, SteinParticlesAreBitIdenticalForEveryNumberOfThreads)
 {
   const Scans scans;
