@@ -217,15 +217,20 @@ movedMessage(const ChainSet& chain_set)
                    chain_set.moved_by_nats);
 }
 
-/** Whether there are fewer draws than the diagnostics need, or the chains would pass
- * them with more draws of the same kind. */
+/** Whether the draws are too few for the diagnostics, or the chains agree and would
+ * pass with more draws of the same kind. */
 bool
 areTooFewDraws(const Summary& summary, const WorstDiagnostics& worst)
 {
   const auto num_draws = static_cast<double>(summary.num_draws);
-  // The effective share of the draws with which the default number passes.
+  if (std::isnan(worst.rhat) || std::isnan(worst.ess))
+    return num_draws < min_ess;
+  // Gelman and Rubin's (1992) limit, and the effective share of the draws with which
+  // the default number passes.
+  constexpr double short_rhat = 1.1;
   const double share = min_ess / ChainOptions().num_draws;
-  return num_draws < min_ess || (worst.ess < min_ess && worst.ess > share * num_draws);
+  return worst.rhat < short_rhat && worst.ess < min_ess &&
+         worst.ess > share * num_draws;
 }
 
 std::string
