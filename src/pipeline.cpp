@@ -11,7 +11,6 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <utility>
 
 namespace bayesian_icp {
 
@@ -69,15 +68,6 @@ checkInput(const Eigen::Matrix3Xd& source_points,
   return checked;
 }
 
-/** \p result with the \p prior of its draws. */
-PosteriorEstimate
-withPrior(PosteriorEstimate result, const Prior& prior)
-{
-  if (result.summary.num_draws > 0)
-    result.prior = prior;
-  return result;
-}
-
 PosteriorEstimate
 estimate(const Eigen::Matrix3Xd& source_points,
          const CorrespondenceSearch& search,
@@ -103,24 +93,29 @@ estimate(const Eigen::Matrix3Xd& source_points,
                             prior,
                             options.exact.scale.weight(),
                             options.exact.residual);
-    PosteriorEstimate result = estimateOf(sampleExact(
-        energy, initial_pose, options.exact, options.chains, has_diverged, progress));
+    PosteriorEstimate result = estimateOf(sampleExact(energy,
+                                                      initial_pose,
+                                                      options.exact,
+                                                      options.chains,
+                                                      has_diverged,
+                                                      progress),
+                                          prior);
     addDoubts(doubtsAbout(energy,
                           result,
                           thicknessOf(sampled_points),
                           options.exact.scale.measurement_sigma),
               result.summary);
-    return withPrior(std::move(result), prior);
+    return result;
   }
-  return withPrior(estimateOf(samplePaper(source_points,
-                                          search,
-                                          prior,
-                                          initial_pose,
-                                          options.paper,
-                                          options.chains,
-                                          has_diverged,
-                                          progress)),
-                   prior);
+  return estimateOf(samplePaper(source_points,
+                                search,
+                                prior,
+                                initial_pose,
+                                options.paper,
+                                options.chains,
+                                has_diverged,
+                                progress),
+                    prior);
 }
 
 } // namespace
@@ -194,14 +189,13 @@ estimatePosterior(const PreparedCloud& source,
         return cloud.parts().surface(num_threads);
       };
     };
-    return withPrior(estimateCalibratedPosterior(source.points(),
-                                                 target.points(),
-                                                 surfaceOf(source),
-                                                 surfaceOf(target),
-                                                 initial_pose,
-                                                 options,
-                                                 progress),
-                     priorOf(options, initial_pose, source.points()));
+    return estimateCalibratedPosterior(source.points(),
+                                       target.points(),
+                                       surfaceOf(source),
+                                       surfaceOf(target),
+                                       initial_pose,
+                                       options,
+                                       progress);
   }
   const std::string complaint = options.validate();
   if (!complaint.empty())

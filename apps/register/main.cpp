@@ -37,12 +37,13 @@ std::string
 noteOfSize(const Run& run)
 {
   constexpr double implausible = 500.0; // [m]
+  if (run.settings.options.prior.variance != PriorOptions().variance)
+    return "";
   const Eigen::Matrix3Xd points = io::finitePoints(run.source).cast<double>();
   const Eigen::Vector3d centroid = points.rowwise().mean();
   const double radius =
       (points.colwise() - centroid).norm() / std::sqrt(double(points.cols()));
-  if (radius <= implausible ||
-      run.settings.options.prior.variance != PriorOptions().variance)
+  if (radius <= implausible)
     return "";
   return run.source.file + ": note: the points are " + io::fixedTextOf(radius, 0) +
          " m from their centroid (root mean square), for which the default prior of "

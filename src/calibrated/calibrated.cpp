@@ -87,8 +87,10 @@ estimateAndDraw(const SurfaceScorer& scorer,
     return failure(Status::Cancelled, "interrupted before the first draw");
 
   // 8: draws.
-  PosteriorEstimate result = estimateOf(sampleCalibrated(
-      scoresOf(scorer), prior, modes, options.calibrated, options.chains, progress));
+  PosteriorEstimate result = estimateOf(
+      sampleCalibrated(
+          scoresOf(scorer), prior, modes, options.calibrated, options.chains, progress),
+      prior);
   // 9: report.
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";

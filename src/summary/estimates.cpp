@@ -54,10 +54,12 @@ failure(Status status, const std::string& message)
 }
 
 PosteriorEstimate
-estimateOf(ChainSet chain_set)
+estimateOf(ChainSet chain_set, const Prior& prior)
 {
   PosteriorEstimate result;
   result.summary = summarize(chain_set);
+  if (result.summary.num_draws > 0)
+    result.prior = prior;
   addDoubts(doubtsAboutAngles(result.summary), result.summary);
   result.samples = pooledDraws(chain_set.chains);
   result.chains = std::move(chain_set.chains);

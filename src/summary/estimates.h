@@ -27,9 +27,9 @@ drawsOf(const ChainMode& mode, const std::vector<Chain>& chains);
 PosteriorEstimate
 failure(Status status, const std::string& message);
 
-/** \brief The draws of a run and their summary. */
+/** \brief The draws of a run, their summary and, if there are draws, their \p prior. */
 PosteriorEstimate
-estimateOf(ChainSet chain_set);
+estimateOf(ChainSet chain_set, const Prior& prior);
 
 /** \brief If there are any, change an Ok to Doubtful, and add them to the message. */
 void
