@@ -405,22 +405,22 @@ moveToMean(const SurfaceScorer& scorer,
 
 Matrix3Xd
 evenPoints(const Matrix3Xd& points,
+           const std::vector<Index>& used,
            const SurfaceModel& model,
            Index max_points,
            std::uint64_t seed)
 {
   const Index num_first = EstimateOptions().num_curvature_points;
-  const auto num_patches = static_cast<Index>(model.patches().size());
   const auto part = static_cast<Index>(
-      max_part_used * static_cast<double>(std::min(points.cols(), num_patches)));
+      max_part_used *
+      static_cast<double>(std::min(used.size(), model.patches().size())));
   max_points = std::min(max_points, std::max(num_first, part));
-  const Eigen::Vector3d centroid = points.rowwise().mean();
-  const Eigen::Matrix3Xf centred = (points.colwise() - centroid).cast<float>();
+  const Eigen::Matrix3Xf centred = relativeTo(centroidOf(points, used), points, used);
   Random random(seed, order_stream);
   std::vector<Index> columns =
       evenChoice(centred, std::min(max_points, num_first), ChoiceStream::Points);
   shuffle(columns, random);
-  std::vector<bool> is_chosen(static_cast<std::size_t>(points.cols()));
+  std::vector<bool> is_chosen(used.size());
   for (const Index column : columns)
     is_chosen[static_cast<std::size_t>(column)] = true;
   std::vector<Index> others;
@@ -431,6 +431,8 @@ evenPoints(const Matrix3Xd& points,
     if (!is_chosen[static_cast<std::size_t>(column)] &&
         static_cast<Index>(columns.size()) < max_points)
       columns.push_back(column);
+  for (Index& column : columns)
+    column = used[static_cast<std::size_t>(column)];
   return points(Eigen::all, columns);
 }
 
@@ -446,11 +448,11 @@ scorerOf(const Matrix3Xd& source_points,
   Matrix3Xd of_source, of_target;
   forEachPiece(2, num_threads, [&](std::ptrdiff_t cloud) {
     if (cloud == 0)
-      of_source = evenPoints(
-          source_points(Eigen::all, source.columns), target.model, max_points, seed);
+      of_source =
+          evenPoints(source_points, source.columns, target.model, max_points, seed);
     else if (source.complaint.empty())
-      of_target = evenPoints(
-          target_points(Eigen::all, target.columns), source.model, max_points, seed);
+      of_target =
+          evenPoints(target_points, target.columns, source.model, max_points, seed);
   });
   SurfaceScorer scorer(of_source, target.model, num_threads);
   if (source.complaint.empty())

@@ -87,7 +87,8 @@ struct EstimateOptions {
  * because near the sensor most points repeat each other, and far points hold rotations.
  * The first EstimateOptions::num_curvature_points cover it evenly by themselves.
  *
- * \param[in] points 3 x n, finite [m]
+ * \param[in] points 3 x n [m]
+ * \param[in] used columns to choose from, finite
  * \param[in] model of the other cloud
  * \param[in] max_points maximum number. More than num_curvature_points are at most 40 %
  *            of the points and 0.4 per patch.
@@ -95,6 +96,7 @@ struct EstimateOptions {
  *            which uses the first points, gets a random choice. */
 Eigen::Matrix3Xd
 evenPoints(const Eigen::Matrix3Xd& points,
+           const std::vector<Eigen::Index>& used,
            const SurfaceModel& model,
            Eigen::Index max_points,
            std::uint64_t seed);

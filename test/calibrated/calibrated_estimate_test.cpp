@@ -1,6 +1,7 @@
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/surface/even_choice.h"
+#include "search/finite_columns.h"
 #include "support/test_support.h"
 
 #include <gtest/gtest.h>
@@ -197,7 +198,8 @@ TEST(CalibratedEstimate, UsesAPartOfTheSourceAndNotMoreThanThePatchesCarry)
       many(ballAndBox(random, 25000).points);
   const auto expectUsed = [&](Index num_points, const SurfaceModel& model, Index most) {
     const Matrix3Xd points = ballAndBox(random, num_points).points;
-    const Index num_used = evenPoints(points, model, 6000, 1).cols();
+    const Index num_used =
+        evenPoints(points, finiteColumns(points), model, 6000, 1).cols();
     EXPECT_LE(num_used, most) << num_points;
     // A grid cannot have any number of cubes.
     EXPECT_GT(num_used, 0.95 * static_cast<double>(most)) << num_points;

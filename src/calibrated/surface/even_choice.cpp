@@ -162,11 +162,8 @@ constexpr int num_bisections = 60;
 float
 cubeOfSheet(const Eigen::Matrix3Xf& points, Index count)
 {
-  const Eigen::Matrix3Xd centred =
-      points.cast<double>().colwise() - points.cast<double>().rowwise().mean();
-  const double extent =
-      std::sqrt(centred.squaredNorm() / static_cast<double>(points.cols()));
-  const double cube = cube_of_sheet * extent / std::sqrt(static_cast<double>(count));
+  const double cube =
+      cube_of_sheet * spreadOf(points) / std::sqrt(static_cast<double>(count));
   return std::max(static_cast<float>(cube), std::numeric_limits<float>::min());
 }
 
@@ -271,6 +268,16 @@ allOf(const Eigen::Matrix3Xf& points)
 }
 
 } // namespace
+
+double
+spreadOf(const Eigen::Matrix3Xf& points)
+{
+  const Eigen::Vector3d centroid = points.cast<double>().rowwise().mean();
+  double sum = 0.0;
+  for (const auto& point : points.colwise())
+    sum += (point.cast<double>() - centroid).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(points.cols()));
+}
 
 void
 shuffle(std::vector<Index>& columns, Random& random)

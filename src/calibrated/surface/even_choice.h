@@ -11,6 +11,11 @@
 
 namespace bayesian_icp {
 
+/** \brief Root mean square distance of points from their centroid [m].
+ * \param[in] points 3 x n, at least one */
+double
+spreadOf(const Eigen::Matrix3Xf& points);
+
 /** \brief Put columns into a random order. */
 void
 shuffle(std::vector<Eigen::Index>& columns, Random& random);

@@ -85,11 +85,9 @@ void
 SurfaceBuilder::fitPatches()
 {
   const PointNeighbors cloud(points_);
-  const Eigen::Matrix3Xd centred =
-      points_.cast<double>().colwise() - points_.cast<double>().rowwise().mean();
-  const auto num_points = static_cast<double>(centred.cols());
+  const auto num_points = static_cast<double>(points_.cols());
   const double max_radius =
-      std::sqrt(centred.squaredNorm() / num_points) *
+      spreadOf(points_) *
       std::max(max_radius_to_extent,
                max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
   const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
