@@ -66,7 +66,8 @@ metres and radians and at least -50 a pair, and the table counts lost pairs
 (displaced by more than the recording's limit; they are left out of NEES/6),
 alarms (flags on good ones: not lost, NEES below 16.812) and misses (bad ones
 without a flag: lost, or NEES above 27.856).
-Results of another build of the methods have to be deleted by hand.
+Rows of other scans, truths or guesses of the same names do not count. Results
+of another build of the methods have to be deleted by hand.
 Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the report.
 )";
 
@@ -380,8 +381,12 @@ studyOf(const CoverageOptions& options)
   study.methods = methodsOf(options);
   for (const std::string& scene : scenes)
     for (const std::string& condition : conditionsOf(options, offer, scene))
-      for (const std::uint64_t seed : offer.seeds(scene))
-        study.cases.push_back({scene, condition, seed});
+      for (const std::uint64_t seed : offer.seeds(scene)) {
+        CoverageCaseName name{scene, condition, seed};
+        if (!options.real_folder.empty())
+          name.inputs = study.make_case(name).key();
+        study.cases.push_back(name);
+      }
   return study;
 }
 

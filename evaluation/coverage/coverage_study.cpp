@@ -19,7 +19,8 @@ runCoverageStudy(const CoverageStudy& study, CoverageFile& results)
 {
   const auto isMissing = [&](const CoverageCaseName& name,
                              const CoverageMethod& method) {
-    return results.find(runNameOf(name, method)) == nullptr;
+    const CoverageRun* const known = results.find(runNameOf(name, method));
+    return known == nullptr || known->inputs != name.inputs;
   };
   std::vector<CoverageCaseName> missing;
   for (const CoverageCaseName& name : study.cases)
@@ -32,7 +33,8 @@ runCoverageStudy(const CoverageStudy& study, CoverageFile& results)
     for (const CoverageMethod& method : study.methods)
       if (isMissing(missing[i], method))
         results.add({runNameOf(missing[i], method),
-                     coverageScoreOf(problem, timedResult(method, problem))});
+                     coverageScoreOf(problem, timedResult(method, problem)),
+                     missing[i].inputs});
   };
   runTasks(missing.size(),
            study.num_threads,

@@ -28,6 +28,8 @@ struct CoverageRun {
 
   CoverageRunName name;
   CoverageScore score;
+  /** Those of the case. */
+  std::string inputs = {};
 
   template <typename Column>
   void
@@ -52,6 +54,7 @@ struct CoverageRun {
     column("seconds", score.seconds);
     column("queries", score.num_queries);
     column("notes", score.notes);
+    column("inputs", inputs);
   }
 
 private:
@@ -73,6 +76,9 @@ struct CoverageCaseName {
   std::string scene;
   std::string condition;
   std::uint64_t seed;
+  /** A hash of what the case is made of, where its name does not say that; a row of
+   * others does not count. */
+  std::string inputs = {};
 };
 
 /** \brief Makes a case; called by several threads at once. */
@@ -88,8 +94,8 @@ struct CoverageStudy {
   int num_threads = 1;
 };
 
-/** \brief Run every method on every case, except what \p results has. A row does not
- * depend on the number of threads.
+/** \brief Run every method on every case, except what \p results has; a row takes the
+ * place of one of other inputs. A row does not depend on the number of threads.
  * \throws io::FileError, and what make_case throws; rows of other cases are kept */
 void
 runCoverageStudy(const CoverageStudy& study, CoverageFile& results);

@@ -152,6 +152,7 @@ def plot_anees(output, name, methods, cells):
 
 
 def section_of(output, name, runs):
+    runs = runs.drop_duplicates(list(COLUMNS[:4]), keep="last")
     valid = runs[runs.valid == 1]
     if valid.empty:
         return page.Section(f"Coverage ({name}.csv)", tables_of(runs))

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "study/axis_deviation.h"
+#include "study/input_hash.h"
 
 #include <bayesian_icp/pose.h>
 
@@ -37,6 +38,22 @@ struct CoverageCase {
   /** Of recordings: mean displacement of the source's points beyond which a pose is
    * lost [m]. NaN: no pose is. */
   double lost_displacement = std::numeric_limits<double>::quiet_NaN();
+
+  /** \brief A hash of all but the names. */
+  std::string
+  key() const
+  {
+    InputHash hash;
+    hash.addMatrix(source);
+    hash.addMatrix(target);
+    hash.addMatrix(truth.matrix());
+    hash.addMatrix(prior_mean);
+    hash.addMatrix(prior_sd);
+    for (const double limit :
+         {truth_sd.translation, truth_sd.rotation, lost_displacement})
+      hash.add(limit);
+    return io::textOfHash(hash.value());
+  }
 };
 
 /** \brief How a posterior's Mahalanobis distances are distributed. */

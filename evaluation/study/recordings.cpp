@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 
 namespace bayesian_icp::evaluate {
 
@@ -103,14 +104,25 @@ lengthAt(const json& object, const char* key)
   return length;
 }
 
+std::string
+scanFile(const fs::path& folder, std::size_t scan)
+{
+  return (folder / format("scan_%04zu.pcd", scan)).string();
+}
+
+void
+tellLeftOut(const fs::path& folder, const std::string& what)
+{
+  std::cerr << folder.string() + ": note: " + what + " are left out\n";
+}
+
 Recording
 readRecording(const fs::path& folder)
 {
   Recording recording;
   recording.name = folder.filename().string();
   recording.read = [folder](std::size_t scan) -> Eigen::Matrix3Xd {
-    const std::string file = (folder / format("scan_%04zu.pcd", scan)).string();
-    return io::readFinitePoints(file).cast<double>();
+    return io::readFinitePoints(scanFile(folder, scan)).cast<double>();
   };
   const std::string set_file = (folder / set_name).string();
   const json set = io::readJson(set_file, max_set_size);
@@ -130,6 +142,10 @@ readRecording(const fs::path& folder)
   forEachLine((folder / "poses.txt").string(), [&recording](const std::string& line) {
     recording.poses.push_back(motionOf(line));
   });
+  if (fs::exists(scanFile(folder, recording.poses.size())))
+    tellLeftOut(folder,
+                "scans from " + io::textOf(recording.poses.size()) +
+                    " on have no pose in poses.txt, and");
   return recording;
 }
 
@@ -143,6 +159,8 @@ readRecordings(const std::string& folder)
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
     if (fs::exists(entry.path() / set_name))
       folders.push_back(entry.path());
+    else if (fs::exists(scanFile(entry.path(), 0)))
+      tellLeftOut(entry.path(), std::string("has no ") + set_name + ", so its scans");
   if (error)
     throw io::FileError(folder, error.message());
   if (folders.empty())

@@ -55,13 +55,16 @@ recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
 {
   std::vector<RegisteredRecording> all;
   const auto num_scans = static_cast<std::size_t>(options.num_scans);
+  std::vector<Recording> real;
+  if (!folder.empty())
+    real = readFirstScans(folder, num_scans);
   for (int k = 0; k < options.num_seeds; ++k) {
     const auto seed = static_cast<std::uint64_t>(options.first_seed + k);
     if (folder.empty())
       for (const std::string& name : driveNames())
         all.push_back({makeDrive(name, seed, num_scans), seed, {}});
     else
-      for (const Recording& recording : readFirstScans(folder, num_scans))
+      for (const Recording& recording : real)
         all.push_back({recording, seed, {}});
   }
   if (options.names.empty())

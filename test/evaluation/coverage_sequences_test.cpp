@@ -283,6 +283,45 @@ TEST_F(SequencesTest, TheCommandCountsLostPairs)
   EXPECT_EQ(count(" cases", again.output), 0) << again.output;
 }
 
+TEST_F(SequencesTest, RowsOfOtherInputsDoNotCount)
+{
+  const auto numRegistered = [this](const std::string& folder) {
+    const CommandResult result =
+        EvaluateTool::run("coverage --methods prior --output a.csv --real " + folder);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return count(" cases", result.output);
+  };
+  EXPECT_EQ(numRegistered("."), 3);
+  EXPECT_EQ(numRegistered("."), 0);
+  std::string poses = contentOf(set_ / "poses.txt");
+  poses.replace(0, poses.find('\n'), textOf(poseOfScan(7)));
+  writeFile(set_ / "poses.txt", poses);
+  EXPECT_EQ(numRegistered("."), 1);
+  std::string set = set_text;
+  set.replace(set.find("0.003"), 5, "0.005");
+  writeFile(set_ / "set.json", set);
+  EXPECT_EQ(numRegistered("."), 3);
+  fs::create_directories(folder_ / "other");
+  fs::copy(set_, folder_ / "other" / "hall", fs::copy_options::recursive);
+  EXPECT_EQ(numRegistered("other"), 0) << "the same inputs";
+  writeCloud(folder_ / "other" / "hall" / "scan_0003.pcd", scans_[2]);
+  EXPECT_EQ(numRegistered("other"), 1);
+  EXPECT_EQ(numRegistered("."), 1);
+}
+
+TEST_F(SequencesTest, ScansThatAreLeftOutAreTold)
+{
+  fs::create_directories(folder_ / "yard");
+  fs::copy(set_ / "scan_0000.pcd", folder_ / "yard");
+  std::string poses = contentOf(set_ / "poses.txt");
+  poses.resize(poses.rfind('\n', poses.size() - 2) + 1);
+  writeFile(set_ / "poses.txt", poses);
+  const std::string output = run("--methods prior --output a.csv").output;
+  expectIn(output, "yard: note: has no set.json, so its scans are left out");
+  expectIn(output,
+           "hall: note: scans from 3 on have no pose in poses.txt, and are left out");
+}
+
 TEST_F(SequencesTest, BadOptionsOfTheCommandExitWithTwo)
 {
   for (const char* arguments : {"--step 0",

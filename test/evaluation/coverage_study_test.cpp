@@ -76,6 +76,17 @@ TEST_F(CoverageStudyTest, GoesOnWhereItStopped)
   EXPECT_EQ(content.substr(0, complete.size()), complete);
 }
 
+TEST_F(CoverageStudyTest, ARowOfOtherInputsIsReplaced)
+{
+  CoverageFile results(file_);
+  CoverageStudy changed = study(2, 1);
+  runCoverageStudy(changed, results);
+  changed.cases[1].inputs = "other";
+  runCoverageStudy(changed, results);
+  EXPECT_EQ(num_runs_, 6);
+  EXPECT_EQ(runsOf(changed, results)[2].inputs, "other");
+}
+
 TEST_F(CoverageStudyTest, AnExceptionOfAMethodIsAResult)
 {
   CoverageFile results(file_);

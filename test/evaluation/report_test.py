@@ -165,7 +165,12 @@ class Coverage(FolderTest):
         self.assertEqual(titles, ["p, u", "p, v", "q, u", "q, v", *pools, "all"])
 
     def test_figures_are_drawn(self):
-        section = coverage.section_of(self.output, "c", coverage_rows())
+        replaced = coverage_rows(num_rows=1, nees=1e6)
+        rows = pd.concat([replaced, coverage_rows()])
+        section = coverage.section_of(self.output, "c", rows)
+        self.assertEqual(
+            section.blocks[-1].rows, coverage.tables_of(coverage_rows())[-1].rows
+        )
         for block in section.blocks[:3]:
             self.assertIn(b"</svg>", self.output.files[f"{block.name}.svg"])
             self.assertEqual(self.output.files[f"{block.name}.png"][1:4], b"PNG")
