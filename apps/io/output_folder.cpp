@@ -69,8 +69,11 @@ private:
 
 OutputFolder::OutputFolder(const std::string& folder) : folder_(folder)
 {
-  makeFolder(folder);
   std::error_code error;
+  for (fs::path path = folder; !path.empty() && !fs::exists(path, error);
+       path = path.parent_path())
+    new_folders_.push_back(path.string());
+  makeFolder(folder);
   if (!fs::is_directory(folder, error))
     throw FileError(folder, "is not a folder");
   if (access(folder.c_str(), W_OK | X_OK) != 0)
@@ -82,16 +85,31 @@ OutputFolder::~OutputFolder()
   std::error_code ignored;
   for (const File& file : files_)
     fs::remove(file.temporary_name, ignored);
+  for (const std::string& folder : new_folders_)
+    fs::remove(folder, ignored); // fails if something is in it
+}
+
+std::string
+OutputFolder::fileOf(const std::string& name) const
+{
+  const fs::path path = fs::path(folder_) / name;
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw FileError(path.string(), "is not a regular file");
+  return fs::is_symlink(path, ignored) && fs::exists(status)
+             ? fs::canonical(path).string()
+             : path.string();
 }
 
 void
 OutputFolder::addByName(const std::string& name,
                         const std::function<void(const std::string& path)>& write)
 {
-  const std::string path = (fs::path(folder_) / name).string();
-  if (fs::is_directory(path))
-    throw FileError(path, "is a directory");
+  const std::string path = fileOf(name);
+  makeFolder(folder_); // another process that made it may have removed it
   files_.push_back({makeTemporaryFile(path), path});
+  left_out_.erase(name);
   errno = 0;
   try {
     write(files_.back().temporary_name);
@@ -132,7 +150,7 @@ OutputFolder::add(const std::string& name, const std::string& text)
 void
 OutputFolder::leaveOut(const std::string& name)
 {
-  left_out_.push_back((fs::path(folder_) / name).string());
+  left_out_.insert(name);
 }
 
 void
@@ -146,7 +164,8 @@ OutputFolder::commit()
       throw FileError(files_.back().name, reasonOf(error.value()));
     files_.pop_back();
   }
-  for (const std::string& name : left_out_) {
+  for (const std::string& left_out : left_out_) {
+    const std::string name = (fs::path(folder_) / left_out).string();
     std::error_code error;
     if (!fs::remove(name, error) && error)
       throw FileError(name, "cannot be removed: " + error.message());

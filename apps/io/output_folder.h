@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <iosfwd>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,16 @@ public:
   /** \brief Make the folder if it is missing, and see whether it can be written to.
    * \throws FileError if not */
   explicit OutputFolder(const std::string& folder);
+  /** \brief Removes what was not committed, and the folder if it is new and empty. */
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder&
   operator=(const OutputFolder&) = delete;
+
+  /** \brief The file that a name stands for: where it is a link, what that points to.
+   * \throws FileError if that is there and not a regular file */
+  std::string
+  fileOf(const std::string& name) const;
 
   /** \brief Write a file under a temporary name.
    * \throws FileError if that fails, for example because the disk is full */
@@ -38,7 +45,7 @@ public:
             const std::function<void(const std::string& path)>& write);
 
   /** \brief Have commit() remove an older file of this name, which is not to be taken
-   * for a part of what is new. */
+   * for a part of what is new. A file that is added later is not left out. */
   void
   leaveOut(const std::string& name);
 
@@ -55,8 +62,10 @@ private:
   };
 
   std::string folder_;
+  /** Those that were made: the folder, and those that it is in. */
+  std::vector<std::string> new_folders_;
   std::vector<File> files_;
-  std::vector<std::string> left_out_;
+  std::set<std::string> left_out_;
 };
 
 } // namespace bayesian_icp::io

@@ -109,6 +109,8 @@ makeGraph(const GraphCommand& command)
     folder_of_file.emplace(io::folderOf(file));
   if (!command.optimized_folder.empty())
     optimized_folder.emplace(command.optimized_folder);
+  if (folder_of_file)
+    folder_of_file->fileOf(file.filename().string());
   bool is_good = true;
   io::catchInterrupt();
   const ScanGraph graph =

@@ -98,6 +98,7 @@ addExports(const ExportRequest& request,
            const PoseEstimate& estimate,
            io::OutputFolder& folder)
 {
+  leaveOutExports(folder);
   std::vector<std::string> refusals;
   for (const std::string& format : request.formats)
     try {

@@ -42,7 +42,7 @@ void
 leaveOutExports(io::OutputFolder& folder);
 
 /** \brief Add pose_ros.yaml, pose.g2o, pose_gtsam.txt, pose_tum.txt with
- * pose_tum_covariance.txt, and pose.csv, as asked for.
+ * pose_tum_covariance.txt, and pose.csv, as asked for, and leave out the others.
  * \return the formats to which the posterior cannot be exported, with the reason, one
  *         message each
  * \throws io::FileError if a file cannot be written */

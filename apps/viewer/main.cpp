@@ -99,8 +99,11 @@ show(const Request& request)
     tell("note: " + request.note);
   // It is known before the work whether the picture can be written.
   std::optional<io::OutputFolder> folder;
-  if (request.view.isOffScreen())
-    folder.emplace(io::folderOf(request.view.screenshot_file));
+  const std::filesystem::path file = request.view.screenshot_file;
+  if (request.view.isOffScreen()) {
+    folder.emplace(io::folderOf(file));
+    folder->fileOf(file.filename());
+  }
   io::catchInterrupt();
   std::optional<Window> window;
   Scene scene = prepareScene(request, window);
@@ -114,8 +117,7 @@ show(const Request& request)
     drawScene(scene, request.view, *window);
   }
   if (folder)
-    window->save(std::filesystem::path(request.view.screenshot_file).filename(),
-                 *folder);
+    window->save(file.filename(), *folder);
   else
     letUserLook(*window);
   if (scene.status != toString(Status::Ok))

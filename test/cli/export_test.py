@@ -191,11 +191,20 @@ class ExportRefusals(ExportTest):
             with self.subTest(options=options):
                 self.assert_refused(2, run(*pair, *FAST, *options), reason)
 
+    def test_no_export_of_an_older_result_stays(self):
+        output = self.folder / "output"
+        for formats, names in (("ros,g2o", {"pose_ros.yaml", "pose.g2o"}), ("csv", {"pose.csv"})):
+            options = [f"--export={formats}", "--export-unreliable", "-o", output]
+            self.assert_ran(run(*self.small_pair(), *FAST, *options))
+            self.assertEqual({path.name for path in output.glob("pose[._]*")}, names)
+        self.assert_ran(run(*self.small_pair(), *FAST, "-o", output))
+        self.assertEqual(list(output.glob("pose[._]*")), [])
+
     def test_files_appear_together_or_not_at_all(self):
         output = self.folder / "output"
         (output / "pose.g2o").mkdir(parents=True)
         arguments = [*self.small_pair(), *FAST, "--export=ros,g2o", "--export-unreliable"]
         result = run(*arguments, "-o", output)
-        self.assert_refused(3, result, output / "pose.g2o", "is a directory")
+        self.assert_refused(3, result, output / "pose.g2o", "is not a regular file")
         self.assertEqual([path.name for path in output.iterdir()], ["pose.g2o"])
         shutil.rmtree(output)

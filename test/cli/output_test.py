@@ -92,6 +92,20 @@ class Files(ToolTest):
         for name in names:
             self.assertEqual((output / name).stat().st_mode, new_file.stat().st_mode)
 
+    def test_links_are_followed_and_what_is_no_file_is_refused(self):
+        output = self.folder / "output"
+        output.mkdir()
+        linked = self.file("elsewhere.csv", "old")
+        (output / "samples.csv").symlink_to(linked)
+        self.run_to_files(*self.small_pair(), *FAST)
+        self.assertTrue((output / "samples.csv").is_symlink())
+        self.assertGreater(len(linked.read_text()), 100)
+        (output / "samples.csv").unlink()
+        os.mkfifo(output / "samples.csv")
+        result = run(*self.small_pair(), *FAST, "-o", output)
+        self.assert_refused(3, result, output / "samples.csv", "is not a regular file")
+        self.assertTrue((output / "samples.csv").is_fifo())
+
     def test_names_that_are_not_utf8(self):
         source, target = self.small_pair()
         odd = os.fsencode(self.folder) + b"/\xff\xfe.pcd"

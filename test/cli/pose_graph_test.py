@@ -1,6 +1,7 @@
 """pcl_bayesian_icp_pose_graph against trajectories that are known."""
 
 import math
+import os
 
 import numpy as np
 from numpy.linalg import inv
@@ -211,6 +212,8 @@ class PoseGraphEdges(PoseGraphTest):
 
     def test_refused(self):
         source, target = self.small_pair()
+        pipe, new = self.folder / "pipe.g2o", self.folder / "new.g2o"
+        os.mkfifo(pipe)
         for code, words, part in (
             (2, [], "at least two scans"),
             (2, [source, "-o", "g"], "at least two scans"),
@@ -229,7 +232,13 @@ class PoseGraphEdges(PoseGraphTest):
             (3, [self.folder / "scans", "-o", "g"], "fewer than two"),
             (3, [self.folder / "none", "-o", "g"], "none: no such folder"),
             (3, [source, target, "-o", "/proc/none/g"], "/proc/none"),
+            (3, [source, target, "-o", pipe], "pipe.g2o: is not a regular file"),
+            (3, [source, target, "-o", new, "--optimize", new], "new.g2o: is not a regular file"),
         ):
             with self.subTest(words=words):
                 (self.folder / "scans").mkdir(exist_ok=True)
-                self.assert_refused(code, call(POSE_GRAPH, *words), part)
+                result = call(POSE_GRAPH, *words)
+                self.assert_refused(code, result, part)
+                self.assertNotIn("edge 0-1", result.stderr)
+        self.assertTrue(pipe.is_fifo())
+        self.assertFalse(new.exists())

@@ -156,6 +156,7 @@ class EndedBySignal(FaultTest):
             with self.subTest(signal=number.name):
                 output = self.new_folder()
                 words = [POSE_GRAPH, *self.small_pair(), *ENDLESS, "-o", output / "g.g2o"]
+                words += ["--optimize", output / "new" / "optimized"]
                 process = self.start(*words)
                 _, errors = self.end(process, number, seconds=0.0)
                 self.assertEqual(process.returncode, 130)
