@@ -37,6 +37,13 @@ write(
 
 } // namespace
 
+std::size_t
+lineWidth(const Window& window)
+{
+  const Eigen::Vector2i size = window.panelSize();
+  return static_cast<std::size_t>(size.x() / (0.55 * fontSizeFor(size)));
+}
+
 PictureArea
 areaBeside(std::size_t num_lines, bool has_color_bar, const Window& window)
 {
@@ -66,11 +73,8 @@ addLegend(const std::vector<LegendLine>& lines, int viewport, Window& window)
 void
 addStatus(const LegendLine& status, int viewport, Window& window)
 {
-  const Eigen::Vector2i size = window.panelSize();
-  const int font_size = fontSizeFor(size);
-  const auto width = static_cast<std::size_t>(size.x() / (0.55 * font_size));
-  write({io::wrapped(status.text, width), status.color},
-        font_size,
+  write({io::wrapped(status.text, lineWidth(window)), status.color},
+        fontSizeFor(window.panelSize()),
         "status",
         viewport,
         window);

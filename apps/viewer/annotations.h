@@ -10,6 +10,10 @@
 
 namespace bayesian_icp::viewer {
 
+/** \brief How many characters a line of a panel has room for. */
+std::size_t
+lineWidth(const Window& window);
+
 /** \brief Write lines into the upper left corner of a panel, under names that begin
  * with "legend". */
 void

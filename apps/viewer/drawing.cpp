@@ -206,7 +206,8 @@ drawScene(const Scene& scene, const ViewOptions& options, Window& window)
     for (const Layer layer : panels[i].layers)
       drawing.draw(layer);
     shown.insert(panels[i].layers.begin(), panels[i].layers.end());
-    const auto lines = legendOf(panels[i], scene, options, !options.isOffScreen());
+    const auto lines = wrapped(
+        legendOf(panels[i], scene, options, !options.isOffScreen()), lineWidth(window));
     num_lines = std::max(num_lines, lines.size());
     addLegend(lines, viewports[i], window);
   }

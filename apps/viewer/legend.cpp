@@ -99,6 +99,18 @@ legendOf(const Panel& panel,
   return lines;
 }
 
+std::vector<LegendLine>
+wrapped(const std::vector<LegendLine>& lines, std::size_t width)
+{
+  std::vector<LegendLine> narrow;
+  for (const LegendLine& line : lines) {
+    const std::string text = io::wrapped(line.text, width, "    ");
+    for (const std::string_view piece : io::splitAt('\n', text))
+      narrow.push_back({std::string(piece), line.color});
+  }
+  return narrow;
+}
+
 std::string
 textOfLengths(const Eigen::Vector3d& lengths)
 {

@@ -33,6 +33,11 @@ legendOf(const Panel& panel,
          const ViewOptions& options,
          bool shows_keys);
 
+/** \brief The same in lines of at most \p width characters; those that go on are
+ * indented. */
+std::vector<LegendLine>
+wrapped(const std::vector<LegendLine>& lines, std::size_t width);
+
 /** \brief Three lengths [m] in one unit with three digits: "1.2, 0.8, 0.04 mm". */
 std::string
 textOfLengths(const Eigen::Vector3d& lengths);

@@ -123,6 +123,16 @@ TEST(Legend, HasUnitsAndTheMagnification)
   EXPECT_EQ(legendOf(panel, scene, options, true)[0].color, (Color{}));
 }
 
+TEST(Legend, LinesThatAreTooLongGoOnBelow)
+{
+  const Color red{1.0, 0.0, 0.0};
+  const auto lines = wrapped({{"mug", {}}, {"rotation, 95 %: cones", red}}, 16);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[1].text, "rotation, 95 %:");
+  EXPECT_EQ(lines[2].text, "    cones");
+  EXPECT_EQ(lines[2].color, red);
+}
+
 TEST(Legend, WritesLengthsAndAngles)
 {
   EXPECT_EQ(textOfLengths({0.0123, 0.001, 2e-5}), "12.3, 1, 0.02 mm");
