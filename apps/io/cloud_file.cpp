@@ -119,8 +119,19 @@ requireComplete(const CloudFile& cloud, CloudFormat format, const std::string& p
   catch (const FileError& error) {
     const std::string reason = std::string(error.what()).substr(path.size() + 2);
     throw std::runtime_error(
-        "what PCL has written is not complete or cannot be read: " + reason);
+        "what PCL has written is not complete or cannot be read: " + reason +
+        (format == CloudFormat::Ply ? "; a .pcd keeps all fields" : ""));
   }
+}
+
+/** As PCL writes it to PLY: colours as the three bytes that its header promises. */
+Blob
+blobForPly(Blob blob)
+{
+  for (pcl::PCLPointField& field : blob.fields)
+    if (field.name == "rgb" && field.datatype == pcl::PCLPointField::UINT32)
+      field.datatype = pcl::PCLPointField::FLOAT32;
+  return blob;
 }
 
 void
@@ -265,7 +276,8 @@ writeCloud(const CloudFile& cloud, CloudFormat format, const std::string& path)
     return format == CloudFormat::Pcd
                ? pcl::PCDWriter().writeBinaryCompressed(
                      path, *cloud.blob, origin, orientation)
-               : pcl::PLYWriter().writeBinary(path, *cloud.blob, origin, orientation);
+               : pcl::PLYWriter().writeBinary(
+                     path, blobForPly(*cloud.blob), origin, orientation);
   });
   requireComplete(cloud, format, path);
 }

@@ -220,6 +220,17 @@ class TransformRefusals(TransformTest):
         self.assertFalse(output.exists())
         self.assert_done(transform(source, self.folder / "out.pcd", "--pose", WORDS))
 
+    def test_ply_has_colours_that_are_whole_numbers(self):
+        fields = [("x", "f"), ("y", "f"), ("z", "f"), ("rgb", "I")]
+        points = [(0.5 * i, 1.0, 2.0, 0x102030 + i) for i in range(9)]
+        source = self.file("colours.pcd", cloud_files.pcd_bytes(points, fields))
+        output = self.folder / "out.ply"
+        self.assert_done(transform(source, output, "--pose", WORDS))
+        header, body = output.read_bytes().split(b"end_header\n")
+        self.assertIn(b"property uchar red\nproperty uchar green\nproperty uchar blue", header)
+        for i in range(9):
+            self.assertEqual(body[15 * i + 12 : 15 * i + 15], bytes([0x10, 0x20, 0x30 + i]))
+
     def test_fields_that_pcl_writes_wrongly(self):
         fields = [("x", "f"), ("y", "f"), ("z", "f")]
         fields += [("normal_x", "d"), ("normal_y", "d"), ("normal_z", "d")]
@@ -227,5 +238,5 @@ class TransformRefusals(TransformTest):
         source = self.file("double.pcd", cloud_files.pcd_bytes(points, fields))
         output = self.folder / "out.ply"
         result = transform(source, output, "--pose", WORDS)
-        self.assert_refused(3, result, f"{output}: cannot be written")
+        self.assert_refused(3, result, f"{output}: cannot be written", "a .pcd keeps all fields")
         self.assertFalse(output.exists())
