@@ -26,7 +26,7 @@ std::string
 textOf(const JsonNode& value)
 {
   if (!value.json().is_string() || value.text().empty())
-    value.refuse("a string");
+    value.refuse("a string that is not empty");
   return value.text();
 }
 

@@ -193,7 +193,7 @@ class BatchRefused(BatchTest):
             ("{}", "not a JSON list"),
             ("[1]", "pair 1: is '1', but must be an object"),
             ([{**good, "name": "../up"}], "pair 1", "folder"),
-            ([{**good, "name": ""}], "pair 1", "name"),
+            ([{**good, "name": ""}], "pair 1", "must be a string that is not empty"),
             ([good, good], "pair 2", "another pair"),
             ([{"name": "a", "source": "s.pcd"}], "'target' is missing"),
             ([{**good, "gues": "x"}], "unknown key 'gues'"),
