@@ -28,30 +28,16 @@ estimateOf(const GaussianPose& pose)
   return estimate;
 }
 
-/** The time with the fewest decimals that is the same number: what it was read from
- * [s], in ns. */
-std::int64_t
-nanosecondsOf(double time)
-{
-  constexpr double all = 1e9;
-  const double whole = std::floor(time);
-  double parts = 1.0; // of a second
-  while (parts < all && whole + std::round((time - whole) * parts) / parts != time)
-    parts *= 10.0;
-  return std::llround(whole) * std::llround(all) +
-         std::llround(std::round((time - whole) * parts) * (all / parts));
-}
-
 template <typename LineOf>
 std::string
-linesOf(const std::vector<double>& times,
+linesOf(const std::vector<std::int64_t>& times,
         const std::vector<GaussianPose>& poses,
         const LineOf& lineOf)
 {
   std::string text;
   for (std::size_t k = 0; k < poses.size(); ++k) {
     ExportOptions options;
-    options.timestamp_ns = nanosecondsOf(times.at(k));
+    options.timestamp_ns = times.at(k);
     text += lineOf(estimateOf(poses[k]), options);
   }
   return text;
@@ -111,13 +97,13 @@ edgeOf(const std::vector<std::string_view>& words)
 } // namespace
 
 std::string
-tumText(const std::vector<double>& times, const std::vector<GaussianPose>& poses)
+tumText(const std::vector<std::int64_t>& times, const std::vector<GaussianPose>& poses)
 {
   return linesOf(times, poses, tumLine);
 }
 
 std::string
-tumCovarianceText(const std::vector<double>& times,
+tumCovarianceText(const std::vector<std::int64_t>& times,
                   const std::vector<GaussianPose>& poses)
 {
   return linesOf(times, poses, tumCovarianceLine);

@@ -5,19 +5,20 @@
 
 #include "graph/pose_graph.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::app {
 
 /** \brief TUM trajectory: a line of each pose.
- * \param[in] times of at least as many poses [s] */
+ * \param[in] times of at least as many poses [ns] */
 std::string
-tumText(const std::vector<double>& times, const std::vector<GaussianPose>& poses);
+tumText(const std::vector<std::int64_t>& times, const std::vector<GaussianPose>& poses);
 
 /** \brief The covariances of tumText(), in CovarianceConvention::R3xSO3. */
 std::string
-tumCovarianceText(const std::vector<double>& times,
+tumCovarianceText(const std::vector<std::int64_t>& times,
                   const std::vector<GaussianPose>& poses);
 
 /** \brief A graph in g2o's format: VERTEX_SE3:QUAT of each pose, FIX 0, EDGE_SE3:QUAT

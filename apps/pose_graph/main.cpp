@@ -83,9 +83,9 @@ addOptimum(const GraphCommand& command,
       folder.leaveOut(name);
     return;
   }
-  std::vector<double> numbers;
+  std::vector<std::int64_t> numbers; // in place of times
   for (std::size_t k = 0; k < graph.chain.size(); ++k)
-    numbers.push_back(static_cast<double>(k));
+    numbers.push_back(1'000'000'000 * static_cast<std::int64_t>(k));
   folder.add("trajectory_tum.txt", tumText(numbers, optimum->poses));
   folder.add("trajectory_covariance.txt", tumCovarianceText(numbers, optimum->poses));
   try {

@@ -2,6 +2,7 @@
 
 #include "io/errors.h"
 #include "io/numbers.h"
+#include "io/time_stamps.h"
 
 #include <algorithm>
 #include <ostream>
@@ -10,8 +11,6 @@
 namespace bayesian_icp::app {
 
 namespace {
-
-constexpr std::size_t num_decimals_of_nanoseconds = 9;
 
 /** A file of the pose for other software; a format may have several. */
 struct ExportFile {
@@ -58,24 +57,13 @@ readExportFormats(const std::string& list)
 std::int64_t
 readTimestamp(const std::string& seconds)
 {
-  const auto pieces = io::splitAt('.', seconds);
-  std::string decimals(pieces.size() == 2 ? pieces[1] : std::string_view());
-  bool is_good = pieces.size() <= 2 && !pieces[0].empty() &&
-                 pieces[0].size() <= num_decimals_of_nanoseconds + 1 &&
-                 decimals.size() <= num_decimals_of_nanoseconds;
-  decimals.resize(num_decimals_of_nanoseconds, '0');
-  const std::string digits = std::string(pieces[0]) + decimals;
-  std::int64_t nanoseconds = 0;
-  is_good = is_good && digits.find_first_not_of("0123456789") == std::string::npos &&
-            io::readNumber(digits, nanoseconds);
   ExportOptions options;
-  options.timestamp_ns = nanoseconds;
-  if (!is_good || !options.validate().empty())
+  if (!io::readSeconds(seconds, options.timestamp_ns) || !options.validate().empty())
     throw io::UsageError(
         "--timestamp: " + io::inQuotes(seconds) +
         " is not a number of seconds from 0 to below 2^31 with at most "
         "nine decimals");
-  return nanoseconds;
+  return options.timestamp_ns;
 }
 
 std::string

@@ -1,7 +1,10 @@
 #include "track/track.h"
 
+#include "io/time_stamps.h"
+
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
@@ -15,7 +18,7 @@ toString(StepKind kind)
   return names[static_cast<std::size_t>(kind)];
 }
 
-Track::Track(const MotionModel& model, std::vector<double> times, int map_scans)
+Track::Track(const MotionModel& model, std::vector<std::int64_t> times, int map_scans)
 : times_(std::move(times))
 , map_scans_(map_scans)
 , filter_(model)
@@ -29,7 +32,7 @@ Track::predict(bool is_velocity_doubted, MotionFilter& filter) const
   if (is_velocity_doubted)
     filter.doubtVelocity();
   const auto k = poses_.size();
-  filter.predict(times_.at(k) - times_.at(k - 1));
+  filter.predict(io::secondsOf(times_.at(k) - times_.at(k - 1)));
 }
 
 GaussianPose

@@ -6,6 +6,7 @@
 #include "track/motion_filter.h"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,9 +76,9 @@ struct TrackStep {
  * a track that was interrupted goes on from its steps. */
 class Track {
 public:
-  /** \param[in] times of all scans [s], increasing
+  /** \param[in] times of all scans [ns], increasing
    * \param[in] map_scans number of scans that make a target, at least 1 */
-  Track(const MotionModel& model, std::vector<double> times, int map_scans);
+  Track(const MotionModel& model, std::vector<std::int64_t> times, int map_scans);
 
   /** \brief Number of scans that have a pose; scan 0 always has. */
   int
@@ -150,8 +151,8 @@ public:
   std::vector<GraphEdge>
   edges() const;
 
-  /** \brief Times of all scans [s]. */
-  const std::vector<double>&
+  /** \brief Times of all scans [ns]. */
+  const std::vector<std::int64_t>&
   times() const
   {
     return times_;
@@ -164,7 +165,7 @@ private:
   void
   changeTarget(StepKind kind);
 
-  std::vector<double> times_;
+  std::vector<std::int64_t> times_;
   int map_scans_;
   MotionFilter filter_;
   int target_ = 0;

@@ -3,6 +3,7 @@
 #include "io/command_line.h"
 #include "io/folders.h"
 #include "io/input_file.h"
+#include "io/time_stamps.h"
 #include "register/settings_options.h"
 
 #include <algorithm>
@@ -15,9 +16,8 @@ namespace po = boost::program_options;
 
 namespace {
 
-/** Latest time [s]: those of trajectories are counted in ns, and seconds in an int32.
- */
-constexpr double time_limit = 2147483648.0, shortest_interval = 1e-9;
+/** [s] */
+constexpr double shortest_interval = 1e-9;
 /** Larger ones are a mistake, and overflow in time. */
 constexpr double max_acceleration = 1e6, min_acceleration = 1e-9;
 /** [m] */
@@ -73,34 +73,37 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
   return all;
 }
 
-double
-timeOf(std::string_view text, const std::string& where)
+/** In ns. \param[in] seconds as they are given, or a product of those */
+std::int64_t
+timeOf(std::string_view seconds, const std::string& where)
 {
   double time = 0.0;
-  if (!io::readNumber(text, time))
-    throw io::FileError(where, io::inQuotes(text) + " is not a number (s)");
-  return time;
+  if (!io::readNumber(seconds, time))
+    throw io::FileError(where, io::inQuotes(seconds) + " is not a number (s)");
+  if (!(time >= 0.0 && time < io::time_limit))
+    throw io::FileError(
+        where, "the time " + io::textOf(time) + " s is not from 0 to below 2^31 s");
+  std::int64_t exact = io::nanosecondsOf(time);
+  io::readSeconds(seconds, exact);
+  return exact;
 }
 
-/** All are at least 0 and below the limit, and increase by a nanosecond or more. */
 void
-checkTimes(const std::vector<double>& times, const std::string& where)
+requireIncreasing(const std::vector<std::int64_t>& times, const std::string& where)
 {
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const std::string what =
-        "the time of scan " + io::textOf(k) + ", " + io::textOf(times[k]) + " s, is ";
-    if (!(times[k] >= 0.0 && times[k] < time_limit))
-      throw io::FileError(where, what + "not from 0 to below 2^31 s");
-    if (k > 0 && !(times[k] - times[k - 1] >= shortest_interval))
-      throw io::FileError(
-          where, what + "not after that of scan " + io::textOf(k - 1) + " by 1 ns");
-  }
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (times[k] <= times[k - 1])
+      throw io::FileError(where,
+                          "the time of scan " + io::textOf(k) + ", " +
+                              io::textOf(io::secondsOf(times[k])) +
+                              " s, is not after that of scan " + io::textOf(k - 1) +
+                              " by 1 ns");
 }
 
-std::vector<double>
+std::vector<std::int64_t>
 readTimes(const TimeOptions& options, const std::vector<std::string>& scans)
 {
-  std::vector<double> times;
+  std::vector<std::int64_t> times;
   std::string where = "--period";
   if (options.source == "names") {
     where = "--times names";
@@ -115,12 +118,13 @@ readTimes(const TimeOptions& options, const std::vector<std::string>& scans)
   }
   else
     for (std::size_t k = 0; k < scans.size(); ++k)
-      times.push_back(static_cast<double>(k) * options.period);
+      times.push_back(
+          timeOf(io::textOf(static_cast<double>(k) * options.period), where));
   if (times.size() != scans.size())
     throw io::FileError(where,
                         "has " + io::textOf(times.size()) + " times for " +
                             io::textOf(scans.size()) + " scans");
-  checkTimes(times, where);
+  requireIncreasing(times, where);
   return times;
 }
 
@@ -250,7 +254,7 @@ parseTrackCommand(int argc, const char* const* argv)
   TrackRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);
-  requireWithin(times.period, shortest_interval, time_limit, "period");
+  requireWithin(times.period, shortest_interval, io::time_limit, "period");
   request.settings = settingsFrom(given, Settings(), command.note);
   Options& options_of_presets = request.settings.options;
   for (double* const gate : {&options_of_presets.exact.residual.max_distance,

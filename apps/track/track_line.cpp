@@ -1,7 +1,9 @@
 #include "track/track_line.h"
 
 #include "io/coordinates.h"
+#include "io/numbers.h"
 #include "io/text_hash.h"
+#include "io/time_stamps.h"
 #include "register/choices.h"
 #include "register/json_values.h"
 #include "register/posterior_files.h"
@@ -93,7 +95,7 @@ trackLine(const TrackRequest& request, const Track& track)
     more_edges.push_back(edgeJson(edge));
   const ordered_json line = {{"scan", step.scan},
                              {"file", request.scans.at(k)},
-                             {"time_s", request.times.at(k)},
+                             {"time_s", io::secondsOf(request.times.at(k))},
                              {"kind", toString(step.kind)},
                              {"status", step.status},
                              {"message", message},
@@ -113,14 +115,20 @@ readTrackLine(const std::string& line, const TrackRequest& request, int scan)
 {
   const json document = json::parse(line);
   const auto k = static_cast<std::size_t>(scan);
+  const std::string name = "scan " + std::to_string(scan);
+  if (document.at("scan") != scan)
+    throw std::runtime_error("it is not about " + name);
+  if (k >= request.scans.size())
+    throw std::runtime_error("there is no " + name);
+  if (const std::string file = document.at("file");
+      file != json::parse(textOf(request.scans[k])))
+    throw std::runtime_error(name + " is another file here, " +
+                             io::inQuotes(request.scans[k]) + " in place of " +
+                             io::inQuotes(file));
+  if (document.at("time_s") != io::secondsOf(request.times[k]))
+    throw std::runtime_error(name + " has another time here");
   if (document.at("settings_id") != settingsIdOf(request))
     throw std::runtime_error("it was made with other settings or another version");
-  if (document.at("scan") != scan)
-    throw std::runtime_error("it is not about scan " + std::to_string(scan));
-  if (k >= request.scans.size() || document.at("time_s") != request.times[k] ||
-      document.at("file") != json::parse(textOf(request.scans[k])))
-    throw std::runtime_error("scan " + std::to_string(scan) +
-                             " is another file here, or has another time");
   TrackStep step;
   step.scan = scan;
   if (!readChoice(document.at("kind").get<std::string>(), step.kind))

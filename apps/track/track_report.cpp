@@ -1,5 +1,6 @@
 #include "track/track_report.h"
 
+#include "io/time_stamps.h"
 #include "report/path_charts.h"
 #include "report/section.h"
 
@@ -19,7 +20,7 @@ uncertaintyCharts(const Track& track)
   std::vector<double> times;
   std::string innovations;
   for (std::size_t k = 0; k < track.poses().size(); ++k) {
-    times.push_back(track.times()[k] - track.times()[0]);
+    times.push_back(io::secondsOf(track.times()[k] - track.times()[0]));
     if (k == 0)
       continue;
     const int num_measured = 6 - track.steps()[k - 1].edge.num_unmeasured;

@@ -3,6 +3,7 @@
 #include "io/cloud_file.h"
 #include "io/errors.h"
 #include "io/input_file.h"
+#include "io/time_stamps.h"
 #include "localization/stated_pose.h"
 
 #include <boost/functional/hash.hpp>
@@ -37,7 +38,7 @@ MotionModel
 motionModelOf(const TrackRequest& request)
 {
   const PriorOptions& prior = request.settings.options.prior;
-  const double seconds = request.times.at(1) - request.times.at(0);
+  const double seconds = io::secondsOf(request.times.at(1) - request.times.at(0));
   MotionModel model;
   model.velocity =
       logSE3(prior.mean.allFinite() ? matrixOf(prior.mean) : request.settings.guess) /

@@ -20,8 +20,8 @@ namespace bayesian_icp::app {
 struct TrackRequest {
   /** Files of the scans, in their order. */
   std::vector<std::string> scans;
-  /** When each was taken [s]; increasing. */
-  std::vector<double> times;
+  /** When each was taken [ns]; increasing. */
+  std::vector<std::int64_t> times;
   /** Guess and prior are those of the motion from scan 0 to scan 1. */
   Settings settings;
   /** Standard deviations of the motion model [m/s^2, rad/s^2]. */

@@ -152,6 +152,10 @@ class TrackOfSimulatedScans(TrackTest):
             self.assertEqual(self.lines()[:num_kept], kept[:num_kept])
             self.assertEqual(result.stderr.count(" s)"), 4 - num_kept)
             self.assertEqual((self.track / "graph.g2o").read_text(), expected["graph.g2o"])
+        renamed = scans.rename(self.folder / "renamed")
+        result = self.run_track(renamed)
+        self.assert_refused(3, result, "edges.jsonl", "scan 1 is another file here", renamed, scans)
+        renamed.rename(scans)
         (scans / "scan_2.pcd").rename(scans / "scan_5.pcd")
         result = self.run_track(scans)
         self.assert_refused(3, result, "edges.jsonl", "scan 2 is another file here")
@@ -242,16 +246,17 @@ class TrackUsage(TrackTest):
         self.assertEqual(self.times(), [17.25, 17.5])
         # As they went in, though numbers of 64 bits are 240 ns apart there.
         first = first.rename(self.folder / "1700000000.25.pcd")
-        second = second.rename(self.folder / "1700000000.350001.pcd")
+        second = second.rename(self.folder / "1700000000.250000042.pcd")
         self.track = self.folder / "of_today"
         self.assertIn(self.run_track(first, second, "--times", "names").returncode, (0, 1))
         for name in ("trajectory_tum.txt", "trajectory_covariance.txt"):
             stamps = [line.split()[0] for line in (self.track / name).read_text().splitlines()]
-            self.assertEqual(stamps[-2:], ["1700000000.250000000", "1700000000.350001000"])
-        times = self.file("times.txt", "3.00000000000\n4.50000000000\n")
-        self.track = self.folder / "another"
-        self.assertIn(self.run_track(first, second, "--times", times).returncode, (0, 1))
-        self.assertEqual(self.times(), [3.0, 4.5])
+            self.assertEqual(stamps[-2:], ["1700000000.250000000", "1700000000.250000042"])
+        for text in ("3.00000000000\n4.50000000000\n", "3e0 4.5e+00"):
+            times = self.file("times.txt", text)
+            self.track = self.folder / f"another_{len(text)}"
+            self.assertIn(self.run_track(first, second, "--times", times).returncode, (0, 1))
+            self.assertEqual(self.times(), [3.0, 4.5])
 
     def test_folder_of_capitals(self):
         scans = self.folder / "scans"

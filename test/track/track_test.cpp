@@ -21,7 +21,7 @@ requestOf(int num_scans)
   TrackRequest request;
   for (int k = 0; k < num_scans; ++k) {
     request.scans.push_back("scan_" + std::to_string(k) + ".pcd");
-    request.times.push_back(0.1 * k);
+    request.times.push_back(100'000'000 * k);
   }
   return request;
 }
@@ -162,7 +162,7 @@ TEST(Track, RefusesLinesOfAnotherOne)
   other.acceleration = 1.0;
   EXPECT_THROW(readTrackLine(line, other, 1), std::runtime_error);
   other = request;
-  other.times[1] = 0.15;
+  other.times[1] = 150'000'000;
   EXPECT_THROW(readTrackLine(line, other, 1), std::runtime_error);
   EXPECT_THROW(readTrackLine("{}", request, 1), std::exception);
 }
