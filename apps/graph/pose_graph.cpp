@@ -1,8 +1,20 @@
 #include "graph/pose_graph.h"
 
+#include "io/numbers.h"
+
 #include <Eigen/Eigenvalues>
 
 namespace bayesian_icp::app {
+
+std::string
+unmeasuredText(std::size_t num_unmeasured, std::size_t num_registrations)
+{
+  if (num_unmeasured == 0)
+    return "";
+  return io::textOf(num_unmeasured) + " of " + io::textOf(num_registrations) +
+         " registrations leave a motion unmeasured: along it the result is the prior's "
+         "assumption";
+}
 
 Matrix6d
 squareRootOf(const Matrix6d& covariance)

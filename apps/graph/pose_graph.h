@@ -5,6 +5,7 @@
 
 #include <bayesian_icp/pose.h>
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -82,6 +83,11 @@ commonFactors(const Matrix6d& root, const Eigen::Matrix4d& T, double common);
  * \return pairs (earlier, later), in the order of the later ones */
 std::vector<std::pair<int, int>>
 loopCandidates(const std::vector<GaussianPose>& poses, double radius);
+
+/** \brief A warning about registrations of which the clouds do not determine every
+ * motion; empty if there are none. */
+std::string
+unmeasuredText(std::size_t num_unmeasured, std::size_t num_registrations);
 
 /** \brief An edge that is no registration of scans. */
 constexpr SharedNoise independent_noise{0.0, 0.0};

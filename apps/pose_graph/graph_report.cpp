@@ -49,8 +49,14 @@ verdictHtml(const ScanGraph& graph, std::size_t num_contradictions)
               ". Other registrations that are not ok: " + io::textOf(num_complaints) +
               ". Edges that contradict the others: " + io::textOf(num_contradictions) +
               '.';
-  return html::boxHtml(is_good ? html::Tone::Good : html::Tone::Caution,
-                       is_good ? "All edges agree"
+  const std::string unmeasured =
+      unmeasuredText(graph.numUnmeasured(), graph.chain.size() - 1);
+  if (!unmeasured.empty())
+    sentence += " Of the chain, " + unmeasured + '.';
+  const bool is_measured = unmeasured.empty();
+  return html::boxHtml(is_good && is_measured ? html::Tone::Good : html::Tone::Caution,
+                       is_good && is_measured ? "All edges agree"
+                       : is_good ? "All edges agree, but not every motion is measured"
                        : num_contradictions > 0
                            ? "Edges contradict each other"
                            : "Not every registration has status ok",
@@ -219,8 +225,7 @@ graphReportHtml(const GraphCommand& command,
                 cyclesHtml(cycles),
       {},
       contradictionsHtml(edges, optimum, disagreements)};
-  const Section repeat = {
-      "repeat", "To repeat the run", html::codeHtml(command.command)};
+  const Section repeat = {"repeat", "To repeat the run", commandHtml(command.command)};
   return html::pageHtml("Pose graph of " + io::textOf(optimum.poses.size()) + " scans",
                         verdictHtml(graph, disagreements.size()) +
                             sectionsHtml({trajectory, uncertainty, agreement, repeat}));

@@ -123,6 +123,10 @@ makeGraph(const GraphCommand& command)
     tell("interrupted; nothing is written");
     return Interrupted;
   }
+  if (const std::string warning =
+          unmeasuredText(graph.numUnmeasured(), graph.chain.size() - 1);
+      !warning.empty())
+    tell(warning);
   const std::vector<GraphEdge> edges = edgesOf(graph.taken());
   std::optional<OptimizedPoses> optimum;
   if (optimized_folder) {

@@ -140,22 +140,26 @@ private:
   take(const BatchResult& result, ScanEdge& edge) const
   {
     edge.seconds = result.seconds;
+    edge.message = result.message;
     const bool is_found = edge.kind == EdgeKind::Found;
     const std::string left_out = is_found                      ? "refused, "
                                  : edge.kind == EdgeKind::Span ? "left out, "
                                                                : "MISSING, ";
-    std::string complaint = result.message;
+    std::string reason = result.status + ": " + result.message;
     if (result.run != nullptr) {
       const PoseEstimate posterior(result.run->result.summary);
-      complaint = setEdge(edge.kind == EdgeKind::Chain
-                              ? posterior
-                              : withoutPrior(posterior, priorOf(*result.run)).estimate,
-                          edge.edge);
+      const PoseMeasurement of_clouds = withoutPrior(posterior, priorOf(*result.run));
+      const std::string complaint = setEdge(
+          edge.kind == EdgeKind::Chain ? posterior : of_clouds.estimate, edge.edge);
       edge.is_in_graph = complaint.empty();
+      if (edge.is_in_graph)
+        edge.num_unmeasured = of_clouds.num_unmeasured;
+      else
+        reason += "; not used: " + complaint;
     }
     if (edge.is_in_graph) {
       if (result.status != toString(Status::Ok)) {
-        edge.complaint = result.status + ": " + result.message;
+        edge.complaint = reason;
         edge.edge.covariance *= doubt_factor;
       }
       if (edge.isLoop())
@@ -166,7 +170,6 @@ private:
       }
       return;
     }
-    const std::string reason = result.status + ": " + complaint;
     edge.is_in_graph = edge.kind == EdgeKind::Chain && request_.has_weak_edges &&
                        result.run != nullptr &&
                        setEdge(estimateOf(priorOf(*result.run)), edge.edge).empty();
@@ -202,7 +205,8 @@ private:
   {
     std::string text = edge.complaint;
     if (text.empty())
-      text = "ok (" + io::fixedTextOf(edge.seconds, 1) + " s)";
+      text = "ok (" + io::fixedTextOf(edge.seconds, 1) + " s)" +
+             (edge.num_unmeasured > 0 ? ", " + edge.message : "");
     if (edge.complaint.empty() && edge.closure)
       text += ", closes with probability " + io::textOf(edge.closure->probability, 2);
     const bool is_found = edge.kind == EdgeKind::Found;
@@ -309,6 +313,15 @@ ScanGraph::taken() const
                std::back_inserter(edges),
                [](const ScanEdge& edge) { return edge.is_in_graph; });
   return edges;
+}
+
+std::size_t
+ScanGraph::numUnmeasured() const
+{
+  return static_cast<std::size_t>(std::count_if(
+      registrations.begin(), registrations.end(), [](const ScanEdge& edge) {
+        return edge.kind == EdgeKind::Chain && edge.num_unmeasured > 0;
+      }));
 }
 
 ScanGraph

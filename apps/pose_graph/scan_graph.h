@@ -53,6 +53,10 @@ struct ScanEdge {
   /** Without pose and covariance if there is no posterior of use. */
   GraphEdge edge;
   bool is_in_graph = false;
+  /** Motions that the clouds do not determine, 0 to 6; 0 without a posterior of use. */
+  int num_unmeasured = 0;
+  /** Of the registration's status; names the motions that the prior alone holds. */
+  std::string message;
   /** Why it is not in the graph, or what is wrong with it; empty if all is well. */
   std::string complaint;
   /** Of a loop and the chain between its scans. */
@@ -90,6 +94,10 @@ struct ScanGraph {
   /** \brief The registrations that are in the graph. */
   std::vector<ScanEdge>
   taken() const;
+
+  /** \brief Edges of the chain that leave a motion to the prior. */
+  std::size_t
+  numUnmeasured() const;
 };
 
 /** \brief Register each scan to the one before, then all others, whose priors are from

@@ -251,20 +251,17 @@ chainSection(const DrawSet& draws, const Summary& summary)
 Section
 repeatSection(const Run& run, const std::string& command)
 {
-  std::error_code ignored;
-  const std::string folder = std::filesystem::current_path(ignored).string();
   const std::string options =
       jsonOf(run.settings)
           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  return {
-      "repeat",
-      "To repeat the run",
-      html::paragraphHtml("In the folder " + folder +
-                          "; the draws are the same, to the last bit, on any number "
-                          "of threads:") +
-          html::codeHtml(command) + html::tableHtml(runTable(run)) +
-          html::detailsHtml("All options, as --config takes them",
-                            html::codeHtml(options))};
+  return {"repeat",
+          "To repeat the run",
+          commandHtml(command,
+                      "; the draws are the same, to the last bit, on any number of "
+                      "threads") +
+              html::tableHtml(runTable(run)) +
+              html::detailsHtml("All options, as --config takes them",
+                                html::codeHtml(options))};
 }
 
 /** All parts below the verdict. */

@@ -2,6 +2,8 @@
 
 #include "html/inline_svg.h"
 
+#include <filesystem>
+
 namespace bayesian_icp::app {
 
 namespace {
@@ -27,6 +29,16 @@ sectionHtml(const Section& section, std::vector<std::string>::const_iterator& sv
 }
 
 } // namespace
+
+std::string
+commandHtml(const std::string& command, const std::string& note)
+{
+  std::error_code ignored;
+  return html::paragraphHtml("In the folder " +
+                             std::filesystem::current_path(ignored).string() + note +
+                             ':') +
+         html::codeHtml(command);
+}
 
 std::string
 sectionsHtml(const std::vector<Section>& sections)

@@ -22,6 +22,11 @@ struct Section {
   html::FigureGrid grid = html::FigureGrid::Any;
 };
 
+/** \brief A command, and in which folder it was given: the current one.
+ * \param[in] note what else is to be said before it */
+std::string
+commandHtml(const std::string& command, const std::string& note = "");
+
 /** \brief The parts with their charts drawn.
  * \throws plot::GnuplotError if gnuplot cannot draw */
 std::string

@@ -142,6 +142,10 @@ makeTrack(const TrackCommand& command)
     tell("interrupted; the same command goes on");
     return Interrupted;
   }
+  if (const std::string warning =
+          unmeasuredText(track.numUnmeasured(), track.steps().size());
+      !warning.empty())
+    tell(warning);
   const bool are_all_good = std::all_of(
       track.steps().begin(), track.steps().end(), [](const TrackStep& step) {
         return step.kind == StepKind::Registered;

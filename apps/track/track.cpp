@@ -61,6 +61,15 @@ Track::take(const TrackStep& step)
     changeTarget(step.kind);
 }
 
+std::size_t
+Track::numUnmeasured() const
+{
+  return static_cast<std::size_t>(
+      std::count_if(steps_.begin(), steps_.end(), [](const TrackStep& step) {
+        return step.kind <= StepKind::Widened && step.edge.num_unmeasured > 0;
+      }));
+}
+
 std::vector<GraphEdge>
 Track::edges() const
 {

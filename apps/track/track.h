@@ -131,6 +131,10 @@ public:
     return steps_;
   }
 
+  /** \brief Steps that are registered, but leave a motion to the prediction. */
+  std::size_t
+  numUnmeasured() const;
+
   /** \brief Normalised innovation squared of each step; NaN if it was not registered.
    */
   const std::vector<double>&

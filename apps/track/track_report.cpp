@@ -56,11 +56,16 @@ verdictHtml(const Track& track)
   for (std::size_t k = 0; k < counts.size(); ++k)
     sentence += (k == 0 ? ": " : ", ") + io::textOf(counts[k]) + ' ' +
                 toString(static_cast<StepKind>(k));
-  return html::boxHtml(is_good                      ? html::Tone::Good
-                       : counts[2] + counts[3] == 0 ? html::Tone::Caution
-                                                    : html::Tone::Bad,
-                       is_good ? "Every scan is registered"
-                               : "Not every scan is registered with status ok",
+  const std::string unmeasured = unmeasuredText(track.numUnmeasured(), num_steps);
+  if (!unmeasured.empty())
+    sentence += ". " + unmeasured + " (edges.jsonl names the motions)";
+  return html::boxHtml(is_good && unmeasured.empty() ? html::Tone::Good
+                       : counts[2] + counts[3] == 0  ? html::Tone::Caution
+                                                     : html::Tone::Bad,
+                       !is_good ? "Not every scan is registered with status ok"
+                       : unmeasured.empty()
+                           ? "Every scan is registered"
+                           : "Every scan is registered, but not every motion measured",
                        html::paragraphHtml(sentence + '.'));
 }
 
@@ -104,8 +109,7 @@ trackReportHtml(const TrackCommand& command, const Track& track)
           "an error of registrations along the same motion, and the rest as "
           "independent."),
       uncertaintyCharts(track)};
-  const Section repeat = {
-      "repeat", "To repeat the run", html::codeHtml(command.command)};
+  const Section repeat = {"repeat", "To repeat the run", commandHtml(command.command)};
   return html::pageHtml("Track of " + io::textOf(track.poses().size()) + " scans",
                         verdictHtml(track) + sectionsHtml({path, uncertainty, repeat}));
 }

@@ -177,6 +177,10 @@ class PoseGraphEdges(PoseGraphTest):
 
         result = call(POSE_GRAPH, *scans, "-o", self.graph, *options)
         self.assertRegex(result.stderr, r"edge 1-2: MISSING, [a-z_]+: ")
+        few = ["--samples", "40", "--chains", "2", "--optimize", self.folder / "few"]
+        result = call(POSE_GRAPH, target, source, *few)
+        expected = r"edge 0-1: MISSING, not_mixed: .*R-hat.*; not used: the status is not_mixed"
+        self.assertRegex(result.stderr, expected)
         vertices, edges = read_graph(self.graph)
         self.assertEqual(sorted(vertices), [0, 1, 2, 3])
         self.assertNotIn((1, 2), edges)
@@ -197,6 +201,8 @@ class PoseGraphEdges(PoseGraphTest):
         options = ["--loop", "0,2", "--prior-variance", variance]
         result = call(POSE_GRAPH, target, source, source, "-o", self.graph, *options)
         self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertRegex(result.stderr, r"edge 0-1: ok .*held by the prior alone: rotation about")
+        self.assertIn("2 of 2 registrations leave a motion unmeasured: along it", result.stderr)
         lines = [line for line in self.graph.read_text().splitlines() if "EDGE" in line]
         chain, _, loop = (inv(read_g2o_edge(line)[4]) for line in lines)
         for axis in (0, 1):

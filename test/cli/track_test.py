@@ -1,5 +1,6 @@
 """pcl_bayesian_icp_track: a camera that moves about a table."""
 
+import os
 import random
 import re
 
@@ -77,6 +78,8 @@ class TrackOfSimulatedScans(TrackTest):
         report = (self.track / "report.html").read_text()
         self.assertIn("Where was the sensor?", report)
         self.assertTrue(report.endswith("</html>\n"))
+        self.assertIn(f"In the folder {os.getcwd()}:", report)
+        self.assertNotIn("unmeasured", report + result.stderr)
 
     def test_map(self):
         scans, from_world = self.trajectory(EYES)
@@ -178,6 +181,11 @@ class TrackWithUnseenMotions(TrackTest):
             scans.append(self.file(f"wall_{k}.pcd", cloud_files.pcd_bytes(points)))
         result = self.run_track(*scans, "--acceleration", 1, "--angular-acceleration", 1)
         self.assertEqual(result.returncode, 0, result.stderr)
+        warning = "3 of 3 registrations leave a motion unmeasured: along it the result is"
+        self.assertIn(warning, result.stderr)
+        report = (self.track / "report.html").read_text()
+        self.assertIn(warning, report)
+        self.assertIn("Every scan is registered, but not every motion measured", report)
         for k, line in enumerate(self.lines(), 1):
             self.assertEqual((line["kind"], line["edge"]["num_unmeasured"]), ("registered", 3))
             matrix = line["pose_in_scan_0"]["covariance"]["matrix"]
