@@ -150,7 +150,7 @@ figure.savefig(FOLDER / "python_pose_graph.png", dpi=90)
 # points below are too narrow.
 
 # %%
-pairs = [bayesian_icp.simulate("mug", seed=seed, width=240, height=180) for seed in range(1, 25)]
+pairs = [bayesian_icp.simulate("mug", seed=seed, width=240, height=180) for seed in range(1, 101)]
 levels = []
 for scans in pairs:
     result = bayesian_icp.align(source=scans.source, target=scans.target)
