@@ -30,6 +30,21 @@ angleRates(const Vector6d& pose)
   return rates;
 }
 
+/** The pose, with those angles that the prior prefers of two triples. */
+Vector6d
+preferredPose(const Prior& prior, const Isometry3d& T_target_source)
+{
+  constexpr double pi = 3.14159265358979323846;
+  const Vector6d pose = poseOf(T_target_source.matrix());
+  Vector6d other = pose;
+  other.tail<3>() = Vector3d(pose[3] + pi, pi - pose[4], pose[5] + pi);
+  const auto fit = [&](const Vector6d& angles) {
+    const Vector3d d = angles.tail<3>() - prior.mean().tail<3>();
+    return (d.array().cos() / prior.variance().tail<3>().array()).sum();
+  };
+  return fit(other) > fit(pose) ? other : pose;
+}
+
 /** The prior's deviation at a pose, and how it changes with twists. */
 struct PriorDeviation {
   Vector6d deviation;
@@ -40,7 +55,7 @@ struct PriorDeviation {
                  const Isometry3d& T_target_source,
                  const Vector3d& centre)
   {
-    const Vector6d pose = poseOf(T_target_source.matrix());
+    const Vector6d pose = preferredPose(prior, T_target_source);
     deviation = prior.deviation(pose);
     // The prior speaks of the place of its reference point and of the angles.
     rates.topRightCorner<3, 3>() =
@@ -79,6 +94,12 @@ Isometry3d
 isometryOf(const Vector6d& pose)
 {
   return Isometry3d(matrixOf(pose));
+}
+
+double
+twistPriorEnergy(const Prior& prior, const Isometry3d& T_target_source)
+{
+  return prior.energy(preferredPose(prior, T_target_source));
 }
 
 Vector6d

@@ -48,7 +48,13 @@ twistPrior(const Prior& prior,
            const Eigen::Isometry3d& T_target_source,
            const Eigen::Vector3d& centre);
 
-/** \brief The gradient of twistPrior() alone. */
+/** \brief -log \p prior at \p T_target_source, as a density of motions. Of the two
+ * triples of angles of the rotation it takes the one that the prior prefers, so it is
+ * smooth where a free pitch passes 90 degrees. */
+double
+twistPriorEnergy(const Prior& prior, const Eigen::Isometry3d& T_target_source);
+
+/** \brief The gradient of twistPriorEnergy(), and of twistPrior(), alone. */
 Vector6d
 twistPriorGradient(const Prior& prior,
                    const Eigen::Isometry3d& T_target_source,

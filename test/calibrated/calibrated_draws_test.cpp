@@ -310,13 +310,50 @@ TEST(ProductCoordinates, GradientOfThePriorIsThatOfItsEnergy)
     const ProductCoordinates coordinates(problem.estimate);
     ASSERT_EQ(coordinates.numPriorOnly(), num_free);
     const auto energy = [&](const Vector6d& z) {
-      return problem.prior.energy(poseOf(coordinates.pose(z).matrix()));
+      return twistPriorEnergy(problem.prior, coordinates.pose(z));
     };
     for (int i = 0; i < 5; ++i) {
       const Vector6d z = 0.05 * random.normal6();
       const Vector6d expected = centralDifferences(energy, z);
       EXPECT_LT((coordinates.priorGradient(z, problem.prior) - expected).norm(),
                 1e-6 * (1.0 + expected.norm()))
+          << num_free;
+    }
+  }
+}
+
+TEST(ProductCoordinates, VolumeIsThatOfTheMotions)
+{
+  StandIn problem(StandIn::Options{});
+  Random random(9, 0);
+  for (int num_free = 1; num_free <= 6; ++num_free) {
+    problem.estimate.keep = Vector6d::Ones();
+    problem.estimate.keep.tail(num_free).setZero();
+    const ProductCoordinates coordinates(problem.estimate);
+    const auto log_volume = [&](const Vector6d& z) {
+      const Eigen::Isometry3d at = coordinates.pose(z);
+      Matrix6d rates;
+      for (int k = 0; k < 6; ++k) {
+        const Vector6d step = 1e-4 * Vector6d::Unit(k);
+        rates.col(k) =
+            twistBetween(at, coordinates.pose(z + step), Eigen::Vector3d::Zero()) -
+            twistBetween(at, coordinates.pose(z - step), Eigen::Vector3d::Zero());
+      }
+      return std::log(std::abs(rates.determinant()));
+    };
+    for (int i = 0; i < 5; ++i) {
+      Vector6d z = random.normal6();
+      z.tail(6 - num_free).setZero();
+      // The next term of the series is of third order.
+      const double angle =
+          (problem.estimate.directions.rightCols(num_free) * z.head(num_free))
+              .tail<3>()
+              .norm();
+      z *= 0.05 / std::max(angle, 0.05);
+      Vector6d expected = centralDifferences(log_volume, z);
+      expected.tail(6 - num_free).setZero();
+      EXPECT_LT((coordinates.volumeGradient(z) - expected).norm(),
+                1e-3 * (0.01 + expected.norm()))
           << num_free;
     }
   }
@@ -404,6 +441,22 @@ TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
     for (const Chain& chain : set.chains)
       EXPECT_FALSE(chain.diverged);
   }
+}
+
+TEST(CalibratedDraws, AreOfEveryModeHoweverManyTheChains)
+{
+  const StandIn problem(StandIn::Options{});
+  CalibratedMode heavy{problem.estimate}, light{problem.estimate};
+  light.log_weight = heavy.log_weight + std::log(0.03);
+  ChainOptions chains;
+  chains.num_draws = 1000;
+  chains.num_chains = 50; // 29 draws of the light mode
+  const ChainSet set = sampleCalibrated(
+      problem.score(), problem.prior, {heavy, light}, CalibratedOptions(), chains);
+  ASSERT_EQ(set.modes.size(), 2u);
+  ASSERT_EQ(set.chains.size(), 100u);
+  for (const Chain& chain : set.chains)
+    EXPECT_GE(chain.draws.rows(), 1);
 }
 
 TEST(CalibratedDraws, ReportProgressAndCanBeCancelled)

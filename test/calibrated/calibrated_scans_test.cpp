@@ -104,6 +104,58 @@ TEST(CalibratedScans, TheYawOfACanKeepsAWidePrior)
   EXPECT_LT(squaredErrorOf(summary, c.scans), chi_square_999);
 }
 
+/** Points of a plane, or of a cylinder, whose free rotation is about y. */
+Eigen::Matrix3Xd
+slippery(bool is_plane, Eigen::Index num_points, Random& random)
+{
+  const double noise = 0.004;
+  Eigen::Matrix3Xd points(3, num_points);
+  for (auto point : points.colwise()) {
+    const double along = random.uniform() - 0.5, around = random.uniform() - 0.5;
+    const double height = noise * random.normal();
+    const double angle = 2.0 * std::acos(-1.0) * around, radius = 0.3 + height;
+    if (is_plane)
+      point << 2.0 * along, height, 2.0 * around;
+    else
+      point << radius * std::cos(angle), along, radius * std::sin(angle);
+  }
+  return points;
+}
+
+TEST(CalibratedScans, AFreePitchKeepsItsPriorBeyond90Degrees)
+{
+  Random random(77, 0);
+  for (const bool is_plane : {true, false})
+    for (const double variance : {0.125, 0.25}) {
+      Options options;
+      options.chains.num_draws = 4000;
+      options.prior.variance.tail<3>().setConstant(variance);
+      const PosteriorEstimate estimate =
+          estimatePosterior(slippery(is_plane, 2000, random),
+                            slippery(is_plane, 4000, random),
+                            Vector6d::Zero(),
+                            options);
+      EXPECT_EQ(estimate.summary.status, Status::Ok) << estimate.summary.message;
+      Eigen::ArrayXd cosines(estimate.samples.rows());
+      double across = 0.0;
+      for (Eigen::Index i = 0; i < cosines.size(); ++i) {
+        const Vector6d pose = estimate.samples.row(i).transpose();
+        const Eigen::Matrix3d R = rotationOf(pose);
+        cosines[i] = 0.5 * (R.trace() - 1.0);
+        across = std::max(across,
+                          is_plane ? std::abs(pose[1]) : std::hypot(pose[0], pose[2]));
+      }
+      EXPECT_LT(across, 0.02) << is_plane << " " << variance;
+      // Mean cosine of a von Mises density. 400 is the smallest effective sample size
+      // of status Ok.
+      const double expected = std::cyl_bessel_i(1.0, 1.0 / variance) /
+                              std::cyl_bessel_i(0.0, 1.0 / variance);
+      const double sd = std::sqrt((cosines - expected).square().mean());
+      EXPECT_NEAR(cosines.mean(), expected, 3.5 * sd / std::sqrt(400.0))
+          << is_plane << " " << variance;
+    }
+}
+
 Summary
 summaryOf(const simulator::ScanPair& scans, const Options& options)
 {

@@ -77,7 +77,7 @@ TEST(TwistPrior, GradientIsThatOfThePriorsEnergy)
       const Isometry3d pose = isometryOf(test::randomPose(random, 0.8));
       const Vector3d centre = randomCentre(random);
       const auto energy = [&](const Vector6d& xi) {
-        return prior.energy(poseOf(movedBy(xi, centre, pose).matrix()));
+        return twistPriorEnergy(prior, movedBy(xi, centre, pose));
       };
       const Vector6d expected = test::centralDifferences(energy, Vector6d::Zero());
       // Central differences of step 1e-5: about 1e-10 in rounding and truncation,
@@ -86,6 +86,18 @@ TEST(TwistPrior, GradientIsThatOfThePriorsEnergy)
       EXPECT_LT((gradient - expected).norm(), 1e-7 * expected.norm());
       EXPECT_EQ(twistPrior(prior, pose, centre).gradient, gradient);
     }
+}
+
+TEST(TwistPrior, GoesOnSmoothlyBeyondAPitchOf90Degrees)
+{
+  const Prior prior(Vector6d::Zero(), Vector6d::Constant(0.2));
+  for (const double pitch : {1.0, 1.6, 2.5}) {
+    const Isometry3d pose =
+        movedBy(pitch * Vector6d::Unit(4), Vector3d::Zero(), Isometry3d::Identity());
+    EXPECT_NEAR(twistPriorEnergy(prior, pose), (1.0 - std::cos(pitch)) / 0.2, 1e-9);
+    const Vector6d gradient = twistPriorGradient(prior, pose, Vector3d::Zero());
+    EXPECT_LT((gradient - std::sin(pitch) / 0.2 * Vector6d::Unit(4)).norm(), 1e-9);
+  }
 }
 
 TEST(TwistPrior, PrecisionIsTheHessianAtThePriorsMean)

@@ -157,9 +157,8 @@ sampleCalibrated(const BatchScore& score,
   std::vector<ChainMode> sampled;
   for (std::size_t m = 0; m < modes.size(); ++m) {
     ChainOptions of_mode = chains;
-    of_mode.num_draws = static_cast<int>(std::lround(shares[m] * chains.num_draws));
-    if (of_mode.num_draws < chains.num_chains)
-      continue;
+    of_mode.num_draws = std::max(
+        chains.num_chains, static_cast<int>(std::lround(shares[m] * chains.num_draws)));
     ChainMode mode;
     for (int i = 0; i < chains.num_chains; ++i)
       mode.members.push_back(static_cast<int>(runs.size()) * chains.num_chains + i);

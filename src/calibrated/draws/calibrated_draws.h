@@ -47,8 +47,8 @@ sharesOf(const std::vector<CalibratedMode>& modes);
  * (with the weighted and guarded score of docs/calibration.md).
  *
  * Every mode has chains.num_chains chains and a share of chains.num_draws in proportion
- * to its weight. The result has one mode after another. A mode is left out if its
- * chains would get less than one draw each. With one mode, ChainSet::modes stays empty.
+ * to its weight, at least one for each chain. The result has one mode after another.
+ * With one mode, ChainSet::modes stays empty.
  *
  * Each chain has its own random stream, so that draws are bit-identical for every
  * number of threads. Chains start from draws of the calibrated Gaussian. A chain has

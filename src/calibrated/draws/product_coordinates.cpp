@@ -28,15 +28,23 @@ carriedToTheRight(const Vector6d& xi, const Vector6d& gradient)
   return carried;
 }
 
+/** ad(xi), the Lie bracket with xi. */
+Matrix6d
+bracketWith(const Vector6d& xi)
+{
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = crossMatrix(xi.tail<3>());
+  ad.topRightCorner<3, 3>() = crossMatrix(xi.head<3>());
+  return ad;
+}
+
 /** J_l(xi)^T g: a gradient with respect to twists on the left of exp(xi), for changes
  * of xi itself. J_l = sum_n ad(xi)^n / (n + 1)!. */
 Vector6d
 carriedToTheExponent(const Vector6d& xi, const Vector6d& gradient)
 {
   constexpr int max_terms = 40;
-  Matrix6d ad = Matrix6d::Zero();
-  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = crossMatrix(xi.tail<3>());
-  ad.topRightCorner<3, 3>() = crossMatrix(xi.head<3>());
+  const Matrix6d ad = bracketWith(xi);
   Vector6d sum = gradient, term = gradient;
   for (int n = 1; n < max_terms; ++n) {
     term = (ad.transpose() * term / (n + 1)).eval();
@@ -64,6 +72,7 @@ ProductCoordinates::ProductCoordinates(const CalibratedEstimate& estimate)
     if (estimate.keep[k] > 0.0)
       held_.col(next++) = estimate.directions.col(k);
   setUnwinding(estimate.prior.precision);
+  setVolume();
   setLikelihood(estimate);
   const Matrix6d basis = prior_only_ + held_;
   const Vector6d gradient = basis.transpose() * estimate.prior.gradient;
@@ -82,20 +91,41 @@ ProductCoordinates::setUnwinding(const Matrix6d& prior_precision)
   const Eigen::MatrixXd rotations = V0.bottomRows<3>();
   const Eigen::MatrixXd weighted =
       (V0.transpose() * prior_precision * V0).llt().solve(rotations.transpose());
-  constexpr double round_off = 3.0 * std::numeric_limits<double>::epsilon();
-  unwinding_ = V0 * weighted * pseudoInverse(Matrix3d(rotations * weighted), round_off);
+  // A smaller part of the rotation is a tilt of the other directions.
+  constexpr double least_part = 0.01;
+  unwinding_.topRows(num_prior_only_) =
+      weighted * pseudoInverse(Matrix3d(rotations * weighted), least_part);
+}
+
+/** log |det(W J_r(V0 a) V0)| to second order in a, with W the first rows of [V0 VK]^-1
+ * and J_r = 1 - ad / 2 + ad^2 / 6. */
+void
+ProductCoordinates::setVolume()
+{
+  const Matrix6d W = (prior_only_ + held_).inverse();
+  const auto W0 = W.topRows(num_prior_only_);
+  const auto V0 = prior_only_.leftCols(num_prior_only_);
+  for (int k = 0; k < num_prior_only_; ++k) {
+    const Matrix6d ad_k = bracketWith(V0.col(k));
+    volume_slope_[k] = -0.5 * (W0 * ad_k * V0).trace();
+    for (int l = 0; l < num_prior_only_; ++l) {
+      const Matrix6d ad_l = bracketWith(V0.col(l));
+      volume_curvature_(k, l) = (W0 * (ad_k * ad_l + ad_l * ad_k) * V0).trace() / 6.0 -
+                                (W0 * ad_k * V0 * W0 * ad_l * V0).trace() / 4.0;
+    }
+  }
 }
 
 Vector6d
-ProductCoordinates::priorOnlyTwist(const Vector6d& z) const
+ProductCoordinates::unwound(const Vector6d& z) const
 {
   constexpr double turn = 6.283185307179586;
-  Vector6d twist = prior_only_ * z;
-  const double angle = twist.tail<3>().norm();
+  const Vector3d rotation = (prior_only_ * z).tail<3>();
+  const double angle = rotation.norm();
   const double num_turns = std::round(angle / turn);
   if (num_turns == 0.0)
-    return twist;
-  return twist - unwinding_ * (num_turns * turn / angle * twist.tail<3>());
+    return z;
+  return z - unwinding_ * (num_turns * turn / angle * rotation);
 }
 
 void
@@ -117,7 +147,7 @@ ProductCoordinates::setLikelihood(const CalibratedEstimate& estimate)
 Isometry3d
 ProductCoordinates::pose(const Vector6d& z) const
 {
-  return movedBy(priorOnlyTwist(z), centre_, movedBy(held_ * z, centre_, mode_));
+  return movedBy(prior_only_ * unwound(z), centre_, movedBy(held_ * z, centre_, mode_));
 }
 
 Vector6d
@@ -192,9 +222,15 @@ Vector6d
 ProductCoordinates::priorGradient(const Vector6d& z, const Prior& prior) const
 {
   const Vector6d gradient = twistPriorGradient(prior, pose(z), centre_);
-  const Vector6d a = priorOnlyTwist(z), b = held_ * z;
+  const Vector6d a = prior_only_ * unwound(z), b = held_ * z;
   return prior_only_.transpose() * carriedToTheExponent(a, gradient) +
          held_.transpose() * carriedToTheExponent(b, carriedToTheRight(a, gradient));
+}
+
+Vector6d
+ProductCoordinates::volumeGradient(const Vector6d& z) const
+{
+  return volume_slope_ + volume_curvature_ * unwound(z);
 }
 
 } // namespace bayesian_icp

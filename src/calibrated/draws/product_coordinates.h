@@ -62,9 +62,19 @@ public:
   double
   linearEnergy(const Vector6d& z) const;
 
+  /** \brief z without whole turns of V0 a: the same pose. */
+  Vector6d
+  unwound(const Vector6d& z) const;
+
   /** \brief Gradient of -log prior at pose(z) with respect to z, exact. */
   Vector6d
   priorGradient(const Vector6d& z, const Prior& prior) const;
+
+  /** \brief Gradient of log |det d(motion) / d(a)| at b = 0, motions as small twists:
+   * the same change of a is a smaller motion where V0 a is a large rotation. To first
+   * order in a. */
+  Vector6d
+  volumeGradient(const Vector6d& z) const;
 
   /** \brief log |det [V0 VK]|, which converts densities of z into those of twists. */
   double
@@ -81,9 +91,8 @@ private:
   void
   setUnwinding(const Matrix6d& prior_precision);
 
-  /** V0 a without whole turns. */
-  Vector6d
-  priorOnlyTwist(const Vector6d& z) const;
+  void
+  setVolume();
 
   void
   setLikelihood(const CalibratedEstimate& estimate);
@@ -94,9 +103,12 @@ private:
   /** Twists from the mode of (a, 0) and (0, b). */
   Matrix6d prior_only_, held_;
   int num_prior_only_ = 0;
-  /** Maps a rotation vector to the twist V0 a with this rotation that is most probable
-   * under the prior. */
+  /** Maps a rotation vector to (a, 0) such that V0 a has this rotation and is most
+   * probable under the prior. */
   Eigen::Matrix<double, 6, 3> unwinding_ = Eigen::Matrix<double, 6, 3>::Zero();
+  /** volumeGradient() at 0, and its derivatives. */
+  Vector6d volume_slope_ = Vector6d::Zero();
+  Matrix6d volume_curvature_ = Matrix6d::Zero();
   Matrix6d score_weights_ = Matrix6d::Zero();
   /** Lambda_b, and zeros in the rows and columns of a. */
   Matrix6d information_ = Matrix6d::Zero();

@@ -7,10 +7,10 @@ namespace bayesian_icp {
 
 namespace {
 
-/** The guard: largest deviation of the gradient from that of a Gaussian likelihood, in
- * units in which the posterior's standard deviation is 1. max_deviation is the limit at
- * the mode, and max_relative_deviation is added for each unit of the Gaussian's
- * gradient. As it is below 1, the gradient points back from far out. */
+/** The guard: largest deviation of a gradient from that of a Gaussian, in units in
+ * which the posterior's standard deviation is 1. max_deviation is the limit at the
+ * mode, and max_relative_deviation is added for each unit of the Gaussian's gradient.
+ * As it is below 1, the gradient points back from far out. */
 constexpr double max_deviation = 3.0;
 constexpr double max_relative_deviation = 0.5;
 
@@ -46,11 +46,19 @@ WeightedScore::WeightedScore(const CalibratedEstimate& estimate,
 SplitGradient
 WeightedScore::gradient(const Vector6d& z, std::size_t batch_size, Random& random)
 {
-  SplitGradient result = {Vector6d::Zero(), coordinates_.priorGradient(z, prior_)};
-  if (!active_.empty())
-    result.likelihood = guarded(z,
-                                coordinates_.scoreWeights() *
-                                    totalScore(z, batches_.subset(batch_size, random)));
+  const Vector6d linear = coordinates_.linearGradient(z);
+  const Gaussian& gaussian = coordinates_.gaussian();
+  const Vector6d linear_prior =
+      gaussian.precision() * (coordinates_.unwound(z) - gaussian.mean()) - linear;
+  const Vector6d prior =
+      coordinates_.priorGradient(z, prior_) - coordinates_.volumeGradient(z);
+  SplitGradient result = {Vector6d::Zero(),
+                          guarded(linear_prior, prior - linear_prior)};
+  if (!active_.empty()) {
+    const Vector6d likelihood = coordinates_.scoreWeights() *
+                                totalScore(z, batches_.subset(batch_size, random));
+    result.likelihood = guarded(linear, shape_gain_ * (likelihood - linear));
+  }
   return result;
 }
 
@@ -78,11 +86,9 @@ WeightedScore::totalScore(const Vector6d& z, const std::vector<std::size_t>& bat
 }
 
 Vector6d
-WeightedScore::guarded(const Vector6d& z, const Vector6d& likelihood) const
+WeightedScore::guarded(const Vector6d& linear, const Vector6d& deviation) const
 {
   const Matrix6d& L = coordinates_.gaussian().factor();
-  const Vector6d linear = coordinates_.linearGradient(z);
-  const Vector6d deviation = shape_gain_ * (likelihood - linear);
   const double limit =
       max_deviation + max_relative_deviation * (L.transpose() * linear).norm();
   const double length = (L.transpose() * deviation).norm();

@@ -43,8 +43,8 @@ public:
     shape_gain_ = gain;
   }
 
-  /** \brief The gradient. A guard keeps its likelihood part near that of a Gaussian
-   * likelihood, so that a chain always comes back. */
+  /** \brief The gradient. A guard keeps both parts near those of Gaussians, so that a
+   * chain always comes back. */
   SplitGradient
   gradient(const Vector6d& z, std::size_t batch_size, Random& random) override;
 
@@ -58,7 +58,7 @@ private:
   totalScore(const Vector6d& z, const std::vector<std::size_t>& batch);
 
   Vector6d
-  guarded(const Vector6d& z, const Vector6d& likelihood) const;
+  guarded(const Vector6d& linear, const Vector6d& deviation) const;
 
   const CalibratedEstimate& estimate_;
   const Prior& prior_;

@@ -2,6 +2,7 @@
 
 #include "algebra/decompositions.h"
 #include "calibrated/draws/product_coordinates.h"
+#include "geometry/twist.h"
 
 #include <algorithm>
 #include <cmath>
@@ -112,7 +113,7 @@ logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
   const Gaussian& gaussian = coordinates.gaussian();
   const Isometry3d pose = coordinates.pose(gaussian.mean());
   return gaussian.factor().diagonal().array().log().sum() + coordinates.logVolume() -
-         prior.energy(poseOf(pose.matrix()));
+         twistPriorEnergy(prior, pose);
 }
 
 } // namespace
