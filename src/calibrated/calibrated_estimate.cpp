@@ -415,17 +415,19 @@ evenPoints(const Matrix3Xd& points,
       max_part_used *
       static_cast<double>(std::min(used.size(), model.patches().size())));
   max_points = std::min(max_points, std::max(num_first, part));
-  const Eigen::Matrix3Xf centred = relativeTo(centroidOf(points, used), points, used);
+  const Eigen::Vector3d centroid = centroidOf(points, used);
+  const auto choose = [&](Index count) {
+    return evenChoice(relativeTo(centroid, points, used), count, ChoiceStream::Points);
+  };
   Random random(seed, order_stream);
-  std::vector<Index> columns =
-      evenChoice(centred, std::min(max_points, num_first), ChoiceStream::Points);
+  std::vector<Index> columns = choose(std::min(max_points, num_first));
   shuffle(columns, random);
   std::vector<bool> is_chosen(used.size());
   for (const Index column : columns)
     is_chosen[static_cast<std::size_t>(column)] = true;
   std::vector<Index> others;
   if (max_points > num_first)
-    others = evenChoice(centred, max_points, ChoiceStream::Points);
+    others = choose(max_points);
   shuffle(others, random);
   for (const Index column : others)
     if (!is_chosen[static_cast<std::size_t>(column)] &&

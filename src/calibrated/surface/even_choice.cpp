@@ -321,11 +321,13 @@ evenlyThinned(const Eigen::Matrix3Xf& points, Index count)
 }
 
 std::vector<Index>
-evenChoice(const Eigen::Matrix3Xf& upright_points, Index count, ChoiceStream stream)
+evenChoice(Eigen::Matrix3Xf points, Index count, ChoiceStream stream)
 {
-  if (upright_points.cols() <= count)
-    return allOf(upright_points);
-  const Eigen::Matrix3Xf points = tilt().toRotationMatrix() * upright_points;
+  if (points.cols() <= count)
+    return allOf(points);
+  const Eigen::Matrix3f R = tilt().toRotationMatrix();
+  for (auto point : points.colwise())
+    point = (R * point).eval();
   const Eigen::Vector3f corner = points.rowwise().minCoeff();
   const double extent = double((points.rowwise().maxCoeff() - corner).maxCoeff());
   double low = extent * smallest_cube, high = 2.0 * extent;

@@ -35,7 +35,7 @@ enum class ChoiceStream { Patches, Points };
  * \param[in] count maximum number of columns, at least 1
  * \param[in] stream of the random choice */
 std::vector<Eigen::Index>
-evenChoice(const Eigen::Matrix3Xf& points, Eigen::Index count, ChoiceStream stream);
+evenChoice(Eigen::Matrix3Xf points, Eigen::Index count, ChoiceStream stream);
 
 /** \brief Columns of the points that are not stray, ascending. Dust, rain and stray
  * measurements fill space, and an even choice would prefer them to surfaces. A point is
