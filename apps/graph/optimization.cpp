@@ -60,6 +60,20 @@ rotationVectorOf(const Eigen::Quaternion<T>& rotation)
   return vector;
 }
 
+/** c in V(w)^-1 = 1 - [w] / 2 + c [w]^2, the inverse of the left Jacobian of SO(3). */
+template <typename T>
+T
+secondCoefficient(const Eigen::Matrix<T, 3, 1>& w)
+{
+  using std::sqrt;
+  using std::tan;
+  const T square = w.squaredNorm();
+  if (square < T(1e-2))
+    return T(1.0 / 12.0) + square / T(720.0) + square * square / T(30240.0);
+  const T half = T(0.5) * sqrt(square);
+  return (T(1.0) - half / tan(half)) / square;
+}
+
 /** Moves Parameters by steps of the position and half angles about the fixed axes. */
 using PoseManifold =
     ceres::ProductManifold<ceres::EuclideanManifold<3>, ceres::EigenQuaternionManifold>;
@@ -97,10 +111,10 @@ struct EdgeError {
     const Vector3 shift =
         into_edge *
         (into_target * (source.position - target.position) - position.cast<T>());
-    // V(w)^-1 shift, V^-1 = 1 - [w] / 2 + [w]^2 / 12 - ...
+    // V(w)^-1 shift
     const Vector3 turned = w.cross(shift);
     Eigen::Matrix<T, 6, 1> error;
-    error << shift - T(0.5) * turned + T(1.0 / 12.0) * w.cross(turned), w;
+    error << shift - T(0.5) * turned + secondCoefficient<T>(w) * w.cross(turned), w;
     const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_target(target_noise);
     const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_source(source_noise);
     const Eigen::Map<const Eigen::Matrix<T, 6, 6>> of_all(common_noise);

@@ -23,6 +23,10 @@ arrayOf(py::handle cloud, const std::string& name)
       !py::isinstance<py::array>(cloud) && py::hasattr(cloud, "points");
   const py::object points =
       is_holder ? cloud.attr("points") : py::reinterpret_borrow<py::object>(cloud);
+  const py::module_ masked = py::module_::import("numpy.ma");
+  if (py::bool_(masked.attr("is_masked")(points)))
+    throw py::value_error(name + " has masked points; give the others alone, as in "
+                                 "cloud[~cloud.mask.any(axis=1)].data");
   auto array = py::array::ensure(points);
   PyErr_Clear(); // lists of several lengths are no array
   const char kind = array ? array.dtype().kind() : 'O';

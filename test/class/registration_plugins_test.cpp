@@ -24,6 +24,9 @@ protected:
   BayesianIcp icp, plain;
 };
 
+/** Of another type than PCL's, so that the class asks it itself. */
+struct OwnEstimation : Estimation {};
+
 /** Rejects nothing. */
 const registration::CorrespondenceRejectorDistance::Ptr no_limit = rejectorBeyond(1e3f);
 
@@ -284,6 +287,38 @@ TEST_F(PluginTest, PresetExactSearchesTheSelectedTargetPointsOnly)
   ready_tree->setInputCloud(with_decoy, selected);
   with_tree.setSearchMethodTarget(ready_tree, true);
   EXPECT_LT(yawErrorOfExact(with_tree, with_decoy), 0.02);
+}
+
+TEST_F(PluginTest, ThePluginsHaveTheTargetAlsoWhereIcpDoesNotRun)
+{
+  const Cloud::Ptr smaller(new Cloud(*scans.target, *everyNth(0, 500)));
+  const pcl::shared_ptr<Estimation> selecting(new Estimation);
+  selecting->setIndicesTarget(everyNth(0, 500, 2));
+  const auto setUp = [&](BayesianIcp& registration, int kind) {
+    if (kind == 0)
+      registration.setCorrespondenceEstimation(selecting);
+    else if (kind == 1)
+      registration.setCorrespondenceEstimation(
+          pcl::shared_ptr<OwnEstimation>(new OwnEstimation));
+    else
+      registration.addCorrespondenceRejector(rejectorBeyond(1e3f));
+  };
+  for (const int kind : {0, 1, 2}) {
+    BayesianIcp with_icp, with_mean;
+    setUp(with_icp, kind);
+    setUp(with_mean, kind);
+    for (BayesianIcp* registration : {&with_icp, &with_mean}) {
+      usePaper(*registration);
+      registration->setInputSource(scans.source);
+    }
+    with_mean.setUseMeanAsFinalTransformation(true);
+    for (const Cloud::Ptr& target : {scans.target, smaller}) {
+      aligned(with_icp, scans.source, target);
+      aligned(with_mean, scans.source, target);
+      EXPECT_EQ(with_mean.getSamples(), with_icp.getSamples()) << kind;
+      EXPECT_GT(with_icp.getSamples().rows(), 0) << kind;
+    }
+  }
 }
 
 TEST_F(PluginTest, ASharedReadyTreeIsNeverRebuilt)

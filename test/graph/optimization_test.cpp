@@ -117,6 +117,26 @@ TEST(OptimizedPosesOf, TwoParallelEdgesAreTheirMeanWeightedByInformation)
       found.squared_errors[0] + found.squared_errors[1], expected, 0.01 * expected);
 }
 
+TEST(OptimizedPosesOf, AnEdgeThatLeavesARotationFreeLetsItGoAnyFar)
+{
+  // About an axis 2 m away, as of a round object. The other edge is exact.
+  Vector6d turn;
+  turn << 0.0, -2.0, 0.0, 0.0, 0.0, 1.0;
+  Matrix6d tight = 1e-6 * Matrix6d::Identity();
+  for (const double angle : {0.35, 1.2, 2.0, 3.0}) {
+    GraphEdge measured, free;
+    measured.source = free.source = 1;
+    measured.covariance = 1e-3 * Matrix6d::Identity();
+    free.T_target_source = expSE3(Vector6d(angle * turn));
+    free.covariance = tight + 1e3 * turn * turn.transpose();
+    const OptimizedPoses found = optimized({measured, free}, 2);
+    // The free motion's own information is 1e-3.
+    EXPECT_LT(errorOf(found.poses[1], Eigen::Matrix4d::Identity()).norm(), 1e-3 * angle)
+        << angle;
+    EXPECT_LT(found.squared_errors[1], 2e-3 * angle * angle) << angle;
+  }
+}
+
 TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
 {
   constexpr int num_runs = 300;

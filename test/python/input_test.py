@@ -33,6 +33,7 @@ def test_clouds_are_keywords():
     (CLOUD > 0, TypeError, "source has the dtype bool"),
     (CLOUD.astype(str), TypeError, "source has the dtype <U32"),
     (CLOUD.astype(object), TypeError, "source has the dtype object"),
+    (np.ma.masked_greater(CLOUD, 0.1), ValueError, "source has masked points"),
     ([[1, 2, 3], [4, 5]], TypeError, "source is of type list, but must be an array of real numbers"),
     ("source.pcd", TypeError, "source is of type str"),
     (None, TypeError, "source is of type NoneType"),

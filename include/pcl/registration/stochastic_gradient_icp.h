@@ -145,10 +145,6 @@ protected:
 private:
   using Search = bayesian_icp_detail::PairSearch<PointTarget>;
 
-  /** \brief What pcl::IterativeClosestPoint does before its first iteration. */
-  void
-  giveTargetToPlugins();
-
   /** \return whether Scalar can hold the pose; if not, nothing is done */
   bool
   takeStep(const Search& search,

@@ -78,6 +78,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
       samplePosterior(source, guess);
     return (true);
   }
+  this->giveTargetToPlugins();
   samplePosterior(source, guess);
   // Without ICP, and as long as there is no mean, the source stays at the guess.
   this->nr_iterations_ = 0;

@@ -216,7 +216,7 @@ public:
     std::function<void(const Source&, Source&, const Matrix4&)> transform;
   };
 
-  /** The target has been given to the plug-ins by ICP before. */
+  /** The plug-ins have the target, from ICP or giveTargetToPlugins(). */
   PluginSearch(const Plugins& plugins,
                const SourceConstPtr& source,
                const TargetConstPtr& target)

@@ -515,6 +515,29 @@ protected:
             (!use_reciprocal_correspondence_ || isDefaultTree(*tree_reciprocal_)));
   }
 
+  /** What pcl::IterativeClosestPoint does before its first iteration. */
+  void
+  giveTargetToPlugins()
+  {
+    this->determineRequiredBlobData();
+    PCLPointCloud2::Ptr target_blob(new PCLPointCloud2);
+    if (this->need_target_blob_)
+      toPCLPointCloud2(*target_, *target_blob);
+    correspondence_estimation_->setInputTarget(target_);
+    if (correspondence_estimation_->requiresTargetNormals())
+      correspondence_estimation_->setTargetNormals(target_blob);
+    for (const auto& rejector : correspondence_rejectors_) {
+      if (rejector->requiresTargetPoints())
+        rejector->setTargetPoints(target_blob);
+      if (rejector->requiresTargetNormals() && target_has_normals_)
+        rejector->setTargetNormals(target_blob);
+    }
+    // The default estimation does so when it is first asked.
+    const IndicesPtr selected = correspondence_estimation_->getIndicesTarget();
+    if (selected && !force_no_recompute_ && hasDefaultEstimation())
+      tree_->setInputCloud(target_, selected);
+  }
+
   /** A search among the pairs that the estimation and the rejectors would find for
    * points of \p source within \p max_distance [m]. */
   std::unique_ptr<PairSearch<PointTarget>>

@@ -59,7 +59,7 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
   const Eigen::Matrix4d initial = guess.template cast<double>();
   const Options options = getOptions();
   if (bayesian_icp_detail::isRigid(initial) && options.validate().empty()) {
-    giveTargetToPlugins();
+    this->giveTargetToPlugins();
     const auto search =
         this->makeCorrespondenceSearch(source, this->corr_dist_threshold_);
     bool is_in_range = true;
@@ -82,30 +82,6 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
   }
   publishEnd();
   return (false);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
-StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    giveTargetToPlugins()
-{
-  this->determineRequiredBlobData();
-  PCLPointCloud2::Ptr target_blob(new PCLPointCloud2);
-  if (this->need_target_blob_)
-    toPCLPointCloud2(*target_, *target_blob);
-  correspondence_estimation_->setInputTarget(target_);
-  if (correspondence_estimation_->requiresTargetNormals())
-    correspondence_estimation_->setTargetNormals(target_blob);
-  for (const auto& rejector : correspondence_rejectors_) {
-    if (rejector->requiresTargetPoints())
-      rejector->setTargetPoints(target_blob);
-    if (rejector->requiresTargetNormals() && this->target_has_normals_)
-      rejector->setTargetNormals(target_blob);
-  }
-  // The default estimation does so when it is first asked.
-  const IndicesPtr selected = correspondence_estimation_->getIndicesTarget();
-  if (selected && !this->force_no_recompute_ && this->hasDefaultEstimation())
-    tree_->setInputCloud(target_, selected);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
