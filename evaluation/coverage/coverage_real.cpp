@@ -205,6 +205,7 @@ SequencePairs::makeCase(const std::string& name, std::uint64_t pair) const
   made.prior_mean = poseOf(poses.guess.matrix());
   made.prior_sd = PriorOptions().variance.cwiseSqrt();
   made.truth_sd = recording.truth_sd;
+  made.sensor = T_turned_sensor.translation();
   made.lost_displacement = recording.lost_displacement;
   return made;
 }

@@ -61,16 +61,16 @@ chiSquaredProbability(int degrees_of_freedom, double distance)
                           std::max(0.0, distance));
 }
 
-/** F of the truth. Recordings state how accurately T_target_source is known: the turn,
- * and where it puts the source's origin. */
+/** F of the truth. Recordings state how accurately the pose of the sensor is known: the
+ * turn, and where it puts the sensor. */
 Matrix6d
 truthFactor(const CoverageCase& problem, const MethodResult& result)
 {
   const Vector6d sd = problem.truth_sd.vector();
   Matrix6d factor = sd.asDiagonal();
-  const Eigen::Vector3d origin = result.mean.translation() - result.centre;
+  const Eigen::Vector3d sensor = result.mean * problem.sensor - result.centre;
   for (int k = 0; k < 3 && !std::isnan(problem.lost_displacement); ++k)
-    factor.col(3 + k).head<3>() = sd[3 + k] * origin.cross(Eigen::Vector3d::Unit(k));
+    factor.col(3 + k).head<3>() = sd[3 + k] * sensor.cross(Eigen::Vector3d::Unit(k));
   return factor;
 }
 

@@ -32,9 +32,11 @@ struct CoverageCase {
   Vector6d prior_mean = Vector6d::Zero();
   Vector6d prior_sd = Vector6d::Zero();
   /** Accuracy of the truth itself, root mean square over three axes; zero in
-   * simulation. Of the source's centroid and the rotation, of recordings of its origin
+   * simulation. Of the source's centroid and the rotation, of recordings of the sensor
    * and the rotation. */
   AxisDeviation truth_sd;
+  /** Of recordings: where the sensor is in the source's frame [m]. */
+  Eigen::Vector3d sensor = Eigen::Vector3d::Zero();
   /** Of recordings: mean displacement of the source's points beyond which a pose is
    * lost [m]. NaN: no pose is. */
   double lost_displacement = std::numeric_limits<double>::quiet_NaN();
@@ -49,6 +51,7 @@ struct CoverageCase {
     hash.addMatrix(truth.matrix());
     hash.addMatrix(prior_mean);
     hash.addMatrix(prior_sd);
+    hash.addMatrix(sensor);
     for (const double limit :
          {truth_sd.translation, truth_sd.rotation, lost_displacement})
       hash.add(limit);

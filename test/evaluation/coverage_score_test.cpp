@@ -200,19 +200,22 @@ TEST(CoverageScore, AddsTheTruthsOwnAccuracy)
   EXPECT_NEAR(smeared.pit[0], 0.5 * (1.0 + std::erf(2.5 / std::sqrt(2.0))), 1e-9);
 }
 
-TEST(CoverageScore, OfARecordingHasTheTruthsAccuracyAtTheSourcesOrigin)
+TEST(CoverageScore, OfARecordingHasTheTruthsAccuracyAtTheSensor)
 {
   RightPosterior right = rightPosterior(1, 0);
   right.problem.lost_displacement = 10.0;
   right.problem.truth_sd.translation = 4e-4;
   right.problem.truth_sd.rotation = 1.2e-3;
   right.result.covariance = 1e-14 * Matrix6d::Identity();
-  // A turn about the origin, then a shift of it: each in its own unit.
+  right.problem.sensor << 3.0, -2.0, 5.0;
+  // A turn about the sensor, then a shift of it: each in its own unit.
   const Eigen::Isometry3d& mean = right.result.mean;
   const Eigen::Vector3d turn(1.2e-3, 0.0, 2.4e-3);
   right.problem.truth = mean;
   right.problem.truth.linear() = expSO3(turn) * mean.linear();
-  right.problem.truth.translation() += Eigen::Vector3d(0.0, 4e-4, 0.0);
+  right.problem.truth.translation() +=
+      (mean.linear() - right.problem.truth.linear()) * right.problem.sensor +
+      Eigen::Vector3d(0.0, 4e-4, 0.0);
   EXPECT_NEAR(coverageScoreOf(right.problem, right.result).nees, 1.0 + 1.0 + 4.0, 0.2);
 }
 

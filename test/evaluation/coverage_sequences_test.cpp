@@ -140,6 +140,7 @@ TEST_F(SequencesTest, SourceIsTurnedAndTheTruthPutsItBack)
   const Isometry3d turn = made.truth.inverse() * relativePose(1, 2);
   EXPECT_NEAR(Eigen::AngleAxisd(turn.linear()).angle(), 0.5, 1e-9);
   EXPECT_NEAR(turn.translation().norm(), 0.5, 1e-9);
+  EXPECT_LT((made.truth * made.sensor - relativePose(1, 2).translation()).norm(), 1e-9);
   EXPECT_EQ(made.prior_sd, PriorOptions().variance.cwiseSqrt());
   EXPECT_EQ(made.truth_sd.translation, 0.003);
   EXPECT_EQ(made.truth_sd.rotation, 0.002);
