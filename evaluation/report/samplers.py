@@ -34,15 +34,23 @@ def row_of(sampler, runs):
     ]
 
 
-def table_of(cell, runs):
+def table_of(cell, runs, is_only_one):
     """Step sizes that were only tried with the first seed are left out."""
     sizes = runs.groupby("sampler").size()
     most = sizes.groupby(sizes.index.str.split(" ").str[0]).max()
     chosen = [name for name in sizes.index if sizes[name] == most[name.split(" ")[0]]]
     title = f"{cell[0]}, sigma {cell[1]:g} m, N = {cell[2]:g}"
+    if not is_only_one:
+        title += f", gold standard {cell[3]}"
     return page.Table(title, HEADER, [row_of(n, runs[runs.sampler == n]) for n in chosen])
 
 
 def section_of(_output, name, table):
-    cells = table.groupby(["scene", "sigma", "effective_points"])
-    return page.Section(f"Samplers ({name}.csv)", [table_of(*item) for item in cells])
+    """A table for each cell and gold standard: with other points it is another posterior."""
+    cell = ["scene", "sigma", "effective_points"]
+    num_standards = table.groupby(cell).gold_key.nunique()
+    tables = [
+        table_of(key, runs, num_standards[key[:3]] == 1)
+        for key, runs in table.groupby([*cell, "gold_key"])
+    ]
+    return page.Section(f"Samplers ({name}.csv)", tables)

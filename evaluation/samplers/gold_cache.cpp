@@ -80,4 +80,15 @@ cachedGold(const Problem& problem,
   return gold;
 }
 
+std::string
+rowKey(const Problem& problem, const GoldOptions& options, const GoldStandard& gold)
+{
+  InputHash hash;
+  const std::uint64_t inputs = goldKey(problem, options);
+  hash.add(&inputs, sizeof inputs);
+  for (const PoseMatrix& chain : gold.chains)
+    hash.addMatrix(chain);
+  return io::textOfHash(gold.has_converged ? inputs : hash.value());
+}
+
 } // namespace bayesian_icp::evaluate

@@ -27,4 +27,9 @@ cachedGold(const Problem& problem,
            const std::string& folder,
            const std::function<void(const std::string&)>& report);
 
+/** \brief What tells rows of this gold standard from rows of others: goldKey(), and the
+ * draws themselves of one that has not converged, which may become another one. */
+std::string
+rowKey(const Problem& problem, const GoldOptions& options, const GoldStandard& gold);
+
 } // namespace bayesian_icp::evaluate

@@ -1,6 +1,5 @@
 #include "commands.h"
 #include "io/cloud_file.h"
-#include "io/text_hash.h"
 #include "register/choices.h"
 #include "samplers/gold_cache.h"
 #include "samplers/sampler_problem.h"
@@ -9,6 +8,7 @@
 #include "study/text_table.h"
 
 #include <boost/algorithm/string/join.hpp>
+#include <boost/range/algorithm_ext/erase.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -89,7 +89,7 @@ listOf(const std::string& standard,
 {
   return taken(standard, [&values, read](const std::string& text) {
     values.clear();
-    for (const std::string& word : split(text, ','))
+    for (const std::string& word : wordsOf(text))
       values.push_back(read(word));
   });
 }
@@ -235,6 +235,7 @@ struct ProblemStudy {
   const SamplersOptions& options;
   ResultFile& results;
   PoseMatrix gold_draws = PoseMatrix();
+  std::string gold_key = std::string();
 };
 
 void
@@ -258,7 +259,7 @@ ProblemStudy::runOnce(const std::string& name,
               problem.cell().effective_points,
               name,
               seed,
-              io::textOfHash(goldKey(problem, options.gold))};
+              gold_key};
   const ScoredRun& kept = results.findOrMake(run.name, [&] {
     const SamplerRun made = sampler(seed);
     run.score = scoreOf(made, gold_draws);
@@ -340,6 +341,7 @@ ProblemStudy::run()
   if (!gold.has_converged)
     report("the gold standard has NOT converged");
   gold_draws = pooled(gold.chains);
+  gold_key = rowKey(problem, options.gold, gold);
   const Oracle oracle = oracleOf(problem, gold);
   for (const auto& [name, steps] :
        {std::pair("exact", ExactSteps::Automatic),
@@ -376,15 +378,22 @@ runSamplersCommand(int argc, const char* const* argv)
   io::silencePcl();
   ResultFile results(options->result.file);
   bool all_converged = true;
+  std::set<std::string> keys;
   for (const std::string& name : options->scenes) {
     const Scene scene = readScene(
         options->data_folder, name, static_cast<std::size_t>(options->num_points));
     for (const Cell& cell : options->cells) {
       const Problem problem(scene, cell, options->residual);
-      all_converged &= ProblemStudy{problem, *options, results}.run();
+      ProblemStudy study{problem, *options, results};
+      all_converged &= study.run();
+      keys.insert(study.gold_key);
     }
   }
-  printTable(results.runs(), std::cout);
+  std::vector<ScoredRun> runs = results.runs();
+  boost::range::remove_erase_if(runs, [&keys](const ScoredRun& run) {
+    return keys.count(run.name.gold_key) == 0;
+  });
+  printTable(runs, std::cout);
   const int report_code = options->result.report();
   return all_converged ? report_code : 1;
 }

@@ -24,7 +24,7 @@ struct RunName {
   /** For example "exact" or "paper 1e-05". */
   std::string sampler;
   std::uint64_t seed = 0;
-  /** Hash of inputs and options of the gold standard. */
+  /** See rowKey(). */
   std::string gold_key;
 };
 

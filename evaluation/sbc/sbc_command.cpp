@@ -2,6 +2,7 @@
 #include "io/coordinates.h"
 #include "sbc/rank_samplers.h"
 #include "sbc/rank_statistics.h"
+#include "study/named.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
 #include "study/text_table.h"
@@ -43,13 +44,17 @@ std::vector<RankSampler>
 samplersOf(const std::string& text)
 {
   std::vector<RankSampler> chosen;
-  for (const std::string& name : split(text, ',')) {
-    const std::size_t before = chosen.size();
-    for (const RankSampler& sampler : rankSamplers())
-      if (sampler.name == name ||
-          (name == "exact" && sampler.name.rfind("exact-", 0) == 0))
+  for (const std::string& name : wordsOf(text)) {
+    bool is_known = false;
+    for (const RankSampler& sampler : rankSamplers()) {
+      if (sampler.name != name &&
+          !(name == "exact" && sampler.name.rfind("exact-", 0) == 0))
+        continue;
+      is_known = true;
+      if (findNamed(chosen, sampler.name) == nullptr)
         chosen.push_back(sampler);
-    if (chosen.size() == before)
+    }
+    if (!is_known)
       throw io::BadValue(": there is no " + io::inQuotes(name));
   }
   return chosen.empty() ? rankSamplers() : chosen;

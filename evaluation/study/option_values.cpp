@@ -39,7 +39,7 @@ po::typed_value<std::string>*
 list(std::vector<std::string>& words)
 {
   return taken(boost::algorithm::join(words, ","),
-               [&words](const std::string& text) { words = split(text, ','); });
+               [&words](const std::string& text) { words = wordsOf(text); });
 }
 
 po::typed_value<double>*
@@ -81,6 +81,16 @@ split(const std::string& text, char separator)
   for (std::string item; std::getline(stream, item, separator);)
     items.push_back(item);
   return items;
+}
+
+std::vector<std::string>
+wordsOf(const std::string& list)
+{
+  std::vector<std::string> words;
+  for (const std::string& word : split(list, ','))
+    if (std::find(words.begin(), words.end(), word) == words.end())
+      words.push_back(word);
+  return words;
 }
 
 int

@@ -28,7 +28,7 @@ text(std::string& value);
 boost::program_options::typed_value<std::string>*
 outputName(const std::string& kind, std::string& value);
 
-/** \brief Words separated by commas. */
+/** \brief Words separated by commas, as wordsOf() takes them. */
 boost::program_options::typed_value<std::string>*
 list(std::vector<std::string>& words);
 
@@ -60,6 +60,10 @@ integer(Integer& value, int least, int most)
 /** \brief The pieces between separators; none of an empty text. */
 std::vector<std::string>
 split(const std::string& text, char separator);
+
+/** \brief The words between commas; what is there twice counts once. */
+std::vector<std::string>
+wordsOf(const std::string& list);
 
 /** \brief Where the rows of a study go, and what is made of them. */
 struct ResultOptions {

@@ -58,6 +58,38 @@ TEST_F(EvaluateCommands, CoverageRunsScenesWithTheirOwnConditions)
     expectIn(result.output, piece);
 }
 
+TEST_F(EvaluateCommands, WhatIsAskedForTwiceCountsOnce)
+{
+  const CommandResult coverage = run(
+      "coverage --scenes tool --conditions same,same --seeds 3 --methods prior,prior "
+      "--output a.csv");
+  expectIn(coverage.output, "3 of 3 cases");
+  expectIn(coverage.output, "  3/3  ");
+  writeFile(folder_ / "b.csv",
+            std::string(rank_header) + "exact-langevin,1,1,0,10,20,30,40,99\n" +
+                "exact-metropolis,1,1,0,10,20,30,40,99\n");
+  const CommandResult ranks =
+      run("sbc --sampler exact-langevin,exact --runs 1 --output b.csv");
+  EXPECT_EQ(count("\n  exact-langevin ", ranks.output), 1) << ranks.output;
+}
+
+TEST_F(EvaluateCommands, SamplersAreComparedWithOneGoldStandardEach)
+{
+  const auto numRuns = [this](const std::string& arguments, int exit_code) {
+    const CommandResult result = run(
+        "samplers --quick --samplers exact --seeds 1 --cells 0.005:300 --output a.csv "
+        "--cache . --data '" BAYESIAN_ICP_DATA_DIR "' " +
+        arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << result.output;
+    EXPECT_EQ(count("\n  exact       1  ", result.output), 1) << result.output;
+    return rowsOf(folder_ / "a.csv").size() - 1;
+  };
+  EXPECT_EQ(numRuns("--points 100 --gold-seconds 1e-3", 1), 1u);
+  EXPECT_EQ(numRuns("--points 100", 0), 2u) << "that one had not converged";
+  EXPECT_EQ(numRuns("--points 100", 0), 2u);
+  EXPECT_EQ(numRuns("--points 200", 0), 3u);
+}
+
 TEST_F(EvaluateCommands, SbcTellsRanksThatAreNotUniform)
 {
   std::string rows = rank_header;
