@@ -156,10 +156,11 @@ def section_of(output, name, runs):
     valid = runs[runs.valid == 1]
     if valid.empty:
         return page.Section(f"Coverage ({name}.csv)", tables_of(runs))
-    methods = [(method, valid[valid.method == method]) for method in frames.names_of(valid.method)]
+    names = frames.names_of(valid.method)
+    methods = [(method, valid[valid.method == method]) for method in names]
     cells = list(dict.fromkeys(zip(runs.scene, runs.condition)))
     figures = [
-        plot_regions(output, name, methods),
+        plot_regions(output, name, [(method, runs[runs.method == method]) for method in names]),
         plot_pit(output, name, methods),
         plot_anees(output, name, methods, cells),
     ]

@@ -167,8 +167,7 @@ def mixing_table(pairs):
     header += ["rotation sd [rad]", "CPU time of a run [s]"]
     lines = []
     for pair, rows in pairs:
-        for method in CHAINS:
-            runs = rows[rows.method == method]
+        for method, runs in rows[rows.method.isin(CHAINS)].groupby("method", sort=False):
             statuses = runs.status.value_counts().sort_index()
             sd = runs[SD_COLUMNS].to_numpy()
             translation, rotation = np.sqrt(np.mean(sd.reshape(-1, 2, 3) ** 2, axis=2)).T

@@ -32,11 +32,12 @@ def names_of(column):
 
 
 def spread_of(values):
-    """Mean and standard deviation of the finite ones, how many those are, and of how many."""
+    """Mean and standard deviation of the finite ones, how many those are, and of how many.
+    Where none is finite, unknown ones do not count."""
     values = np.asarray(values, float)
     finite = values[np.isfinite(values)]
     if not finite.size:
-        return (np.nan, 0.0, 0, values.size)
+        return (np.nan, 0.0, 0, np.isinf(values).sum())
     sd = finite.std(ddof=1) if finite.size > 1 else 0.0
     return (finite.mean(), sd, finite.size, values.size)
 

@@ -117,8 +117,8 @@ def runtime_section(output, rows, cores):
     axis = axes[0, 0]
     table = []
     for i, method in enumerate(methods):
-        of_method = medians.loc[method].groupby("threads")
-        spreads = [[frames.spread_of(of_method.get_group(n)[m]) for n in threads] for m in measures]
+        of_method = medians.loc[method].unstack("threads")
+        spreads = [[frames.spread_of(of_method[m].get(n, [])) for n in threads] for m in measures]
         wall = np.array([s[:2] for s in spreads[0]])
         axis.errorbar(threads, wall[:, 0], wall[:, 1], label=distribution.TITLES[method],
                       color=page.COLOURS[i], marker="o")  # fmt: skip

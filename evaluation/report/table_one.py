@@ -46,14 +46,11 @@ def cell(name, coordinate):
 
 def order_of(bayesian, online):
     """Which of two spreads is nearer to the baseline. Undecided where the means differ by no
-    more than the root of the summed variances; one without a finite value is the higher."""
-    if bayesian[2] == 0 and online[2] == 0:
+    more than the root of the summed variances; the mean is infinite if a value is."""
+    means = [s[0] if s[2] == s[3] else np.inf for s in (bayesian, online)]
+    if not abs(means[0] - means[1]) > np.hypot(bayesian[1], online[1]):
         return UNDECIDED
-    if bayesian[2] == 0 or online[2] == 0:
-        return ONLINE_LOWER if bayesian[2] == 0 else BAYESIAN_LOWER
-    if abs(bayesian[0] - online[0]) <= np.hypot(bayesian[1], online[1]):
-        return UNDECIDED
-    return BAYESIAN_LOWER if bayesian[0] < online[0] else ONLINE_LOWER
+    return BAYESIAN_LOWER if means[0] < means[1] else ONLINE_LOWER
 
 
 def agreement(paper, ours):

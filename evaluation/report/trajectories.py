@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from report import page
+from report import frames, page
 
 COLUMNS = ("recording", "means", "covariances", "ate_m", "rpe_m", "nees", "cycle_nees")
 DEGREES = 180.0 / np.pi
@@ -14,10 +14,11 @@ def name_of(means, covariances):
 
 
 def mean_of(rows):
-    """Root mean squares of errors over the seeds, means of the rest."""
+    """Root mean squares of errors over the seeds, means of the rest; unknown if one is."""
     errors = ("ate_m", "rpe_m", "rpe_rad", "drift_m")
-    root = {name: np.sqrt((rows[name] ** 2).mean()) for name in errors}
-    return {**root, "nees": rows.nees.mean(), "cycle_nees": rows.cycle_nees.mean()}
+    root = {name: np.sqrt((rows[name] ** 2).mean(skipna=False)) for name in errors}
+    means = {name: rows[name].mean(skipna=False) for name in ("num_edges", "nees", "cycle_nees")}
+    return {**root, **means}
 
 
 def rows_of(table):
@@ -32,12 +33,13 @@ def rows_of(table):
             rows.append([
                 f"{recording} ({runs.quality.iloc[0]})",
                 name,
+                f"{one['num_edges']:.0f}",
                 f"{ate} *" if one["ate_m"] <= LIKE_TIES * best else ate,
                 f"{1e3 * one['rpe_m']:.2f}",
                 f"{DEGREES * one['rpe_rad']:.3f}",
                 f"{1e3 * one['drift_m']:.1f}",
-                f"{one['nees']:.2f}",
-                f"{one['cycle_nees']:.2f}",
+                frames.number(one["nees"], 2),
+                frames.number(one["cycle_nees"], 2),
             ])  # fmt: skip
     return rows
 
@@ -70,12 +72,12 @@ def plot_errors(output, name, table):
 
 def section_of(output, name, table):
     errors = page.Table(
-        "Root mean square errors over the seeds: positions after alignment (ATE; *: the "
-        "smallest of the recording, or within 2 % of it), relative poses of neighbours (RPE), the "
-        "last pose (drift). Normalised squared error per degree of freedom of the poses (NEES/6) "
+        "Number of registrations that are of use. Root mean square errors over the seeds: positions "
+        "after alignment (ATE; *: the smallest of the recording, or within 2 % of it), relative "
+        "poses of neighbours (RPE), the last pose (drift). Normalised squared error per degree of freedom of the poses (NEES/6) "
         "and of the closures of cycles: 1 if covariances are right. The letter is the quality of "
         "the true poses.",
-        ["recording", "edges of", "ATE [mm]", "RPE [mm]", "RPE [deg]", "drift [mm]", "NEES/6",
+        ["recording", "edges of", "edges", "ATE [mm]", "RPE [mm]", "RPE [deg]", "drift [mm]", "NEES/6",
          "cycles"],
         rows_of(table),
     )

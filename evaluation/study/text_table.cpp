@@ -77,8 +77,11 @@ MedianTable::print(std::ostream& stream) const
   TextTable table(header);
   for (const Group& group : groups_) {
     std::vector<std::string> cells = {group.name, std::to_string(group.num_runs)};
-    for (const std::vector<double>& numbers : group.numbers)
+    for (const std::vector<double>& numbers : group.numbers) {
       cells.push_back(numbers.empty() ? "-" : io::textOf(median(numbers), num_digits));
+      if (numbers.size() < group.num_runs && !numbers.empty())
+        cells.back() += " (of " + std::to_string(numbers.size()) + ')';
+    }
     table.add(cells);
   }
   stream << title_ << '\n';

@@ -64,7 +64,8 @@ public:
   , columns_(std::move(columns))
   {}
 
-  /** \brief A run of this group. NaN is left out of the medians.
+  /** \brief A run of this group. NaN is left out of a median, which then tells of how
+   * many numbers it is.
    * \param[in] numbers one for each column */
   void
   add(const std::string& group, const std::vector<double>& numbers);

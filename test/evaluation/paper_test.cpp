@@ -303,13 +303,16 @@ TEST(MedianTable, LeavesOutWhatIsUnknownAndKeepsTheOrder)
   table.add("a", {0.25, std::nan("")});
   table.add("b", {1.0, 2.0});
   table.add("b", {12345.678, 4.0});
+  table.add("c", {1.0, 2.0});
+  table.add("c", {3.0, std::nan("")});
   std::ostringstream text;
   table.print(text);
   EXPECT_EQ(text.str(),
             "errors\n"
-            "  medians of the runs of  runs  [mm]  [mrad]\n"
-            "  b                          3     3       4\n"
-            "  a                          1  0.25       -\n");
+            "  medians of the runs of  runs  [mm]    [mrad]\n"
+            "  b                          3     3         4\n"
+            "  a                          1  0.25         -\n"
+            "  c                          2     2  2 (of 1)\n");
 }
 
 TEST(AccuracyMethods, FindThePoseFromNearby)

@@ -45,6 +45,7 @@ class Numbers(unittest.TestCase):
         self.assertEqual(text, "2.000 ± 1.414 (2 of 3 finite)")
         self.assertEqual(frames.spread_text(frames.spread_of([INFINITY])), "infinite")
         self.assertEqual(frames.spread_text(frames.spread_of([])), "-")
+        self.assertEqual(frames.spread_text(frames.spread_of([np.nan])), "-")
         self.assertEqual(frames.spread_text(frames.spread_of([5.0])), "5.000 ± 0.000")
 
     def test_large_numbers_have_three_digits(self):
@@ -79,6 +80,10 @@ class TableOne(unittest.TestCase):
         self.assertEqual(table_one.order_of(diverged, finite), "Online-ICP")
         self.assertEqual(table_one.order_of(finite, diverged), "Bayesian ICP")
         self.assertEqual(table_one.order_of(diverged, diverged), "undecided")
+        partly = frames.spread_of([1.0, INFINITY])
+        self.assertEqual(table_one.order_of(partly, finite), "Online-ICP")
+        self.assertEqual(table_one.order_of(partly, diverged), "undecided")
+        self.assertEqual(table_one.order_of(frames.spread_of([]), finite), "undecided")
         self.assertEqual(table_one.agreement("Bayesian ICP", "Bayesian ICP"), "yes")
         self.assertEqual(table_one.agreement("Bayesian ICP", "Online-ICP"), "no")
         self.assertEqual(table_one.agreement("undecided", "Online-ICP"), "undecided")
@@ -89,15 +94,16 @@ class Trajectories(FolderTest):
         rows = pd.DataFrame({
             "recording": "street", "quality": "exact",
             "means": ["calibrated"] * 4, "covariances": ["calibrated", "constant"] * 2,
+            "num_edges": [40, 40, 38, 38],
             "ate_m": [0.003, 0.0042, 0.004, 0.0042], "rpe_m": 0.001, "rpe_rad": 0.01,
-            "drift_m": 0.02, "nees": [1.0, 2.0, 3.0, 2.0], "cycle_nees": 0.5,
+            "drift_m": 0.02, "nees": [1.0, 2.0, 3.0, np.nan], "cycle_nees": 0.5,
         })  # fmt: skip
         # The root of (9 + 16) / 2 is 3.54.
         self.assertEqual(
             trajectories.rows_of(rows),
-            [["street (exact)", "calibrated", "3.54 *", "1.00", "0.573", "20.0", "2.00", "0.50"],
-             ["street (exact)", "calibrated + constant", "4.20", "1.00", "0.573",
-              "20.0", "2.00", "0.50"]],
+            [["street (exact)", "calibrated", "39", "3.54 *", "1.00", "0.573", "20.0", "2.00", "0.50"],
+             ["street (exact)", "calibrated + constant", "39", "4.20", "1.00", "0.573",
+              "20.0", "-", "0.50"]],
         )  # fmt: skip
         section = trajectories.section_of(self.output, "drives", rows)
         self.assertEqual(section.title, "Trajectories (drives.csv)")
@@ -158,6 +164,15 @@ class Coverage(FolderTest):
         self.assertEqual(row[:4], ["a", "10", "2", "2.12"])
         self.assertEqual(row[9:11], ["1 / 7", "2 / 3"])
 
+    def test_figure_of_regions_has_the_pairs_without_a_pose(self):
+        runs = coverage_rows(lost_displacement_m=0.1)
+        runs.loc[5:, ["nees", "displacement_m"]] = np.nan
+        runs.loc[5:, ["region", "valid"]] = [1.0, 0]
+        coverage.section_of(self.output, "c", runs)
+        whole = self.output.files["c_regions.svg"]
+        coverage.plot_regions(self.output, "c", [("a", runs)])
+        self.assertEqual(self.output.files["c_regions.svg"], whole)
+
     def test_pools_follow_the_cells(self):
         scenes = [coverage_rows(scene=s, condition=c) for s in "pq" for c in ("u", "v")]
         titles = [table.caption for table in coverage.tables_of(pd.concat(scenes))]
@@ -208,6 +223,7 @@ class Samplers(unittest.TestCase):
         rows = pd.DataFrame([dict.fromkeys(names, 0.05)] * 4)
         rows["sampler"] = ["paper 1e-05", "paper 1e-05", "paper 1e-04", "exact"]
         rows = rows.assign(scene="can", sigma=0.0015, effective_points=100.0, tail_ess=700.0)
+        rows = rows.assign(gold_key="k")
         rows = rows.assign(kl=[0.1, 0.3, 9.0, 0.2], rhat=[1.0, 1.2, 1, 1], seconds=[1.0, 3, 1, 1])
         rows = rows.assign(bulk_ess=[400.0, 600, 1, 1], status=["ok", "not_mixed", "ok", "ok"])
         rows.loc[0, "ks_x"] = 0.06
@@ -220,6 +236,11 @@ class Samplers(unittest.TestCase):
             ["2", "0.2000", "0.3000", "0.0500", "0.050", "92", "1.200", "400", "700", "300.0",
              "2.000", "1"],
         )  # fmt: skip
+        # Of other points or a longer gold standard.
+        both = pd.concat([rows, rows.assign(gold_key="other", kl=9.0)])
+        tables = samplers.section_of(None, "samplers", both).blocks
+        self.assertEqual([t.caption.split(", ")[-1] for t in tables], ["gold standard k", "gold standard other"])
+        self.assertEqual([t.rows[1][1:3] for t in tables], [["2", "0.2000"], ["2", "9.0000"]])
 
 
 def distribution_rows(pair="can", methods=("bayesian-icp", "online-icp"), num_runs=2):
@@ -321,6 +342,13 @@ class Paper(FolderTest):
         cells = ["3.000 ± 1.414"] * 3 + ["6.000 ± 2.828"] * 3
         self.assertEqual(table.rows[0], ["exact", *cells])
         self.assertEqual(table.rows[1][1:5], ["8.880 ± 3.590", "6.392 ± 0.731", "3.298 ± 0.573", "–"])
+
+    def test_run_time_of_an_interrupted_study_has_gaps(self):
+        rows = pd.DataFrame({"method": ["bayesian-icp", "bayesian-icp", "exact"], "pair": "a",
+                             "threads": [1, 2, 1], "wall_s_per_1000_draws": 1.0,
+                             "cpu_s_per_1000_draws": 2.0})  # fmt: skip
+        table = paper.runtime_section(self.output, rows, 2).blocks[1]
+        self.assertEqual(table.rows[1], ["exact", "1.000 ± 0.000", "-", "2.000 ± 0.000", "-"])
 
     def test_curves_have_a_table_a_variant(self):
         rows = pd.DataFrame(
