@@ -2,15 +2,37 @@
 
 #include "io/output_folder.h"
 #include "io/text_hash.h"
-#include "samplers/gold_file.h"
 #include "study/input_hash.h"
 
+#include <nlohmann/json.hpp>
+
 #include <fstream>
-#include <stdexcept>
+#include <vector>
 
 namespace bayesian_icp::evaluate {
 
 namespace {
+
+/** To be changed with the moves of the runs or the energy: old files are then ignored.
+ */
+constexpr char gold_format[] = "bayesian_icp gold standard 2";
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
+/** Draws, and what tells whether more time would make them better. */
+std::vector<std::uint8_t>
+bytesOf(const GoldStandard& gold)
+{
+  auto chains = nlohmann::json::array();
+  for (const PoseMatrix& chain : gold.chains) {
+    const Rows rows = chain;
+    chains.push_back(std::vector<double>(rows.data(), rows.data() + rows.size()));
+  }
+  return nlohmann::json::to_cbor({{"format", gold_format},
+                                  {"has_converged", gold.has_converged},
+                                  {"seconds", gold.seconds},
+                                  {"chains", chains}});
+}
 
 bool
 readFile(const std::string& name, GoldStandard& gold)
@@ -19,12 +41,21 @@ readFile(const std::string& name, GoldStandard& gold)
   if (!stream)
     return false;
   try {
-    gold = readGold(stream);
+    const auto json = nlohmann::json::from_cbor(stream);
+    if (json.at("format") != gold_format)
+      return false;
+    gold.has_converged = json.at("has_converged");
+    gold.seconds = json.at("seconds");
+    for (const auto& chain : json.at("chains")) {
+      const auto numbers = chain.get<std::vector<double>>();
+      gold.chains.push_back(Eigen::Map<const Rows>(
+          numbers.data(), static_cast<Eigen::Index>(numbers.size() / 6), 6));
+    }
   }
-  catch (const std::runtime_error&) {
-    return false; // not one of ours, or of an older version: made again
+  catch (const nlohmann::json::exception&) {
+    return false; // not one of ours, or cut off: made again
   }
-  return true;
+  return !gold.chains.empty();
 }
 
 void
@@ -67,7 +98,7 @@ cachedGold(const Problem& problem,
            const std::string& folder,
            const std::function<void(const std::string&)>& report)
 {
-  const std::string name = "gold_" + io::textOfHash(goldKey(problem, options)) + ".bin";
+  const std::string name = "gold_" + io::textOfHash(goldKey(problem, options)) + ".cbor";
   GoldStandard gold;
   if (readFile(folder + "/" + name, gold) &&
       (gold.has_converged || gold.seconds >= options.max_seconds))
@@ -75,7 +106,8 @@ cachedGold(const Problem& problem,
   io::OutputFolder output(folder);
   gold = sampleGold(problem.goldTarget(), options, report);
   toTheta(problem, gold);
-  output.add(name, [&gold](std::ostream& stream) { writeGold(gold, stream); });
+  const std::vector<std::uint8_t> bytes = bytesOf(gold);
+  output.add(name, std::string(bytes.begin(), bytes.end()));
   output.commit();
   return gold;
 }

@@ -86,8 +86,16 @@ TEST_F(EvaluateCommands, SamplersAreComparedWithOneGoldStandardEach)
   };
   EXPECT_EQ(numRuns("--points 100 --gold-seconds 1e-3", 1), 1u);
   EXPECT_EQ(numRuns("--points 100", 0), 2u) << "that one had not converged";
-  EXPECT_EQ(numRuns("--points 100", 0), 2u);
   EXPECT_EQ(numRuns("--points 200", 0), 3u);
+  // Kept: no round of a gold standard is told again, unless its file is cut off.
+  const std::string again =
+      "samplers --quick --samplers exact --seeds 1 --cells 0.005:300 --output a.csv "
+      "--cache . --points 200 --data '" BAYESIAN_ICP_DATA_DIR "'";
+  EXPECT_EQ(count("KL between runs", run(again).output), 0);
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (entry.path().extension() == ".cbor")
+      fs::resize_file(entry.path(), fs::file_size(entry.path()) - 1);
+  EXPECT_GT(count("KL between runs", run(again).output), 0);
 }
 
 TEST_F(EvaluateCommands, SbcTellsRanksThatAreNotUniform)

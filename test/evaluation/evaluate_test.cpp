@@ -2,14 +2,12 @@
 // bad draws.
 #include "evaluation/csv_rows.h"
 #include "evaluation/evaluate_test_support.h"
-#include "samplers/gold_file.h"
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -81,45 +79,6 @@ TEST(DrawStatistics, AnglesAreUnwrappedAboutTheCentre)
   const PoseMatrix unwrapped = unwrapAbout(centre, draws);
   EXPECT_NEAR(unwrapped(0, 5), pi - 0.1, 1e-12);
   EXPECT_NEAR(unwrapped(1, 5), pi + 0.1, 1e-12);
-}
-
-TEST(GoldStandard, ComesBackFromItsFile)
-{
-  GoldStandard gold;
-  gold.chains = {PoseMatrix::Random(3, 6), PoseMatrix::Random(2, 6)};
-  gold.rhat = 1.25;
-  gold.tail_ess = 42.0;
-  gold.has_converged = true;
-  std::stringstream stream;
-  writeGold(gold, stream);
-  const GoldStandard back = readGold(stream);
-  EXPECT_EQ(back.rhat, gold.rhat);
-  EXPECT_EQ(back.tail_ess, gold.tail_ess);
-  EXPECT_TRUE(back.has_converged);
-  EXPECT_EQ(pooled(back.chains), pooled(gold.chains));
-  const std::string text = stream.str();
-  std::istringstream cut_off(text.substr(0, text.size() - 1));
-  EXPECT_THROW(readGold(cut_off), std::runtime_error);
-  std::istringstream foreign("x,y,z\n1,2,3\n");
-  EXPECT_THROW(readGold(foreign), std::runtime_error);
-}
-
-TEST(GoldStandard, CountsThatItsFileHasNoRoomForAreRefused)
-{
-  GoldStandard gold;
-  gold.chains = {PoseMatrix::Random(3, 6)};
-  std::ostringstream stream;
-  writeGold(gold, stream);
-  // Behind the counts are the draws.
-  const std::size_t num_rows = stream.str().size() - (1 + 3 * 6) * sizeof(double);
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const std::size_t place : {num_rows, num_rows - sizeof(double)})
-    for (const double count : {nan, -1.0, 4.0 + 3 * 6, 1e300}) {
-      std::string text = stream.str();
-      std::memcpy(&text[place], &count, sizeof count);
-      std::istringstream broken(text);
-      EXPECT_THROW(readGold(broken), std::runtime_error) << count << " at " << place;
-    }
 }
 
 TEST(Score, JudgesGoodAndBadDraws)

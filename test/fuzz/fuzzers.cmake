@@ -60,7 +60,6 @@ find_package(Boost REQUIRED COMPONENTS program_options)
 target_sources(
   fuzz_result_file
   PRIVATE ${apps}/batch/batch_file.cpp
-          ${evaluation}/samplers/gold_file.cpp
           ${apps}/register/posterior_files.cpp)
 target_compile_definitions(fuzz_result_file
                            PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")

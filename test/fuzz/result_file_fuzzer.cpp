@@ -1,12 +1,12 @@
 /** \file
  * \brief Fuzzes files that a batch or an evaluation goes on with: lines of JSON, rows
- * of CSV files, gold standards.
+ * of CSV files.
  */
 #include "batch/batch_file.h"
 #include "coverage/coverage_study.h"
 #include "fuzz_input.h"
 #include "paper/paper_runs.h"
-#include "samplers/gold_file.h"
+#include "samplers/score.h"
 #include "sbc/rank_statistics.h"
 
 #include <sstream>
@@ -46,22 +46,6 @@ readRows(const std::string& text)
   }
 }
 
-void
-readGold(const std::string& bytes)
-{
-  std::istringstream stream(bytes);
-  evaluate::GoldStandard gold;
-  try {
-    gold = evaluate::readGold(stream);
-  }
-  catch (const std::runtime_error&) {
-    return; // to be made anew
-  }
-  std::ostringstream written;
-  evaluate::writeGold(gold, written);
-  fuzz::require(written.str().size() <= bytes.size(), "all draws are in the file");
-}
-
 } // namespace
 
 extern "C" int
@@ -74,6 +58,5 @@ LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   readRows<evaluate::AccuracyRun>(bytes);
   readRows<evaluate::CoverageRun>(bytes);
   readRows<evaluate::DistributionRun>(bytes);
-  readGold(bytes);
   return 0;
 }
