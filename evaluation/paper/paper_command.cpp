@@ -1,5 +1,6 @@
 #include "commands.h"
 #include "io/cloud_file.h"
+#include "io/command_line.h"
 #include "io/folders.h"
 #include "paper/paper_experiment.h"
 #include "study/option_values.h"
@@ -144,11 +145,11 @@ runExperiments(const std::string& summary,
                const char* const* argv)
 {
   PaperStudy study;
-  study.command = argv[0];
+  study.command = "pcl_bayesian_icp_evaluate " + io::commandOf(argc, argv);
   const auto options =
       readPaperOptions(argc,
                        argv,
-                       "Usage: pcl_bayesian_icp_evaluate " + study.command +
+                       std::string("Usage: pcl_bayesian_icp_evaluate ") + argv[0] +
                            " [options]\n\n" + summary + help_of_all);
   if (!options)
     return 0;

@@ -51,7 +51,7 @@ readPairs(const PaperStudyOptions& options, std::ostream& log, int& num_skipped)
 
 /** \brief On what an experiment is made. */
 struct PaperStudy {
-  /** The sub-command. */
+  /** As a shell takes it. */
   std::string command;
   PaperStudyOptions options;
   /** Those that could be read, thinned; at least one. */

@@ -24,24 +24,6 @@ constexpr char file_name[] = "study.json";
 constexpr std::uint64_t max_file_size = 1 << 24;
 
 std::string
-commandOf(const PaperStudy& study)
-{
-  const PaperStudyOptions& options = study.options;
-  std::string pairs;
-  for (const std::string& name : options.pairs)
-    pairs += (pairs.empty() ? " --pairs " : ",") + name;
-  return "pcl_bayesian_icp_evaluate " + study.command + " --data " +
-         options.data_folder + pairs + " --baseline-runs " +
-         std::to_string(options.num_baseline_runs) + " --start-translation " +
-         io::textOf(options.start_translation) + " --start-rotation " +
-         io::textOf(options.start_rotation) + " --repeats " +
-         std::to_string(options.num_repeats) + " --points " +
-         std::to_string(options.num_points) + " --seed " + io::textOf(options.seed) +
-         " --threads " + std::to_string(options.num_threads) + " --output " +
-         options.output_folder + (options.is_quick ? " --quick" : "");
-}
-
-std::string
 processorName()
 {
   std::ifstream stream("/proc/cpuinfo");
@@ -69,7 +51,7 @@ versions()
 nlohmann::json
 recordOf(const PaperStudy& study, const std::vector<PairKey>& pairs, int num_starts)
 {
-  nlohmann::json record = {{"command", commandOf(study)},
+  nlohmann::json record = {{"command", study.command},
                            {"quick", study.options.is_quick},
                            {"seed", study.options.seed},
                            {"seeds", num_starts > 0 ? 1 : study.options.num_repeats},

@@ -41,7 +41,7 @@ constexpr char quick[] =
     "'" BAYESIAN_ICP_DATA_DIR "' --output ";
 
 constexpr char small[] =
-    " --data . --output out --quick --repeats 2 --baseline-runs 10 --no-report";
+    " --output out --quick --repeats 2 --baseline-runs 10 --no-report";
 
 } // namespace
 
@@ -51,7 +51,7 @@ TEST_F(PaperCommand, BrokenPairsAreSkippedAndTheExitCodeSaysSo)
   writeScanPair(folder_, "broken");
   std::ofstream(folder_ / "broken/T_target_source.txt") << "1 0 0";
   const CommandResult result =
-      run(std::string("distribution --pairs broken,good,missing") + small);
+      run(std::string("distribution --data . --pairs broken,good,missing") + small);
   EXPECT_EQ(result.exit_code, 3) << result.output;
   for (const char* piece : {"pair broken is skipped: ./broken/T_target_source.txt",
                             "pair missing is skipped: ./missing/source.pcd",
@@ -68,7 +68,7 @@ TEST_F(PaperCommand, BrokenPairsAreSkippedAndTheExitCodeSaysSo)
 TEST_F(PaperCommand, ThreadsMakeNoDifference)
 {
   writeScanPair(folder_, "good");
-  const std::string command = std::string("distribution --pairs good") + small;
+  const std::string command = std::string("distribution --data . --pairs good") + small;
   ASSERT_EQ(run(command + " --threads 1").exit_code, 0);
   const std::string icp_rows = contentOf(runsOfIcp());
   const Rows rows = rowsOf(folder_ / "out/distribution.csv");
@@ -82,7 +82,10 @@ TEST_F(PaperCommand, ThreadsMakeNoDifference)
 TEST_F(PaperCommand, WritesWhatTheReportNeeds)
 {
   writeScanPair(folder_, "good");
-  const CommandResult result = run(std::string("distribution --pairs good") + small);
+  fs::create_directories(folder_ / "my data");
+  writeScanPair(folder_ / "my data", "good");
+  const CommandResult result =
+      run(std::string("distribution --data 'my data' --pairs good") + small);
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_FALSE(fs::exists(folder_ / "out/report.md"));
   const Rows baseline = rowsOf(folder_ / "out/baseline.csv");
@@ -104,7 +107,7 @@ TEST_F(PaperCommand, WritesWhatTheReportNeeds)
   for (const std::string& piece :
        {"\"key\": \"" + key + "\"",
         std::string("\"seeds\": 2"),
-        std::string("evaluate distribution --data . --pairs good --baseline-runs 10")})
+        std::string("evaluate distribution --data 'my data' --pairs good --output")})
     expectIn(record, piece);
 }
 
