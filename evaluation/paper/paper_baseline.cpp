@@ -21,7 +21,6 @@ namespace {
 constexpr char version[] = "monte carlo icp 1";
 
 constexpr int block_size = 100;
-constexpr double seconds_between_reports = 5.0;
 
 IcpStop
 stopOf(std::string_view name)
@@ -116,43 +115,33 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
   KeptRuns runs(file);
   const int end = options.first_run + options.num_runs;
   const auto isMissing = [&runs](int index) { return runs.find({index}) == nullptr; };
-  int num_missing = 0, num_done = 0;
+  std::vector<int> missing;
   for (int index = options.first_run; index < end; ++index)
-    num_missing += isMissing(index) ? 1 : 0;
-  // Not too many lines of it.
+    if (isMissing(index))
+      missing.push_back(index);
   const double begin = wallSeconds();
-  double last_report = 0.0;
-  const auto reportProgress = [&](int done) {
-    const double seconds = wallSeconds() - begin;
-    const bool is_due = done == num_missing
-                            ? last_report > 0.0
-                            : seconds >= last_report + seconds_between_reports;
-    if (!report || done == 0 || !is_due)
-      return;
-    last_report = seconds;
-    report(io::textOf(done) + " of " + io::textOf(num_missing) +
-           " runs of ICP, about " +
-           io::fixedTextOf(seconds * (num_missing - done) / done, 0) + " s left");
-  };
-  std::vector<MonteCarloIcpRun> asked;
-  for (int index = options.first_run; index < end; ++index) {
-    // The next runs that are missing, without a gap.
+  std::size_t num_done = 0;
+  while (num_done < missing.size()) {
+    // The next ones without a gap.
     MonteCarloIcpOptions block = options;
-    block.first_run = index;
-    block.num_runs = 0;
-    while (block.num_runs < block_size && index + block.num_runs < end &&
-           isMissing(index + block.num_runs))
+    block.first_run = missing[num_done];
+    block.num_runs = 1;
+    while (block.num_runs < block_size && block.first_run + block.num_runs < end &&
+           isMissing(block.first_run + block.num_runs))
       ++block.num_runs;
-    if (block.num_runs > 0)
-      for (const MonteCarloIcpRun& run :
-           monteCarloIcp(source, target, block, [&](int done) {
-             reportProgress(num_done + done);
-             return true;
-           }))
-        runs.add({{run.index}, run});
-    num_done += block.num_runs;
-    asked.push_back(runs.find({index})->run);
+    for (const MonteCarloIcpRun& run : monteCarloIcp(source, target, block))
+      runs.add({{run.index}, run});
+    num_done += static_cast<std::size_t>(block.num_runs);
+    const double seconds_each = (wallSeconds() - begin) / static_cast<double>(num_done);
+    const auto num_left = static_cast<double>(missing.size() - num_done);
+    if (report)
+      report(io::textOf(num_done) + " of " + io::textOf(missing.size()) +
+             " runs of ICP, about " + io::fixedTextOf(seconds_each * num_left, 0) +
+             " s left");
   }
+  std::vector<MonteCarloIcpRun> asked;
+  for (int index = options.first_run; index < end; ++index)
+    asked.push_back(runs.find({index})->run);
   return asked;
 }
 
