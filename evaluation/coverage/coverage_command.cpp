@@ -6,6 +6,7 @@
 #include "io/cloud_file.h"
 #include "io/command_line.h"
 #include "io/errors.h"
+#include "io/numbers.h"
 #include "register/choices.h"
 #include "study/named.h"
 #include "study/option_values.h"
@@ -74,7 +75,7 @@ Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the report.
 AxisDeviation
 deviationOf(const std::string& text)
 {
-  const auto items = split(text, ',');
+  const auto items = io::splitAt(',', text);
   AxisDeviation sd;
   if (items.size() != 2 || !io::readNumber(items[0], sd.translation) ||
       !io::readNumber(items[1], sd.rotation) || !(sd.translation >= 0.0) ||

@@ -2,9 +2,10 @@
 
 #include "algebra/decompositions.h"
 #include "geometry/twist.h"
+#include "io/command_line.h"
+#include "io/numbers.h"
 #include "register/choices.h"
 #include "study/clocks.h"
-#include "study/option_values.h"
 
 #include <new>
 
@@ -82,14 +83,14 @@ timedResult(const CoverageMethod& method, const CoverageCase& problem)
 CoverageMethod
 exactMethod(const std::string& name)
 {
-  const auto words = split(name, ':');
+  const auto words = io::splitAt(':', name);
   Options options;
   options.preset = Preset::Exact;
   ExactOptions& exact = options.exact;
   LikelihoodScale& scale = exact.scale;
   if (words.size() != 6 || words[0] != "exact" ||
-      !app::readChoice(words[1], exact.residual.residual) ||
-      !app::readChoice(words[2], exact.steps) ||
+      !app::readChoice(std::string(words[1]), exact.residual.residual) ||
+      !app::readChoice(std::string(words[2]), exact.steps) ||
       !io::readNumber(words[3], scale.measurement_sigma) ||
       !io::readNumber(words[4], scale.effective_points) ||
       !io::readNumber(words[5], exact.max_source_points) || !options.validate().empty())

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -23,7 +24,11 @@ Scores
 select(const Scores& scores, const Condition& condition)
 {
   Scores selected;
-  std::copy_if(scores.begin(), scores.end(), std::back_inserter(selected), condition);
+  std::copy_if(
+      scores.begin(),
+      scores.end(),
+      std::back_inserter(selected),
+      [&](const CoverageScore& score) { return std::invoke(condition, score); });
   return selected;
 }
 
@@ -34,7 +39,8 @@ collect(const Scores& scores, const Number& number)
 {
   std::vector<double> values;
   for (const CoverageScore& score : scores)
-    if (const auto value = static_cast<double>(number(score)); !std::isnan(value))
+    if (const auto value = static_cast<double>(std::invoke(number, score));
+        !std::isnan(value))
       values.push_back(value);
   return values;
 }
@@ -59,18 +65,14 @@ medianOf(const Scores& scores, const Number& number)
 Share
 shareOfFlagged(const Scores& scores)
 {
-  const auto num_flagged =
-      std::count_if(scores.begin(), scores.end(), [](const CoverageScore& score) {
-        return score.isFlagged();
-      });
-  return shareOf(static_cast<std::size_t>(num_flagged), scores.size());
+  return shareOf(select(scores, &CoverageScore::isFlagged).size(), scores.size());
 }
 
 /** Share of the scores with the truth within the region of probability \p level. */
 Share
 shareWithin(const Scores& scores, double level)
 {
-  const auto regions = collect(scores, [](const auto& s) { return s.region; });
+  const auto regions = collect(scores, &CoverageScore::region);
   const auto num_within =
       std::count_if(regions.begin(), regions.end(), [level](double region) {
         return region <= level;
@@ -119,29 +121,25 @@ summaryOf(const std::vector<CoverageRun>& runs)
   for (const CoverageRun& run : runs)
     scores.push_back(run.score);
   const Scores found = select(scores, [](const auto& s) { return !s.isLost(); });
-  const Scores posed = select(scores, [](const auto& s) { return s.hasPose(); });
+  const Scores posed = select(scores, &CoverageScore::hasPose);
   const Scores outside = select(posed, [](const auto& s) { return s.region > 0.95; });
   CoverageSummary summary;
   summary.num_runs = runs.size();
-  summary.num_valid = select(scores, [](const auto& s) { return s.is_valid; }).size();
-  summary.has_limit = std::any_of(
-      scores.begin(), scores.end(), [](const auto& s) { return s.hasLimit(); });
+  summary.num_valid = select(scores, &CoverageScore::is_valid).size();
+  summary.has_limit = !select(scores, &CoverageScore::hasLimit).empty();
   summary.num_lost = scores.size() - found.size();
   countDoubts(scores, summary);
   summary.anees = meanOf(found, [](const auto& s) { return s.nees / 6.0; });
   for (std::size_t i = 0; i < coverage_levels.size(); ++i)
     summary.coverage[i] = shareWithin(scores, coverage_levels[i]);
-  summary.mean_log_score = meanOf(scores, [](const auto& s) { return s.log_score; });
-  summary.mean_energy_score =
-      meanOf(scores, [](const auto& s) { return s.energy_score; });
-  summary.translation_error =
-      medianOf(scores, [](const auto& s) { return s.translation_error; });
-  summary.rotation_error =
-      medianOf(scores, [](const auto& s) { return s.rotation_error; });
+  summary.mean_log_score = meanOf(scores, &CoverageScore::log_score);
+  summary.mean_energy_score = meanOf(scores, &CoverageScore::energy_score);
+  summary.translation_error = medianOf(scores, &CoverageScore::translation_error);
+  summary.rotation_error = medianOf(scores, &CoverageScore::rotation_error);
   summary.flagged = shareOfFlagged(posed);
   summary.flagged_outside = shareOfFlagged(outside);
-  summary.median_seconds = medianOf(posed, [](const auto& s) { return s.seconds; });
-  summary.median_queries = medianOf(posed, [](const auto& s) { return s.num_queries; });
+  summary.median_seconds = medianOf(posed, &CoverageScore::seconds);
+  summary.median_queries = medianOf(posed, &CoverageScore::num_queries);
   return summary;
 }
 

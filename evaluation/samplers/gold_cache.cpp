@@ -98,7 +98,8 @@ cachedGold(const Problem& problem,
            const std::string& folder,
            const std::function<void(const std::string&)>& report)
 {
-  const std::string name = "gold_" + io::textOfHash(goldKey(problem, options)) + ".cbor";
+  const std::string name =
+      "gold_" + io::textOfHash(goldKey(problem, options)) + ".cbor";
   GoldStandard gold;
   if (readFile(folder + "/" + name, gold) &&
       (gold.has_converged || gold.seconds >= options.max_seconds))

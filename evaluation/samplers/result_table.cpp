@@ -3,6 +3,7 @@
 #include "study/text_table.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <ostream>
 #include <tuple>
@@ -23,7 +24,7 @@ collect(const Scores& scores, const Number& number)
 {
   std::vector<double> values;
   for (const Score& score : scores)
-    values.push_back(number(score));
+    values.push_back(std::invoke(number, score));
   return values;
 }
 
@@ -61,12 +62,12 @@ shareOfGoodMarginals(const Scores& scores)
 std::vector<std::string>
 cellsOf(const std::string& sampler, const Scores& scores)
 {
-  const auto kl = collect(scores, [](const Score& s) { return s.kl; });
-  const auto seconds = collect(scores, [](const Score& s) { return s.seconds; });
-  const auto rate = collect(scores, [](const Score& s) { return s.essPerSecond(); });
-  const auto rhat = collect(scores, [](const Score& s) { return s.rhat; });
-  const auto bulk = collect(scores, [](const Score& s) { return s.bulk_ess; });
-  const auto tail = collect(scores, [](const Score& s) { return s.tail_ess; });
+  const auto kl = collect(scores, &Score::kl);
+  const auto seconds = collect(scores, &Score::seconds);
+  const auto rate = collect(scores, &Score::essPerSecond);
+  const auto rhat = collect(scores, &Score::rhat);
+  const auto bulk = collect(scores, &Score::bulk_ess);
+  const auto tail = collect(scores, &Score::tail_ess);
   const auto w1 =
       collect(scores, [](const Score& s) { return s.wasserstein.maxCoeff(); });
   const auto num_mixed = std::count_if(

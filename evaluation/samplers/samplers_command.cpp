@@ -1,5 +1,7 @@
 #include "commands.h"
 #include "io/cloud_file.h"
+#include "io/folders.h"
+#include "io/numbers.h"
 #include "register/choices.h"
 #include "samplers/gold_cache.h"
 #include "samplers/sampler_problem.h"
@@ -29,7 +31,6 @@ namespace {
 /** What is compared, and where it is kept. */
 struct SamplersOptions {
   std::string data_folder = "data";
-  std::string cache_folder = "results";
   ResultOptions result = {"results/samplers.csv"};
   bool is_quick = false;
   std::vector<std::string> scenes = {"can", "bowl", "mug", "table", "corridor"};
@@ -47,8 +48,6 @@ struct SamplersOptions {
   int num_seeds = 5;
   int num_points = 2000;
   int num_threads = 1;
-  /** Step sizes of Algorithm 1 that are tried. */
-  std::vector<double> step_sizes;
   GoldOptions gold;
 
   /** Whether a sampler was asked for. */
@@ -63,18 +62,18 @@ constexpr int max_threads = 64;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 double
-positiveNumberOf(const std::string& text)
+positiveNumberOf(std::string_view text)
 {
   double number = 0.0;
   if (!io::readNumber(text, number) || !(number > 0.0) || !std::isfinite(number))
-    io::refuseValue(text, "a positive number");
+    io::refuseValue(std::string(text), "a positive number");
   return number;
 }
 
 Cell
 cellOf(const std::string& text)
 {
-  const auto numbers = split(text, ':');
+  const auto numbers = io::splitAt(':', text);
   if (numbers.size() != 2)
     io::refuseValue(text, "of the form sigma:N");
   return {positiveNumberOf(numbers[0]), positiveNumberOf(numbers[1])};
@@ -115,8 +114,8 @@ numParticlesOf(const std::string& text)
 constexpr char samplers_help[] = R"(Usage: pcl_bayesian_icp_evaluate samplers [options]
 
 Compares the draws of every sampler with a gold standard: long Metropolis
-runs on the same posterior, kept in the cache folder. Every run is a row of
-a CSV file: KL divergence of Gaussian moments (gold standard to sampler,
+runs on the same posterior, kept beside the results. Every run is a row of a
+CSV file: KL divergence of Gaussian moments (gold standard to sampler,
 6-D and per coordinate) [nats], Wasserstein-1 distance [standard deviations
 of the gold standard] and Kolmogorov-Smirnov distance of the marginals,
 largest R-hat, smallest bulk and tail effective sample size (ESS), CPU time
@@ -153,10 +152,6 @@ describeOptions(SamplersOptions& options)
      "(full batch; covariance and starts from the gold standard)")
     ("particles", listOf("20,50,100", options.particles, numParticlesOf),
      "numbers of particles of the Stein samplers")
-    ("step-sizes", listOf("1e-3,1e-4,1e-5,1e-6", options.step_sizes, positiveNumberOf),
-     "step sizes alpha of Algorithm 1. Each is also tried times 6000 sigma^2 / N, "
-     "which is its value at the paper's scale. Smaller ones are tried as long as they "
-     "are better")
     ("seeds", integer(options.num_seeds, 1, 1000),
      "number of runs of each sampler, with seeds 1, 2, ...")
     ("points", integer(options.num_points, 10, 100000000),
@@ -165,7 +160,6 @@ describeOptions(SamplersOptions& options)
      "number of threads of the gold standard and the presets")
     ("gold-seconds", positiveNumber(options.gold.max_seconds, unlimited),
      "CPU time after which a gold standard ends, even if it has not converged [s]")
-    ("cache", text(options.cache_folder), "folder of the gold standards")
     ("quick", io::flag(options.is_quick),
      "one scene (can), two seeds and 500 points, unless given");
   // clang-format on
@@ -282,7 +276,7 @@ void
 ProblemStudy::runPaperSteps()
 {
   std::set<double> steps;
-  for (const double step : options.step_sizes) {
+  for (const double step : {1e-3, 1e-4, 1e-5, 1e-6}) {
     steps.insert(step);
     steps.insert(step * paper_weight / problem.energy().weight());
   }
@@ -334,10 +328,11 @@ ProblemStudy::runMalaSteps(const Oracle& oracle)
 bool
 ProblemStudy::run()
 {
-  const GoldStandard gold = cachedGold(
-      problem, options.gold, options.cache_folder, [this](const std::string& line) {
-        report(line);
-      });
+  const GoldStandard gold =
+      cachedGold(problem,
+                 options.gold,
+                 io::folderOf(options.result.file),
+                 [this](const std::string& line) { report(line); });
   if (!gold.has_converged)
     report("the gold standard has NOT converged");
   gold_draws = pooled(gold.chains);

@@ -1,6 +1,7 @@
 #include "study/option_values.h"
 
 #include "io/folders.h"
+#include "io/numbers.h"
 #include "study/report_program.h"
 
 #include <boost/algorithm/string/join.hpp>
@@ -74,22 +75,12 @@ requireWithin(int value, int least, int most)
 }
 
 std::vector<std::string>
-split(const std::string& text, char separator)
-{
-  std::vector<std::string> items;
-  std::istringstream stream(text);
-  for (std::string item; std::getline(stream, item, separator);)
-    items.push_back(item);
-  return items;
-}
-
-std::vector<std::string>
 wordsOf(const std::string& list)
 {
   std::vector<std::string> words;
-  for (const std::string& word : split(list, ','))
-    if (std::find(words.begin(), words.end(), word) == words.end())
-      words.push_back(word);
+  for (const std::string_view word : io::splitAt(',', list))
+    if (!word.empty() && std::find(words.begin(), words.end(), word) == words.end())
+      words.emplace_back(word);
   return words;
 }
 

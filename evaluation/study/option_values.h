@@ -57,11 +57,7 @@ integer(Integer& value, int least, int most)
       });
 }
 
-/** \brief The pieces between separators; none of an empty text. */
-std::vector<std::string>
-split(const std::string& text, char separator);
-
-/** \brief The words between commas; what is there twice counts once. */
+/** \brief The words between commas, each once; empty ones do not count. */
 std::vector<std::string>
 wordsOf(const std::string& list);
 

@@ -31,7 +31,6 @@ struct TrajectoriesOptions {
   int num_scans = 100;
   int span = 3;
   double closure_distance = 1.0;
-  app::RobustLoss loss = app::RobustLoss::None;
   int num_threads = 0;
   ResultOptions result{"results/trajectories.csv"};
 };
@@ -257,11 +256,6 @@ describe(TrajectoriesOptions& options)
     ("span", integer(options.span, 1, 100), "scans before each to which it is registered")
     ("closure-distance", positiveNumber(options.closure_distance),
      "each fifth scan is also registered to the nearest one at least ten before it within this distance [m]")
-    ("robust-loss", taken("none", [&options](const std::string& name) {
-       if (!app::readChoice(name, options.loss))
-         io::refuseValue(name, app::namesOfChoices(options.loss));
-     }),
-     "how edges outside of their 95 % regions count: none (as their covariances say), huber, cauchy")
     ("threads", threads(options.num_threads), "registrations at a time; 0: as many as cores");
   // clang-format on
   addResultOptions(options.result, description, "CSV file of the trajectories");
@@ -298,7 +292,7 @@ runTrajectoriesCommand(int argc, const char* const* argv)
     for (RegisteredRecording& registered : recordings)
       registerAll(options, results, registered);
   }
-  const std::vector<TrajectoryRun> runs = trajectoriesOf(recordings, options.loss);
+  const std::vector<TrajectoryRun> runs = trajectoriesOf(recordings);
   std::string rows = headerOf<TrajectoryRun>() + '\n';
   for (const TrajectoryRun& run : runs)
     rows += rowOf(run) + '\n';

@@ -167,8 +167,7 @@ TrajectoryRun
 trajectoryOf(const std::vector<RegisteredRecording>& recordings,
              const RegisteredRecording& registered,
              const std::string& means,
-             const std::string& covariances,
-             app::RobustLoss loss)
+             const std::string& covariances)
 {
   const Recording& recording = registered.recording;
   TrajectoryRun run;
@@ -188,8 +187,8 @@ trajectoryOf(const std::vector<RegisteredRecording>& recordings,
   run.num_edges = static_cast<int>(edges.size());
   const std::vector<GraphEdge> odometry = odometryOf(registered);
   edges.insert(edges.begin(), odometry.begin(), odometry.end());
-  const app::OptimizedPoses optimized =
-      app::optimizedPoses(chained(edges, recording.poses.size()), edges, loss);
+  const app::OptimizedPoses optimized = app::optimizedPoses(
+      chained(edges, recording.poses.size()), edges, app::RobustLoss::None);
   run.score = scoreOf(optimized.poses, recording.poses);
   if (!optimized.complaint.empty())
     run.score.nees = run.score.nees_of_last = std::nan("");
@@ -228,7 +227,7 @@ scoreOf(const std::vector<app::GaussianPose>& estimate,
 }
 
 std::vector<TrajectoryRun>
-trajectoriesOf(const std::vector<RegisteredRecording>& recordings, app::RobustLoss loss)
+trajectoriesOf(const std::vector<RegisteredRecording>& recordings)
 {
   static const std::vector<std::pair<std::string, std::string>> combinations = {
       {"calibrated", "calibrated"},
@@ -241,7 +240,7 @@ trajectoriesOf(const std::vector<RegisteredRecording>& recordings, app::RobustLo
   std::vector<TrajectoryRun> runs;
   for (const RegisteredRecording& registered : recordings)
     for (const auto& [means, covariances] : combinations)
-      runs.push_back(trajectoryOf(recordings, registered, means, covariances, loss));
+      runs.push_back(trajectoryOf(recordings, registered, means, covariances));
   return runs;
 }
 

@@ -91,7 +91,6 @@ struct TrajectoryRun {
  * mean square of the errors of the edges that these means have in the other recordings
  * of the same kind, simulated or with poses of quality A and B. */
 std::vector<TrajectoryRun>
-trajectoriesOf(const std::vector<RegisteredRecording>& recordings,
-               app::RobustLoss loss);
+trajectoriesOf(const std::vector<RegisteredRecording>& recordings);
 
 } // namespace bayesian_icp::evaluate

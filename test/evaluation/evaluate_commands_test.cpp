@@ -78,7 +78,7 @@ TEST_F(EvaluateCommands, SamplersAreComparedWithOneGoldStandardEach)
   const auto numRuns = [this](const std::string& arguments, int exit_code) {
     const CommandResult result = run(
         "samplers --quick --samplers exact --seeds 1 --cells 0.005:300 --output a.csv "
-        "--cache . --data '" BAYESIAN_ICP_DATA_DIR "' " +
+        "--data '" BAYESIAN_ICP_DATA_DIR "' " +
         arguments);
     EXPECT_EQ(result.exit_code, exit_code) << result.output;
     EXPECT_EQ(count("\n  exact       1  ", result.output), 1) << result.output;
@@ -90,7 +90,7 @@ TEST_F(EvaluateCommands, SamplersAreComparedWithOneGoldStandardEach)
   // Kept: no round of a gold standard is told again, unless its file is cut off.
   const std::string again =
       "samplers --quick --samplers exact --seeds 1 --cells 0.005:300 --output a.csv "
-      "--cache . --points 200 --data '" BAYESIAN_ICP_DATA_DIR "'";
+      "--points 200 --data '" BAYESIAN_ICP_DATA_DIR "'";
   EXPECT_EQ(count("KL between runs", run(again).output), 0);
   for (const auto& entry : fs::directory_iterator(folder_))
     if (entry.path().extension() == ".cbor")
@@ -152,7 +152,6 @@ TEST_F(EvaluateCommands, BadOptionsExitWithTwoAndLeaveNothing)
         "--cells 1:0",
         "--particles 7",
         "--particles 9.5",
-        "--step-sizes 0",
         "--residual plane",
         "--gold-seconds 0",
         "--output ''"}},

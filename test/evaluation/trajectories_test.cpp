@@ -216,8 +216,7 @@ TEST(Trajectories, RightCovariancesMakeTheBestTrajectoriesAndSayHowGoodTheyAre)
     recordings.push_back(drawnRecording(k % 2 == 0 ? "a" : "b", std::uint64_t(k)));
   double nees_of_last = 0.0, cycles = 0.0;
   int num_better = 0;
-  const std::vector<TrajectoryRun> runs =
-      trajectoriesOf(recordings, app::RobustLoss::None);
+  const std::vector<TrajectoryRun> runs = trajectoriesOf(recordings);
   ASSERT_EQ(runs.size(), 7u * num_recordings);
   for (std::size_t k = 0; k < runs.size(); k += 7) {
     const TrajectoryRun &right = runs[k], &constant = runs[k + 1], &bold = runs[k + 5];
