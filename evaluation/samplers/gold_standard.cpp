@@ -10,6 +10,7 @@
 #include <iomanip>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -28,7 +29,7 @@ constexpr Eigen::Index max_kept_draws = 4000;
 
 /** Energies of the starts are this many temperatures above zero when cooling begins. */
 constexpr double hot_energy = 10.0;
-/** Of walks of mixed lengths, see GoldRun::advancedChain(). */
+/** Of walks of mixed lengths, see GoldRun::advanceChain(). */
 constexpr double best_walk_acceptance = 0.35;
 /** Optimal scale of a random walk in six dimensions (Roberts et al. 1997). */
 const double walk_scale = 2.38 / std::sqrt(6.0);
@@ -106,65 +107,44 @@ public:
     return draws_;
   }
 
-  /** Share of accepted mixture proposals in sample(), over all rounds. */
-  double
-  acceptance() const
-  {
-    return counts_.jumps == 0 ? 0.0
-                              : static_cast<double>(counts_.accepted_jumps) /
-                                    static_cast<double>(counts_.jumps);
-  }
-
 private:
-  /** Proposals made and accepted, of each kind. */
-  struct Counts {
-    long walks = 0, accepted_walks = 0, jumps = 0, accepted_jumps = 0;
-  };
-
   /** Positions after every second step of one stage. */
   std::vector<PoseMatrix>
   advance(int num_steps, double temperature)
   {
     const int num_rows = mixture_ ? num_steps / 2 : num_steps;
     std::vector<PoseMatrix> positions(chains_.size(), PoseMatrix(num_rows, 6));
-    std::vector<Counts> counts(chains_.size());
+    std::vector<long> num_accepted(chains_.size());
 #pragma omp parallel for num_threads(options_.num_threads) schedule(static)
     for (std::size_t i = 0; i < chains_.size(); ++i)
-      counts[i] = advancedChain(chains_[i], temperature, positions[i]);
-    for (const Counts& chain : counts) {
-      counts_.walks += chain.walks;
-      counts_.accepted_walks += chain.accepted_walks;
-      counts_.jumps += chain.jumps;
-      counts_.accepted_jumps += chain.accepted_jumps;
-    }
+      num_accepted[i] = advanceChain(chains_[i], temperature, positions[i]);
+    num_walks_ += static_cast<long>(chains_.size()) * num_rows;
+    num_accepted_ += std::accumulate(num_accepted.begin(), num_accepted.end(), 0L);
     return positions;
   }
 
-  Counts
-  advancedChain(MetropolisState& chain, double temperature, PoseMatrix& positions) const
+  /** \return how many walks were accepted */
+  long
+  advanceChain(MetropolisState& chain, double temperature, PoseMatrix& positions) const
   {
-    Counts counts;
-    for (Eigen::Index row = 0; row < positions.rows(); ++row) {
+    long num_accepted = 0;
+    for (auto position : positions.rowwise()) {
       // Short walks now and then: they are accepted where the density is rough.
       const double length = chain.random().uniform() < 0.5 ? 1.0 : 0.3;
-      ++counts.walks;
-      counts.accepted_walks +=
-          chain.walk(walk_scale_ * length * walk_factor_, temperature);
-      if (mixture_) {
-        ++counts.jumps;
-        counts.accepted_jumps += chain.jump(*mixture_);
-      }
-      positions.row(row) = chain.position().transpose();
+      num_accepted += chain.walk(walk_scale_ * length * walk_factor_, temperature);
+      if (mixture_)
+        chain.jump(*mixture_);
+      position = chain.position().transpose();
     }
-    return counts;
+    return num_accepted;
   }
 
   void
   learnWalk(const std::vector<PoseMatrix>& positions)
   {
-    const double acceptance = static_cast<double>(counts_.accepted_walks) /
-                              static_cast<double>(counts_.walks);
-    counts_ = Counts();
+    const double acceptance =
+        static_cast<double>(num_accepted_) / static_cast<double>(num_walks_);
+    num_accepted_ = num_walks_ = 0;
     walk_scale_ *= std::exp(2.0 * (acceptance - best_walk_acceptance));
     // Within the chains: modes that are apart do not widen it.
     Matrix6d covariance = Matrix6d::Zero();
@@ -183,7 +163,8 @@ private:
   double walk_scale_ = 1.0;
   std::shared_ptr<const TMixture> mixture_;
   std::vector<PoseMatrix> draws_;
-  Counts counts_;
+  /** Since the walk has learned. */
+  long num_walks_ = 0, num_accepted_ = 0;
 };
 
 void
@@ -241,7 +222,6 @@ judge(const std::vector<GoldRun>& runs, const GoldOptions& options, GoldStandard
   const Moments first = momentsOf(pooled(runs[0].draws()));
   const Moments second = momentsOf(pooled(runs[1].draws()));
   gold.kl_between_runs = std::max(gaussianKl(first, second), gaussianKl(second, first));
-  gold.acceptance = 0.5 * (runs[0].acceptance() + runs[1].acceptance());
   gold.has_converged = gold.rhat < options.max_rhat &&
                        gold.kl_between_runs <= options.max_kl &&
                        std::min(gold.bulk_ess, gold.tail_ess) >= options.min_ess;
@@ -253,8 +233,7 @@ describe(const GoldStandard& gold)
   std::ostringstream text;
   text << std::fixed << std::setprecision(4) << "R-hat " << gold.rhat
        << ", KL between runs " << gold.kl_between_runs << std::setprecision(0)
-       << ", ESS bulk " << gold.bulk_ess << " tail " << gold.tail_ess
-       << std::setprecision(2) << ", accepted " << gold.acceptance << ", "
+       << ", ESS bulk " << gold.bulk_ess << " tail " << gold.tail_ess << ", "
        << std::setprecision(1) << gold.seconds << " s";
   return text.str();
 }

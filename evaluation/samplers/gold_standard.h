@@ -42,8 +42,6 @@ struct GoldStandard {
   /** Smallest bulk and tail ESS of a coordinate, all chains together. */
   double bulk_ess = 0.0;
   double tail_ess = 0.0;
-  /** Share of mixture proposals that were accepted. */
-  double acceptance = 0.0;
   double seconds = 0.0;
   bool has_converged = false;
 };
