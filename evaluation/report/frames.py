@@ -6,7 +6,8 @@ import pandas as pd
 COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 UNITS = ("m", "m", "m", "rad", "rad", "rad")
 # Columns that are text, whatever they look like.
-WORDS = ("key", "gold_key", "pair", "method", "variant", "scene", "condition", "sampler", "notes", "inputs")
+WORDS = ("key", "gold_key", "pair", "method", "variant", "scene", "condition", "sampler", "notes", "inputs",
+         "recording", "quality", "means", "covariances", "vertices")  # fmt: skip
 
 
 def read(path):

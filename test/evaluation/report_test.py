@@ -63,6 +63,13 @@ class Numbers(unittest.TestCase):
         self.assertEqual(frames.share_of([True] * 3)[2], 1.0)
         self.assertEqual(frames.share_text(frames.share_of([])), "-")
 
+    def test_names_are_words_whatever_they_look_like(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "t.csv"
+            file.write_text("recording,scene,seed\n00,NA,01\n05,1e3,02\n")
+            table = frames.read(file)
+        self.assertEqual([list(table[c]) for c in table], [["00", "05"], ["NA", "1e3"], [1, 2]])
+
     def test_median_leaves_out_what_is_unknown(self):
         self.assertEqual(frames.median([4.0, np.nan, 1.0, 2.0, 8.0]), 3.0)
         self.assertTrue(np.isnan(frames.median([])))
