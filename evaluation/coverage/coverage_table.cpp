@@ -98,7 +98,7 @@ sequenceColumns()
   static const Columns columns = {
       {"\npairs", [](const CoverageSummary& s) { return std::to_string(s.num_runs); }},
       {"\nlost", [](const CoverageSummary& s) { return std::to_string(s.num_lost); }},
-      numberColumn("mean\nNEES/6", &CoverageSummary::anees, 2),
+      numberColumn("not lost\nNEES/6", &CoverageSummary::anees, 2),
       shareColumn(0),
       shareColumn(coverage_levels.size() - 1),
       numberColumn("mean\nlog p", &CoverageSummary::mean_log_score, 2),

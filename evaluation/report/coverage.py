@@ -16,7 +16,7 @@ HEADER = ["method", "valid / runs", "mean NEES/6"]
 HEADER += [f"truths within {100 * level:.0f} % [95 % interval]" for level in LEVELS]
 HEADER += ["log p", "energy score", "median error [mm]", "[deg]", "flagged [%]", "of those outside 95 % [%]"]  # fmt: skip
 HEADER += ["median time [s]", "queries"]
-SEQUENCE_HEADER = ["method", "pairs", "lost", "mean NEES/6", "truths within 50 %", "95 %", "log p"]
+SEQUENCE_HEADER = ["method", "pairs", "lost", "mean NEES/6 of those not lost", "truths within 50 %", "95 %", "log p"]
 SEQUENCE_HEADER += ["median error [mm]", "[mrad]", "alarms / good", "misses / bad", "median time [s]"]
 
 
@@ -147,7 +147,7 @@ def plot_anees(output, name, methods, cells):
     axis.axhline(1, color="gray", linewidth=1)
     axis.set(yscale="log", ylabel="mean NEES / 6")
     axis.set_xticks(range(len(cells)), [" ".join(cell) for cell in cells], rotation=60, ha="right")
-    caption = "Mean NEES / 6 of every scene and condition; 1 is right, above it too narrow."
+    caption = "Mean NEES / 6 of every scene and condition; 1 is right, above it too narrow. Lost pairs are left out."
     return page.save(output, f"{name}_anees", caption, figure, key_of=axis)
 
 

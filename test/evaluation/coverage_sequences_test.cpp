@@ -263,7 +263,8 @@ TEST_F(SequencesTest, TheCommandCountsLostPairs)
 {
   const CommandResult result = run("--methods calibrated,gicp,icp --output a.csv");
   ASSERT_EQ(result.exit_code, 0) << result.output;
-  for (const char* piece : {"lost", "\nhall, B step 1 guess-sd 0.1 0.03 seed 1\n"})
+  for (const char* piece :
+       {"  not lost  ", "\nhall, B step 1 guess-sd 0.1 0.03 seed 1\n"})
     expectIn(result.output, piece);
   const Rows rows = rowsOf(folder_ / "a.csv");
   ASSERT_EQ(rows.size(), 10u);
