@@ -48,10 +48,12 @@ pointsOf(const pcl::PCLPointCloud2& message, const std::string& what)
     throw Refusal(the_cloud + "has no points");
   if (message.is_bigendian != 0)
     throw Refusal(the_cloud + "has is_bigendian set, which is not supported");
-  if (message.data.size() != num_points * message.point_step)
+  // A product of the three could overflow.
+  if (message.point_step == 0 || message.data.size() % message.point_step != 0 ||
+      message.data.size() / message.point_step != num_points)
     throw Refusal(the_cloud + "has " + std::to_string(message.data.size()) +
-                  " bytes of data, but width, height and point_step make " +
-                  std::to_string(num_points * message.point_step));
+                  " bytes of data, but should have " + std::to_string(num_points) +
+                  " points of " + std::to_string(message.point_step) + " bytes");
   const io::FieldTriple xyz(message, {"x", "y", "z"});
   if (!xyz.isComplete())
     throw Refusal(the_cloud + "has no floating-point fields x, y and z");
@@ -70,7 +72,7 @@ pointsOf(const pcl::PCLPointCloud2& message, const std::string& what)
 double
 secondsBetween(std::int64_t a_ns, std::int64_t b_ns)
 {
-  return (static_cast<double>(a_ns) - static_cast<double>(b_ns)) / ns_per_s;
+  return static_cast<double>(a_ns - b_ns) / ns_per_s;
 }
 
 std::string

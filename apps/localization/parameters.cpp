@@ -16,8 +16,17 @@ namespace po = boost::program_options;
 namespace {
 
 /** What messages state, or what a localization has no use for. */
-constexpr std::array<const char*, 6> excluded = {
-    "guess", "mean", "normalize-cloud", "prior-frame", "prior-mean", "prior-variance"};
+constexpr std::array<const char*, 7> excluded = {"guess",
+                                                 "iterations",
+                                                 "mean",
+                                                 "normalize-cloud",
+                                                 "prior-frame",
+                                                 "prior-mean",
+                                                 "prior-variance"};
+
+/** With preset calibrated they are of ICP, which does not run. */
+constexpr std::array<const char*, 3> not_of_calibrated = {
+    "max-distance", "one-to-one", "reciprocal"};
 
 /** One parameter as an argument of a command line; empty if it is false. */
 std::string
@@ -76,6 +85,9 @@ readParameters(const std::map<std::string, std::string>& parameters)
   io::takeOptions(given, own);
   std::string note;
   options.settings = settingsFrom(given, options.settings, note);
+  for (const char* name : not_of_calibrated)
+    if (options.settings.options.preset == Preset::Calibrated && given.count(name) > 0)
+      throw io::UsageError(std::string(name) + " has no effect with preset calibrated");
   if (!note.empty())
     std::cerr << note << '\n';
   const std::string complaint = options.validate();

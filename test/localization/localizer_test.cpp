@@ -156,8 +156,10 @@ TEST_F(LocalizerTest, TakesThePriorThatIsNearestInTime)
     localizer_.addPrior(far_away);
     localizer_.addPrior(somePrior());
   }
-  far_away.stamp_ns = stamp_ns + second / 5;
-  localizer_.addPrior(far_away);
+  for (const std::int64_t stamp : {stamp_ns + second / 5, somePrior().stamp_ns - 100}) {
+    far_away.stamp_ns = stamp;
+    localizer_.addPrior(far_away);
+  }
   expectSame(localizer_.localize(*cloud_, stamp_ns), localized(*cloud_));
 }
 
@@ -186,6 +188,15 @@ TEST_F(LocalizerTest, RefusesCloudsThatAreNoClouds)
     bad.data.clear();
   });
   expect("bytes of data", [](auto& bad) { bad.data.pop_back(); });
+  expect("bytes of data", [](auto& bad) { // whose product is 0 modulo 2^64
+    bad.width = bad.height = 1U << 30U;
+    bad.point_step = 16;
+    bad.data.clear();
+  });
+  expect("points of 0 bytes", [](auto& bad) {
+    bad.point_step = 0;
+    bad.data.clear();
+  });
   expect("no floating-point fields x, y and z",
          [](auto& bad) { bad.fields[2].name = "intensity"; });
   expect("is_bigendian", [](auto& bad) { bad.is_bigendian = 1; });
@@ -299,6 +310,11 @@ TEST(LocalizerParameters, ThatAreWrongAreRefusedByName)
   expectRefusal("seed", "-1", "seed");
   expectRefusal("preset", "best", "best");
   expectRefusal("sigma", "1", "sigma"); // not one of preset calibrated
+  // What applies to ICP only, which does not run.
+  expectRefusal("iterations", "9", "no parameter 'iterations'");
+  expectRefusal("max_distance", "1", "max-distance has no effect");
+  expectRefusal("one_to_one", "true", "one-to-one has no effect");
+  expectRefusal("reciprocal", "true", "reciprocal has no effect");
   expectRefusal("reciprocal", "1", "true or false");
   expectRefusal("max_prior_age_s", "-1", "max_prior_age");
   expectRefusal("map_frame", "", "map_frame");
