@@ -2,6 +2,8 @@
 
 #include "io/input_file.h"
 
+#include <vector>
+
 namespace bayesian_icp::io {
 
 using nlohmann::json;
@@ -29,15 +31,24 @@ json
 readJson(const std::string& name, std::uint64_t max_size)
 {
   const std::string text = readText(name, max_size);
-  const auto limit_depth = [&name](int depth, json::parse_event_t, const json&) {
+  std::vector<std::set<std::string>> keys; // of each object that is open
+  const auto check = [&](int depth, json::parse_event_t event, const json& parsed) {
     if (depth > max_json_depth)
       throw FileError(name,
                       "broken JSON: nested more than " +
                           std::to_string(max_json_depth) + " levels deep");
+    if (event == json::parse_event_t::object_start)
+      keys.emplace_back();
+    if (event == json::parse_event_t::object_end)
+      keys.pop_back();
+    if (event == json::parse_event_t::key && !keys.back().insert(parsed).second)
+      throw FileError(name,
+                      "broken JSON: an object has the key " +
+                          inQuotes(parsed.get<std::string>()) + " twice");
     return true;
   };
   try {
-    return json::parse(text, limit_depth);
+    return json::parse(text, check);
   }
   catch (const json::exception& error) {
     throw FileError(name, "broken JSON: " + reasonOf(error));

@@ -190,6 +190,7 @@ class BatchRefused(BatchTest):
         good = {"name": "a", "source": "s.pcd", "target": "t.pcd"}
         for content, *parts in (
             ("[", "broken JSON"),
+            ('[{"name": "a", "source": "s.pcd", "source": "t.pcd"}]', "'source' twice"),
             ("{}", "not a JSON list"),
             ("[1]", "pair 1: is '1', but must be an object"),
             ([{**good, "name": "../up"}], "pair 1", "folder"),
