@@ -114,7 +114,7 @@ describeOptions(Request& request)
   });
   // clang-format off
   general.add_options()
-    ("output,o", io::text("DIR", request.output_folder),
+    ("output,o", io::fileName("DIR", request.output_folder),
      "Folder to write to; it is created if it is missing. (required)")
     ("list-scenes", "List the scenes, with the motions that each leaves unobservable.");
   views.add_options()

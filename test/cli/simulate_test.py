@@ -103,6 +103,7 @@ class Simulate(ToolTest):
             with self.subTest(words=words):
                 self.assert_refused(2, call(SIMULATE, *words.split(), "-o", folder))
         self.assert_refused(2, call(SIMULATE, "--scene", "can"), "--output")
+        self.assert_refused(2, call(SIMULATE, "--scene", "can", "-o", ""), "name is empty")
         self.assertFalse(folder.exists())
 
     def test_same_bytes_for_any_number_of_threads(self):
