@@ -21,6 +21,10 @@ constexpr double min_distance_to_gimbal_lock = 1e-2;
 /** Least eigenvalue of a correlation matrix, for rounding of the numbers in messages.
  */
 constexpr double least_eigenvalue = -1e-6;
+/** Largest difference between a correlation and that across the diagonal. */
+constexpr double symmetry_tolerance = 1e-3;
+/** Of covariances, by their largest variance. */
+constexpr double rounding = 1e-12;
 
 Vector6d
 meanOf(const StatedPose& pose)
@@ -71,6 +75,12 @@ checkedCovariance(const Matrix6d& stated, const PriorFloor& floor)
       throw Refusal("the prior's variance of " + std::string(axes[k]) +
                     " is 0, but must be positive; the parameters prior_floor_m and "
                     "prior_floor_rad set minimum standard deviations");
+  const Vector6d deviations = covariance.diagonal().cwiseSqrt();
+  const Eigen::Array<double, 6, 6> largest =
+      symmetry_tolerance * deviations * deviations.transpose();
+  const double rounded = rounding * covariance.diagonal().maxCoeff();
+  if (((stated - stated.transpose()).array() > largest + rounded).any())
+    throw Refusal("the prior's covariance is not symmetric");
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(correlationsOf(covariance),
                                                        Eigen::EigenvaluesOnly);
   if (!(solver.eigenvalues()[0] >= least_eigenvalue))

@@ -160,6 +160,9 @@ TEST(StatedPose, ThatCannotBeUsedIsRefusedWithTheReason)
   bad(0, 1) = bad(1, 0) = 0.02;
   expectRefusal(stated(somePose(), bad), "not positive semi-definite");
   bad = good;
+  bad(0, 1) = 0.005; // the upper triangle alone
+  expectRefusal(stated(somePose(), bad), "not symmetric");
+  bad = good;
   bad(2, 3) = std::numeric_limits<double>::quiet_NaN();
   expectRefusal(stated(somePose(), bad), "covariance is not finite");
 
