@@ -1,4 +1,5 @@
 #include "calibrated/calibrated_report.h"
+#include "calibrated/flat_clouds.h"
 #include "coverage/coverage_methods.h"
 #include "register/report_text.h"
 #include "study/text_table.h"
@@ -57,6 +58,16 @@ struct Registration {
   , prior(priorOf(problem))
   {}
 
+  CalibratedEstimate
+  estimate() const
+  {
+    const HeldPrior held = heldInPlane(prior, source.model, target.model);
+    CalibratedEstimate result = estimateCalibrated(scorer, held);
+    if (held.plane)
+      setPrior(prior, result);
+    return result;
+  }
+
   PreparedSurface source, target;
   SurfaceScorer scorer;
   Prior prior;
@@ -80,16 +91,14 @@ resultOf(const CalibratedEstimate& estimate)
 CalibratedEstimate
 calibratedEstimateOf(const CoverageCase& problem)
 {
-  const Registration registration(problem);
-  return estimateCalibrated(registration.scorer, registration.prior);
+  return Registration(problem).estimate();
 }
 
 MethodResult
 runCalibrated(const CoverageCase& problem)
 {
   const Registration registration(problem);
-  const CalibratedEstimate estimate =
-      estimateCalibrated(registration.scorer, registration.prior);
+  const CalibratedEstimate estimate = registration.estimate();
   MethodResult result = resultOf(estimate);
   result.notes = notesOf(dataReportOf(estimate, registration.scorer.model()));
   result.num_queries = estimate.num_queries;

@@ -113,11 +113,19 @@ planScans(const CoverageSetup& setup, const std::string& condition, Random& rand
 ScanPlan
 planDrive(const CoverageSetup& setup, const std::string& condition, Random& random)
 {
-  if (std::count(lidar_conditions.begin(), lidar_conditions.end(), condition) == 0)
+  const auto isOneOf = [&](const std::vector<std::string>& conditions) {
+    return std::count(conditions.begin(), conditions.end(), condition) > 0;
+  };
+  if (!isOneOf(lidar_conditions) && !isOneOf(further_lidar_conditions))
     refuseCondition(condition);
   const bool is_sweep = condition == "lidar64_sweep";
   SensorOptions sensor = simulator::carLidar(
       condition == "lidar16" ? 16 : (condition == "lidar32" ? 32 : 64));
+  if (condition == "lidar1") {
+    sensor.lidar.rings = 1;
+    sensor.lidar.min_elevation = sensor.lidar.max_elevation = 0.0;
+    sensor.lidar.azimuth_step = 0.25;
+  }
   sensor.lidar.sensor_seed = random.index(std::size_t{1} << 62);
   const DrivenViews views = drivenViews(setup, random);
   ScanPlan plan{sensor, sensor, views.source, views.target};
@@ -215,6 +223,10 @@ makeCoverageCase(const std::string& scene,
   };
   made.target = scan(plan.target_sensor, target_pose, 0);
   made.source = scan(plan.source_sensor, source_pose, 1);
+  if (made.target.cols() == 0 || made.source.cols() == 0)
+    throw std::invalid_argument("scene '" + scene +
+                                "' has nothing that the sensor of '" + condition +
+                                "' sees");
   if (plan.lost_part > 0.0)
     made.target =
         withoutLostPart(made.target, made.source, target_pose, plan.lost_part, random);

@@ -49,7 +49,12 @@ inline const std::vector<std::string> further_conditions = {
 inline const std::vector<std::string> lidar_conditions = {
     "lidar16", "lidar32", "lidar64", "lidar64_sweep"};
 
-/** \brief Simulate a case: a scene of lidar_scenes under one of lidar_conditions, or
+/** \brief Conditions of lidar_scenes that a study has only if it is told to.
+ *
+ * - lidar1: a 2-D laser scanner, one level ring with a ray every 0.25 degrees. */
+inline const std::vector<std::string> further_lidar_conditions = {"lidar1"};
+
+/** \brief Simulate a case: a scene of lidar_scenes under one of its conditions, or
  * another one under one of coverage_conditions or further_conditions; all of it
  * depends on the three arguments only. The target frame is the scene's world frame. The
  * true pose is drawn from the prior (angles from a Gaussian), and the source is not

@@ -105,7 +105,7 @@ describeOptions(CoverageOptions& options)
      "moves during each scan). The default is all conditions of the scenes except far "
      "(the true pose is 1 m and 0.8 rad off, and the prior is as wide), "
      "points_quarter, points_x4, points_x16 and points_x64 (both clouds have that many "
-     "times the points)")
+     "times the points), and lidar1 (a 2-D laser scanner)")
     ("methods", list(options.methods),
      ("methods, separated by commas; the default is all that have a name. Preset exact "
       "is exact:RESIDUAL:STEPS:SIGMA:N:POINTS, with sigma [m], N effective points and "
@@ -221,9 +221,10 @@ simulatedOffer(const CoverageOptions& options)
 {
   Offer offer;
   offer.seeds = seedsOf(options);
-  offer.sets = {{"tuned", tunedScenes(), coverage_conditions, further_conditions, true},
-                {"new", newScenes(), coverage_conditions, further_conditions, true},
-                {"lidar", lidar_scenes, lidar_conditions, {}, false}};
+  offer.sets = {
+      {"tuned", tunedScenes(), coverage_conditions, further_conditions, true},
+      {"new", newScenes(), coverage_conditions, further_conditions, true},
+      {"lidar", lidar_scenes, lidar_conditions, further_lidar_conditions, false}};
   offer.make_case = [](const CoverageCaseName& name) {
     return makeCoverageCase(name.scene, name.condition, name.seed);
   };

@@ -5,9 +5,11 @@
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibrated_report.h"
 #include "calibrated/draws/calibrated_draws.h"
+#include "calibrated/flat_clouds.h"
 #include "calibrated/modes/calibrated_modes.h"
 #include "summary/estimates.h"
 
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp {
@@ -70,6 +72,7 @@ whatThePriorHolds(const std::vector<DataDirection>& directions)
 PosteriorEstimate
 estimateAndDraw(const SurfaceScorer& scorer,
                 const Prior& prior,
+                const HeldPrior& held,
                 const Options& options,
                 const ProgressCallback& progress)
 {
@@ -78,8 +81,8 @@ estimateAndDraw(const SurfaceScorer& scorer,
   search.estimate.num_mode_points = options.calibrated.num_mode_points;
   search.estimate.num_threads = options.chains.num_threads;
   // 3 to 7, in estimateCalibrated() for each mode.
-  const std::vector<CalibratedMode> modes = calibratedModes(scorer, prior, search);
-  const CalibratedEstimate& heaviest = modes.front().estimate;
+  const std::vector<CalibratedMode> modes = calibratedModes(scorer, held, search);
+  CalibratedEstimate heaviest = modes.front().estimate;
   const std::string complaint = complaintAbout(heaviest);
   if (!complaint.empty())
     return failure(Status::TooFewCorrespondences, complaint);
@@ -87,10 +90,13 @@ estimateAndDraw(const SurfaceScorer& scorer,
     return failure(Status::Cancelled, "interrupted before the first draw");
 
   // 8: draws.
-  PosteriorEstimate result = estimateOf(
-      sampleCalibrated(
-          scoresOf(scorer), prior, modes, options.calibrated, options.chains, progress),
-      prior);
+  ChainSet chains = sampleCalibrated(
+      scoresOf(scorer), held, modes, options.calibrated, options.chains, progress);
+  if (held.plane) {
+    addMotionOutOfPlane(prior, held, options.chains.seed, chains);
+    setPrior(prior, heaviest);
+  }
+  PosteriorEstimate result = estimateOf(std::move(chains), prior);
   // 9: report.
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";
@@ -120,16 +126,22 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
   const PreparedSurface& target = target_surface();
   if (!target.complaint.empty())
     return failure(target.status, target.complaint);
+  const PreparedSurface& source = source_surface();
+  if (target.model.planeNormal() && !source.model.planeNormal())
+    return failure(Status::TooFewCorrespondences,
+                   "the target lies in a plane, and the source does not: there is no "
+                   "surface to compare its points with");
   // 2: what the points of both clouds say.
   const SurfaceScorer scorer = scorerOf(source_points,
-                                        source_surface(),
+                                        source,
                                         target_points,
                                         target,
                                         options.calibrated.max_source_points,
                                         options.chains.seed,
                                         options.chains.num_threads);
   const Prior prior = priorOf(options, initial_pose, source_points);
-  return estimateAndDraw(scorer, prior, options, progress);
+  return estimateAndDraw(
+      scorer, prior, heldInPlane(prior, source.model, target.model), options, progress);
 }
 
 } // namespace bayesian_icp

@@ -55,6 +55,10 @@ constexpr double min_step_to_noise = 0.5;
  * direction would not be turned to follow the surface. */
 constexpr double smallest_information_share = 0.2;
 
+/** Variance of the score along motions that flat clouds cannot show, in units of the
+ * prior's precision: above rounding, and far below all others. */
+constexpr double flat_share_of_prior = 1e-9;
+
 /** Along a free motion the score is as unknown as the axis. Its variance grows with the
  * square of the motion, up to this number of squared steps, where points meet new
  * patches. */
@@ -93,7 +97,7 @@ struct Ends {
  * most the source's root mean square radius, because a small body would only see a
  * blur. */
 double
-startScale(const Prior& prior, const SurfaceScorer& scorer)
+startScale(const HeldPrior& prior, const SurfaceScorer& scorer)
 {
   const double radius = radiusOf(displacementMetric(scorer, Isometry3d::Identity()));
   return std::min(radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
@@ -102,7 +106,7 @@ startScale(const Prior& prior, const SurfaceScorer& scorer)
 
 Ends
 followStarts(const SurfaceScorer& scorer,
-             const Prior& prior,
+             const HeldPrior& prior,
              const EstimateOptions& options,
              const Isometry3d* start)
 {
@@ -136,7 +140,7 @@ followStarts(const SurfaceScorer& scorer,
 
 RobustFit
 fitOnAllPoints(const SurfaceScorer& scorer,
-               const Prior& prior,
+               const HeldPrior& prior,
                const Isometry3d& start,
                const Matrix6d& hold = Matrix6d::Zero())
 {
@@ -150,7 +154,7 @@ fitOnAllPoints(const SurfaceScorer& scorer,
 /** Follow the ends on more points. Ends that are one place, to within the target's
  * noise, are followed once. */
 void
-followEnds(const SurfaceScorer& scorer, const Prior& prior, Ends& ends)
+followEnds(const SurfaceScorer& scorer, const HeldPrior& prior, Ends& ends)
 {
   const auto follow = [&](RobustFit& end) {
     end = fitOnAllPoints(scorer, prior, end.pose);
@@ -235,7 +239,7 @@ finish(CalibratedEstimate& e)
 
 /** The estimate with everything that is evaluated at the mode. */
 CalibratedEstimate
-atMode(const SurfaceScorer& scorer, const Prior& prior, const RobustFit& mode)
+atMode(const SurfaceScorer& scorer, const HeldPrior& prior, const RobustFit& mode)
 {
   CalibratedEstimate e;
   e.mode = mode.pose;
@@ -265,15 +269,22 @@ debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
   return debited;
 }
 
-/** J of the points of \p scorer at an estimate's mode. */
+/** J of the points of \p scorer at an estimate's mode. Scores are exactly zero along
+ * motions out of the plane of flat clouds. The fraction of the prior makes J regular
+ * there, and their information zero. */
 ScoreCovariance
 scoreCovarianceAt(const CalibratedEstimate& e,
                   const SurfaceScorer& scorer,
+                  const HeldPrior& prior,
                   int num_threads)
 {
-  return scoreCovariance(activeScores(e.scores, scorer.pointsAt(e.mode)),
-                         e.residual_scale * e.residual_scale * e.prior.precision,
-                         num_threads);
+  const Matrix6d fit_precision =
+      e.residual_scale * e.residual_scale * e.prior.precision;
+  ScoreCovariance J = scoreCovariance(
+      activeScores(e.scores, scorer.pointsAt(e.mode)), fit_precision, num_threads);
+  if (prior.plane)
+    J.covariance += flat_share_of_prior * fit_precision;
+  return J;
 }
 
 /** Measure rounds of secants, each along the axes found by the round before. */
@@ -303,20 +314,20 @@ measureCurvature(const SurfaceScorer& scorer,
 /** The estimate about one mode. */
 CalibratedEstimate
 estimateAt(const SurfaceScorer& scorer,
-           const Prior& prior,
+           const HeldPrior& prior,
            const EstimateOptions& options,
            const RobustFit& mode)
 {
   CalibratedEstimate e = atMode(scorer, prior, mode);
   // 4: J.
-  const ScoreCovariance J = scoreCovarianceAt(e, scorer, options.num_threads);
+  const ScoreCovariance J = scoreCovarianceAt(e, scorer, prior, options.num_threads);
   e.kappa_48 = J.kappa_48;
   e.kappa_inf = J.kappa_inf;
   // 5: H; 6: what noise explains of it, and what is free; 7: mean and covariance.
   const SurfaceScorer first = scorer.ofFirstOfBoth(options.num_curvature_points);
   CalibratedEstimate of_first = atMode(first, prior, mode);
   const ScoreCovariance J_first =
-      scoreCovarianceAt(of_first, first, options.num_threads);
+      scoreCovarianceAt(of_first, first, prior, options.num_threads);
   const Curvature curvature =
       measureCurvature(first, J_first.covariance, options, of_first);
   const double num_ratio =
@@ -374,7 +385,7 @@ isFarFromMean(const CalibratedEstimate& e)
  * falsely, and the other motions are wrong there. \return whether it has moved */
 bool
 moveToMean(const SurfaceScorer& scorer,
-           const Prior& prior,
+           const HeldPrior& prior,
            const EstimateOptions& options,
            bool last,
            CalibratedEstimate& e)
@@ -402,6 +413,13 @@ moveToMean(const SurfaceScorer& scorer,
 }
 
 } // namespace
+
+void
+setPrior(const Prior& prior, CalibratedEstimate& estimate)
+{
+  estimate.prior = twistPrior(prior, estimate.mode, estimate.centre);
+  finish(estimate);
+}
 
 Matrix3Xd
 evenPoints(const Matrix3Xd& points,
@@ -447,24 +465,29 @@ scorerOf(const Matrix3Xd& source_points,
          std::uint64_t seed,
          int num_threads)
 {
+  const bool are_both_compared =
+      source.complaint.empty() &&
+      source.model.planeNormal().has_value() == target.model.planeNormal().has_value();
   Matrix3Xd of_source, of_target;
   forEachPiece(2, num_threads, [&](std::ptrdiff_t cloud) {
     if (cloud == 0)
       of_source =
           evenPoints(source_points, source.columns, target.model, max_points, seed);
-    else if (source.complaint.empty())
+    else if (are_both_compared)
       of_target =
           evenPoints(target_points, target.columns, source.model, max_points, seed);
   });
   SurfaceScorer scorer(of_source, target.model, num_threads);
-  if (source.complaint.empty())
+  if (source.model.planeNormal() && !target.model.planeNormal())
+    scorer.setRayPlane(*source.model.planeNormal());
+  if (are_both_compared)
     scorer.addTargetPoints(of_target, source.model);
   return scorer;
 }
 
 CalibratedEstimate
 estimateCalibrated(const SurfaceScorer& scorer,
-                   const Prior& prior,
+                   const HeldPrior& prior,
                    const EstimateOptions& options,
                    const Isometry3d* start)
 {

@@ -102,8 +102,8 @@ evenPoints(const Eigen::Matrix3Xd& points,
            std::uint64_t seed);
 
 /** \brief Scorer of evenPoints() of each cloud against the surface of the other, of
- * those that PreparedSurface::columns names. If the source has no usable surface, only
- * source points are compared, with the target's surface.
+ * those that PreparedSurface::columns names. If the source has no usable surface, or if
+ * it alone lies in a plane, only source points are compared, with the target's surface.
  *
  * \param[in] source_points 3 x n [m]
  * \param[in] source surface of these; must outlive the scorer
@@ -130,8 +130,13 @@ scorerOf(const Eigen::Matrix3Xd& source_points,
  * \param[in] start single start in place of the two; may be null */
 CalibratedEstimate
 estimateCalibrated(const SurfaceScorer& scorer,
-                   const Prior& prior,
+                   const HeldPrior& prior,
                    const EstimateOptions& options = EstimateOptions(),
                    const Eigen::Isometry3d* start = nullptr);
+
+/** \brief Give an estimate another prior. Covariance and mean follow, and the mode
+ * stays. */
+void
+setPrior(const Prior& prior, CalibratedEstimate& estimate);
 
 } // namespace bayesian_icp

@@ -35,7 +35,7 @@ bool
 turnDirection(int k,
               double length,
               const SurfaceScorer& scorer,
-              const Prior& prior,
+              const HeldPrior& prior,
               double misfit,
               int num_threads,
               CalibratedEstimate& e)
@@ -78,7 +78,7 @@ holdOfFree(const CalibratedEstimate& estimate, double tolerance)
 
 void
 turnFreeDirections(const SurfaceScorer& scorer,
-                   const Prior& prior,
+                   const HeldPrior& prior,
                    double misfit,
                    int num_threads,
                    CalibratedEstimate& estimate)

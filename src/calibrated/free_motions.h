@@ -25,7 +25,7 @@ holdOfFree(const CalibratedEstimate& estimate, double tolerance);
  *                keep their unit displacement */
 void
 turnFreeDirections(const SurfaceScorer& scorer,
-                   const Prior& prior,
+                   const HeldPrior& prior,
                    double misfit,
                    int num_threads,
                    CalibratedEstimate& estimate);

@@ -32,7 +32,7 @@ angleRates(const Vector6d& pose)
 
 /** The pose, with those angles that the prior prefers of two triples. */
 Vector6d
-preferredPose(const Prior& prior, const Isometry3d& T_target_source)
+preferredPose(const HeldPrior& prior, const Isometry3d& T_target_source)
 {
   constexpr double pi = 3.14159265358979323846;
   const Vector6d pose = poseOf(T_target_source.matrix());
@@ -51,7 +51,7 @@ struct PriorDeviation {
   /** d(deviation) / d(xi). */
   Matrix6d rates = Matrix6d::Identity();
 
-  PriorDeviation(const Prior& prior,
+  PriorDeviation(const HeldPrior& prior,
                  const Isometry3d& T_target_source,
                  const Vector3d& centre)
   {
@@ -64,12 +64,36 @@ struct PriorDeviation {
   }
 
   Vector6d
-  gradient(const Prior& prior) const
+  gradient(const HeldPrior& prior) const
   {
     Vector6d slope = deviation.cwiseQuotient(prior.variance());
     for (int k = 3; k < 6; ++k)
       slope[k] = std::sin(deviation[k]) / prior.variance()[k];
     return rates.transpose() * slope;
+  }
+};
+
+/** Deviation of a pose from a plane in standard deviations: the distance of the point,
+ * and the sine of the angle. */
+struct PlaneDeviation {
+  Eigen::Vector4d deviation;
+  /** d(deviation) / d(xi). */
+  Eigen::Matrix<double, 4, 6> rates = Eigen::Matrix<double, 4, 6>::Zero();
+
+  PlaneDeviation(const PlaneHold& plane,
+                 const Isometry3d& T_target_source,
+                 const Vector3d& centre)
+  {
+    const Vector3d& normal = plane.target_normal;
+    const Vector3d point = T_target_source * plane.source_point;
+    const Vector3d tilted = T_target_source.linear() * plane.source_normal;
+    deviation << normal.dot(point - plane.target_point) / plane.distance_sd,
+        normal.cross(tilted) / plane.angle_sd;
+    rates.row(0) << normal.transpose(), (point - centre).cross(normal).transpose();
+    rates.row(0) /= plane.distance_sd;
+    rates.bottomRightCorner<3, 3>() =
+        (normal.dot(tilted) * Matrix3d::Identity() - tilted * normal.transpose()) /
+        plane.angle_sd;
   }
 };
 
@@ -97,21 +121,30 @@ isometryOf(const Vector6d& pose)
 }
 
 double
-twistPriorEnergy(const Prior& prior, const Isometry3d& T_target_source)
+twistPriorEnergy(const HeldPrior& prior, const Isometry3d& T_target_source)
 {
-  return prior.energy(preferredPose(prior, T_target_source));
+  double energy = prior.energy(preferredPose(prior, T_target_source));
+  if (prior.plane)
+    energy += 0.5 * PlaneDeviation(*prior.plane, T_target_source, Vector3d::Zero())
+                        .deviation.squaredNorm();
+  return energy;
 }
 
 Vector6d
-twistPriorGradient(const Prior& prior,
+twistPriorGradient(const HeldPrior& prior,
                    const Isometry3d& T_target_source,
                    const Vector3d& centre)
 {
-  return PriorDeviation(prior, T_target_source, centre).gradient(prior);
+  Vector6d gradient = PriorDeviation(prior, T_target_source, centre).gradient(prior);
+  if (prior.plane) {
+    const PlaneDeviation at(*prior.plane, T_target_source, centre);
+    gradient += at.rates.transpose() * at.deviation;
+  }
+  return gradient;
 }
 
 TwistPrior
-twistPrior(const Prior& prior,
+twistPrior(const HeldPrior& prior,
            const Isometry3d& T_target_source,
            const Vector3d& centre)
 {
@@ -119,7 +152,11 @@ twistPrior(const Prior& prior,
   TwistPrior result;
   result.precision =
       at.rates.transpose() * prior.variance().cwiseInverse().asDiagonal() * at.rates;
-  result.gradient = at.gradient(prior);
+  result.gradient = twistPriorGradient(prior, T_target_source, centre);
+  if (prior.plane) {
+    const PlaneDeviation out(*prior.plane, T_target_source, centre);
+    result.precision += out.rates.transpose() * out.rates;
+  }
   Vector6d wrapped = at.deviation;
   for (int k = 3; k < 6; ++k)
     wrapped[k] = wrapAngle(wrapped[k]);

@@ -13,6 +13,8 @@
 
 #include <Eigen/Geometry>
 
+#include <optional>
+
 namespace bayesian_icp {
 
 /** \brief exp(xi) T about \p centre. */
@@ -31,6 +33,31 @@ twistBetween(const Eigen::Isometry3d& from,
 Eigen::Isometry3d
 isometryOf(const Vector6d& pose);
 
+/** \brief A plane of the source that stays in one of the target. */
+struct PlaneHold {
+  /** A point of each plane and its unit normal, in the frame of its cloud [m]. */
+  Eigen::Vector3d source_point, source_normal, target_point, target_normal;
+  /** Standard deviation of the source's point from the target's plane [m], and of the
+   * angle between the planes [rad]. */
+  double distance_sd, angle_sd;
+};
+
+/** \brief A prior, and the plane in which it holds the source, if any. */
+struct HeldPrior : Prior {
+  HeldPrior(const Prior& prior) : Prior(prior) {}
+
+  /** \brief The same hold with another mean and variance. */
+  HeldPrior
+  with(const Vector6d& mean, const Vector6d& variance) const
+  {
+    HeldPrior other(Prior(mean, variance, referencePoint()));
+    other.plane = plane;
+    return other;
+  }
+
+  std::optional<PlaneHold> plane;
+};
+
 /** \brief The prior near a pose, in twists about a centre. */
 struct TwistPrior {
   /** Positive semidefinite [1/m^2, 1/rad^2]. */
@@ -44,7 +71,7 @@ struct TwistPrior {
 /** \brief \p prior at \p T_target_source: the precision is the Hessian at the prior's
  * mean, carried over by the derivative of (Prior::deviation) with respect to xi. */
 TwistPrior
-twistPrior(const Prior& prior,
+twistPrior(const HeldPrior& prior,
            const Eigen::Isometry3d& T_target_source,
            const Eigen::Vector3d& centre);
 
@@ -52,11 +79,11 @@ twistPrior(const Prior& prior,
  * triples of angles of the rotation it takes the one that the prior prefers, so it is
  * smooth where a free pitch passes 90 degrees. */
 double
-twistPriorEnergy(const Prior& prior, const Eigen::Isometry3d& T_target_source);
+twistPriorEnergy(const HeldPrior& prior, const Eigen::Isometry3d& T_target_source);
 
 /** \brief The gradient of twistPriorEnergy(), and of twistPrior(), alone. */
 Vector6d
-twistPriorGradient(const Prior& prior,
+twistPriorGradient(const HeldPrior& prior,
                    const Eigen::Isometry3d& T_target_source,
                    const Eigen::Vector3d& centre);
 

@@ -183,6 +183,46 @@ TEST(TwistPrior, SaysNothingOfCoordinatesThatHaveNoPrior)
   EXPECT_EQ(result.gradient, Vector6d::Zero());
 }
 
+TEST(TwistPrior, OfAHoldIsTheGradientOfItsEnergyToo)
+{
+  Random random(59, 0);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    HeldPrior prior(randomPrior(random, Vector3d(0.5, 1.0, -0.3)));
+    PlaneHold plane;
+    plane.source_point = Vector3d(0.5, 1.0, -0.3);
+    plane.source_normal = random.normal6().head<3>().normalized();
+    plane.target_point = random.normal6().head<3>();
+    plane.target_normal = random.normal6().head<3>().normalized();
+    plane.distance_sd = 0.2;
+    plane.angle_sd = 0.3;
+    prior.plane = plane;
+    const Isometry3d pose = isometryOf(test::randomPose(random, 0.8));
+    const Vector3d centre = randomCentre(random);
+    const auto energyAt = [&](const Vector6d& xi) {
+      return twistPriorEnergy(prior, movedBy(xi, centre, pose));
+    };
+    const Vector6d expected = test::centralDifferences(energyAt, Vector6d::Zero());
+    const Vector6d gradient = twistPriorGradient(prior, pose, centre);
+    EXPECT_LT((gradient - expected).norm(), 1e-5 * (1.0 + expected.norm()));
+  }
+}
+
+TEST(TwistPrior, OfAHoldHasItsHessianWhereThePlanesCoincide)
+{
+  HeldPrior prior(Prior(Vector6d::Zero(), Vector6d::Constant(1e6)));
+  prior.plane = PlaneHold{Vector3d::Zero(),
+                          Vector3d::UnitZ(),
+                          Vector3d::Zero(),
+                          Vector3d::UnitZ(),
+                          0.1,
+                          0.2};
+  Vector6d expected = Vector6d::Zero();
+  expected.segment<3>(2) << 100.0, 25.0, 25.0;
+  const Matrix6d precision =
+      twistPrior(prior, Isometry3d::Identity(), Vector3d::Zero()).precision;
+  EXPECT_LT((precision - Matrix6d(expected.asDiagonal())).norm(), 1e-5);
+}
+
 TEST(TwistPrior, IsFiniteAtGimbalLock)
 {
   Vector6d pose = Vector6d::Zero();

@@ -146,7 +146,7 @@ sharesOf(const std::vector<CalibratedMode>& modes)
 
 ChainSet
 sampleCalibrated(const BatchScore& score,
-                 const Prior& prior,
+                 const HeldPrior& prior,
                  const std::vector<CalibratedMode>& modes,
                  const CalibratedOptions& options,
                  const ChainOptions& chains,

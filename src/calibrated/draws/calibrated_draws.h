@@ -56,7 +56,7 @@ sharesOf(const std::vector<CalibratedMode>& modes);
  * free. Only burn-in and thinning of \p options are used. */
 ChainSet
 sampleCalibrated(const BatchScore& score,
-                 const Prior& prior,
+                 const HeldPrior& prior,
                  const std::vector<CalibratedMode>& modes,
                  const CalibratedOptions& options,
                  const ChainOptions& chains,

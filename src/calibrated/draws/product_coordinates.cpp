@@ -219,7 +219,7 @@ ProductCoordinates::linearEnergy(const Vector6d& z) const
 }
 
 Vector6d
-ProductCoordinates::priorGradient(const Vector6d& z, const Prior& prior) const
+ProductCoordinates::priorGradient(const Vector6d& z, const HeldPrior& prior) const
 {
   const Vector6d gradient = twistPriorGradient(prior, pose(z), centre_);
   const Vector6d a = prior_only_ * unwound(z), b = held_ * z;

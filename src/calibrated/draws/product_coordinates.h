@@ -68,7 +68,7 @@ public:
 
   /** \brief Gradient of -log prior at pose(z) with respect to z, exact. */
   Vector6d
-  priorGradient(const Vector6d& z, const Prior& prior) const;
+  priorGradient(const Vector6d& z, const HeldPrior& prior) const;
 
   /** \brief Gradient of log |det d(motion) / d(a)| at b = 0, motions as small twists:
    * the same change of a is a smaller motion where V0 a is a large rotation. To first

@@ -33,7 +33,7 @@ activePoints(const CalibratedEstimate& estimate, const ProductCoordinates& coord
 } // namespace
 
 WeightedScore::WeightedScore(const CalibratedEstimate& estimate,
-                             const Prior& prior,
+                             const HeldPrior& prior,
                              BatchScore score)
 : estimate_(estimate)
 , prior_(prior)

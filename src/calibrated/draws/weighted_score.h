@@ -18,7 +18,7 @@ class WeightedScore : public StochasticGradient {
 public:
   /** \p estimate and \p prior must outlive this object. */
   WeightedScore(const CalibratedEstimate& estimate,
-                const Prior& prior,
+                const HeldPrior& prior,
                 BatchScore score);
 
   const ProductCoordinates&
@@ -61,7 +61,7 @@ private:
   guarded(const Vector6d& linear, const Vector6d& deviation) const;
 
   const CalibratedEstimate& estimate_;
-  const Prior& prior_;
+  HeldPrior prior_;
   BatchScore score_;
   ProductCoordinates coordinates_;
   std::vector<std::size_t> active_;

@@ -82,7 +82,7 @@ extentOf(const Eigen::Matrix3Xd& points)
 }
 
 std::array<bool, 6>
-wideCoordinates(const SurfaceScorer& scorer, const Prior& prior)
+wideCoordinates(const SurfaceScorer& scorer, const HeldPrior& prior)
 {
   const double extent = extentOf(scorer.sourcePoints());
   std::array<bool, 6> wide;
@@ -94,7 +94,7 @@ wideCoordinates(const SurfaceScorer& scorer, const Prior& prior)
 }
 
 bool
-isWide(const SurfaceScorer& scorer, const Prior& prior)
+isWide(const SurfaceScorer& scorer, const HeldPrior& prior)
 {
   const auto wide = wideCoordinates(scorer, prior);
   return std::any_of(wide.begin(), wide.end(), [](bool is_wide) { return is_wide; });
@@ -104,7 +104,7 @@ isWide(const SurfaceScorer& scorer, const Prior& prior)
  * in the others. */
 Matrix6Xd
 startDeviations(const std::array<bool, 6>& wide,
-                const Prior& prior,
+                const HeldPrior& prior,
                 int num_starts,
                 Random& random)
 {
@@ -128,7 +128,7 @@ startDeviations(const std::array<bool, 6>& wide,
 
 /** The pose of a deviation (as in Prior::deviation()) from the prior's mean. */
 Isometry3d
-poseAt(const Vector6d& deviation, const Prior& prior)
+poseAt(const Vector6d& deviation, const HeldPrior& prior)
 {
   Vector6d pose = prior.mean() + deviation;
   const Eigen::Vector3d reference = isometryOf(prior.mean()) * prior.referencePoint();
@@ -139,14 +139,14 @@ poseAt(const Vector6d& deviation, const Prior& prior)
 
 /** Whether the prior's rotation is very wide. */
 bool
-mayBeLost(const Prior& prior)
+mayBeLost(const HeldPrior& prior)
 {
   return std::sqrt(prior.variance().tail<3>().maxCoeff()) > lost_angle;
 }
 
 /** Starts over the prior. */
 std::vector<Isometry3d>
-startsOver(const Prior& prior,
+startsOver(const HeldPrior& prior,
            const std::array<bool, 6>& wide,
            int num_starts,
            Random& random)
@@ -164,7 +164,7 @@ startsOver(const Prior& prior,
 std::vector<Isometry3d>
 hopsFrom(const Isometry3d& pose,
          const SurfaceScorer& scorer,
-         const Prior& prior,
+         const HeldPrior& prior,
          Random& random)
 {
   std::vector<Isometry3d> starts;
@@ -206,7 +206,7 @@ isKnown(const Isometry3d& pose,
  * them each mode is off the other's axis. */
 bool
 areConnected(const SurfaceScorer& subset,
-             const Prior& prior,
+             const HeldPrior& prior,
              const CalibratedEstimate& from,
              const CalibratedEstimate& to,
              double max_cost)
@@ -222,7 +222,7 @@ areConnected(const SurfaceScorer& subset,
   for (const double part : {0.25, 0.5, 0.75}) {
     const Isometry3d start = movedBy(part * way, from.centre, from.mode);
     // This prior keeps the fit near its start.
-    const Prior here(poseOf(start.matrix()), prior.variance(), prior.referencePoint());
+    const HeldPrior here = prior.with(poseOf(start.matrix()), prior.variance());
     const RobustFit end = fitRobustly(subset, here, start, fit);
     const Vector6d aside = twistBetween(start, end.pose, from.centre);
     if (end.cost > max_cost || std::sqrt(aside.dot(from.displacement_metric * aside)) >
@@ -234,7 +234,7 @@ areConnected(const SurfaceScorer& subset,
 
 /** The fit at a pose that stays where it is. */
 RobustFit
-asItIs(const SurfaceScorer& subset, const Prior& prior, const Isometry3d& pose)
+asItIs(const SurfaceScorer& subset, const HeldPrior& prior, const Isometry3d& pose)
 {
   RobustFitOptions fit;
   fit.max_steps = 0;
@@ -244,7 +244,7 @@ asItIs(const SurfaceScorer& subset, const Prior& prior, const Isometry3d& pose)
 /** Where starts end. */
 std::vector<RobustFit>
 followStarts(const SurfaceScorer& subset,
-             const Prior& prior,
+             const HeldPrior& prior,
              const std::vector<Isometry3d>& starts,
              int num_threads)
 {
@@ -281,7 +281,7 @@ costsLess(const RobustFit& a, const RobustFit& b)
  * of these ends. Least cost first. */
 std::vector<RobustFit>
 endsOfStarts(const SurfaceScorer& subset,
-             const Prior& prior,
+             const HeldPrior& prior,
              const std::array<bool, 6>& wide,
              const RobustFit& first,
              const ModeSearchOptions& options)
@@ -314,14 +314,13 @@ doesPriorHold(const CalibratedEstimate& e)
 /** See CalibratedEstimate::better_fit. */
 double
 betterFitOf(const SurfaceScorer& scorer,
-            const Prior& prior,
+            const HeldPrior& prior,
             const CalibratedEstimate& estimate,
             const ModeSearchOptions& options)
 {
   const SurfaceScorer subset = scorer.ofFirst(options.num_points);
-  const Prior wide(prior.mean(),
-                   Vector6d(widening * widening * prior.variance()),
-                   prior.referencePoint());
+  const HeldPrior wide =
+      prior.with(prior.mean(), widening * widening * prior.variance());
   const std::vector<RobustFit> ends =
       followStarts(subset,
                    wide,
@@ -339,7 +338,7 @@ betterFitOf(const SurfaceScorer& scorer,
 
 bool
 mayHaveSeveralModes(const SurfaceScorer& scorer,
-                    const Prior& prior,
+                    const HeldPrior& prior,
                     const CalibratedEstimate& first)
 {
   return first.cost > doubtful_cost || isWide(scorer, prior);
@@ -347,7 +346,7 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
 
 ModeSearch
 findModes(const SurfaceScorer& scorer,
-          const Prior& prior,
+          const HeldPrior& prior,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options)
 {
@@ -401,7 +400,7 @@ significantModes(std::vector<CalibratedMode> modes)
 
 std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,
-                const Prior& prior,
+                const HeldPrior& prior,
                 const ModeSearchOptions& options)
 {
   const CalibratedEstimate first = estimateCalibrated(scorer, prior, options.estimate);

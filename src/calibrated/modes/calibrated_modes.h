@@ -39,7 +39,7 @@ struct ModeSearch {
  * quarter of the diagonal of the source's bounding box. */
 bool
 mayHaveSeveralModes(const SurfaceScorer& scorer,
-                    const Prior& prior,
+                    const HeldPrior& prior,
                     const CalibratedEstimate& first);
 
 /** \brief Search for modes other than \p first, and drop \p first if another pose fits
@@ -48,7 +48,7 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
  * estimate for each mode. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
-          const Prior& prior,
+          const HeldPrior& prior,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options = ModeSearchOptions());
 
@@ -63,7 +63,7 @@ significantModes(std::vector<CalibratedMode> modes);
  * outside of it is looked for (CalibratedEstimate::better_fit of the heaviest). */
 std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,
-                const Prior& prior,
+                const HeldPrior& prior,
                 const ModeSearchOptions& options = ModeSearchOptions());
 
 } // namespace bayesian_icp

@@ -107,7 +107,7 @@ heededEnergy(const VectorXd& differences,
 
 /** log of the Gaussian's integral times the prior at its mean. */
 double
-logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
+logVolumeOf(const CalibratedEstimate& estimate, const HeldPrior& prior)
 {
   const ProductCoordinates coordinates(estimate);
   const Gaussian& gaussian = coordinates.gaussian();
@@ -119,7 +119,7 @@ logVolumeOf(const CalibratedEstimate& estimate, const Prior& prior)
 } // namespace
 
 void
-weighModes(const Prior& prior,
+weighModes(const HeldPrior& prior,
            double region_of_cloud,
            std::vector<CalibratedMode>& modes)
 {

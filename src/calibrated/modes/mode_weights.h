@@ -24,7 +24,7 @@ namespace bayesian_icp {
  *            modes are counted separately, as patches of this fraction of a cloud,
  *            because they come into view together */
 void
-weighModes(const Prior& prior,
+weighModes(const HeldPrior& prior,
            double region_of_cloud,
            std::vector<CalibratedMode>& modes);
 

@@ -95,7 +95,7 @@ displacementMetric(const SurfaceScorer& scorer, const Isometry3d& T_target_sourc
 
 RobustFit
 fitRobustly(const SurfaceScorer& scorer,
-            const Prior& prior,
+            const HeldPrior& prior,
             const Isometry3d& start,
             const RobustFitOptions& options)
 {
@@ -157,7 +157,7 @@ isClearlyWorse(const RobustFit& a, const RobustFit& b, double margin)
 
 RobustFit
 fitPointToPoint(const SurfaceScorer& scorer,
-                const Prior& prior,
+                const HeldPrior& prior,
                 const Isometry3d& start)
 {
   const SurfaceModel& model = scorer.model();

@@ -41,7 +41,7 @@ struct RobustFit {
  * because they are correlated. */
 RobustFit
 fitRobustly(const SurfaceScorer& scorer,
-            const Prior& prior,
+            const HeldPrior& prior,
             const Eigen::Isometry3d& start,
             const RobustFitOptions& options);
 
@@ -66,7 +66,7 @@ isClearlyWorse(const RobustFit& a, const RobustFit& b, double margin);
  * has little weight. */
 RobustFit
 fitPointToPoint(const SurfaceScorer& scorer,
-                const Prior& prior,
+                const HeldPrior& prior,
                 const Eigen::Isometry3d& start);
 
 /** \brief D of the source about its centroid at a pose: the mean squared displacement

@@ -30,6 +30,10 @@ constexpr double slope_error = 2.0;
  * continues. */
 constexpr double min_contacts = 0.1;
 
+/** Cosine of the smallest angle between a plane of rays and a surface that they meet.
+ */
+constexpr double max_cosine_of_rays = 0.9;
+
 /** Number of points that a thread of evaluate() takes at a time. */
 constexpr Eigen::Index points_per_piece = 256;
 
@@ -58,9 +62,13 @@ energyOffPlane(const SurfacePatch& patch, const Vector3d& point, double in_plane
 }
 
 /** \param[in] point in the model's frame
+ * \param[in] ray_plane normal of the plane of the point's ray, or zero
  * \param[in,out] hint nearest patch of the last time, and of this one */
 Contact
-contactWith(const SurfaceModel& model, const Vector3d& point, std::uint32_t& hint)
+contactWith(const SurfaceModel& model,
+            const Vector3d& point,
+            const Vector3d& ray_plane,
+            std::uint32_t& hint)
 {
   Contact contact;
   const auto neighbor = model.tree().nearest(
@@ -72,6 +80,8 @@ contactWith(const SurfaceModel& model, const Vector3d& point, std::uint32_t& hin
   if (!patch.isUsable())
     return contact;
   const SurfaceOffset offset = offsetFrom(patch, point);
+  if (std::abs(offset.normal.dot(ray_plane)) > max_cosine_of_rays)
+    return contact;
   if (offset.in_plane > SurfaceScorer::max_in_plane * patch.radius) {
     contact.off_continuation = energyOffPlane(patch, point, offset.in_plane);
     return contact;
@@ -110,6 +120,7 @@ public:
   , centre_in_model_(centre - scorer.model_.origin())
   , centre_(centre)
   , R_(T_target_source.linear())
+  , ray_plane_(R_ * scorer.ray_plane_)
   {
     if (scorer.source_model_)
       T_source_model_target_ = Eigen::Translation3d(-scorer.source_model_->origin()) *
@@ -129,13 +140,15 @@ public:
     Vector3d arm;
     if (index < num_source) {
       const Vector3d point = T_model_source_ * scorer_.source_points_.col(index);
-      contact = contactWith(scorer_.model_, point, hint);
+      contact = contactWith(scorer_.model_, point, ray_plane_, hint);
       arm = point - centre_in_model_;
     }
     else {
       const auto point = scorer_.target_points_.col(index - num_source);
-      contact =
-          contactWith(*scorer_.source_model_, T_source_model_target_ * point, hint);
+      contact = contactWith(*scorer_.source_model_,
+                            T_source_model_target_ * point,
+                            Vector3d::Zero(),
+                            hint);
       // The surface moves, and the point does not: the opposite of the above.
       contact.normal = -(R_ * contact.normal);
       arm = point - centre_;
@@ -149,6 +162,7 @@ private:
   Isometry3d T_model_source_;
   Vector3d centre_in_model_, centre_;
   Eigen::Matrix3d R_;
+  Vector3d ray_plane_;
   Isometry3d T_source_model_target_ = Isometry3d::Identity();
 };
 
@@ -242,6 +256,7 @@ SurfaceScorer::ofFirst(Eigen::Index num_points) const
       model_,
       num_threads_);
   first.centroid_ = centroid_;
+  first.ray_plane_ = ray_plane_;
   return first;
 }
 

@@ -117,6 +117,16 @@ public:
   addTargetPoints(const Eigen::Matrix3Xd& target_points,
                   const SurfaceModel& source_model);
 
+  /** \brief State that the source lies in a plane with this unit normal (source frame)
+   * and the target does not. The rays of a 2-D scanner do not meet a surface that is
+   * parallel to their plane, so a source point has no patch there. Without this, a scan
+   * would fit best where all of it lies on the floor. */
+  void
+  setRayPlane(const Eigen::Vector3d& normal)
+  {
+    ray_plane_ = normal;
+  }
+
   /** \brief A scorer of the first \p num_points source points, or of all if there are
    * fewer. It keeps the centroid of all points, so that twists are the same. */
   SurfaceScorer
@@ -205,6 +215,8 @@ private:
   int num_threads_;
   Eigen::Matrix3Xd target_points_;
   const SurfaceModel* source_model_ = nullptr;
+  /** See setRayPlane(); zero if the source is not flat. */
+  Eigen::Vector3d ray_plane_ = Eigen::Vector3d::Zero();
 };
 
 } // namespace bayesian_icp

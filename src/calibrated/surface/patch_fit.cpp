@@ -54,21 +54,41 @@ constexpr double min_succession = 1.0;
 /** Possible error of a plane's slope across the curve that its points follow. */
 constexpr double curve_slope_error = 0.03;
 
-constexpr int num_quadric_terms = 6;
-constexpr int num_quartic_terms = 15;
-/** With fewer points, the quartic does not test the quadric. */
-constexpr Eigen::Index min_points = 21;
+/** What is fitted to a neighbourhood. */
+struct Shape {
+  /** Number of points of a neighbourhood. */
+  int num_neighbors;
+  int num_quadric_terms, num_quartic_terms;
+  /** With fewer points, the quartic does not test the quadric. */
+  Eigen::Index min_points;
+  double max_misfit;
+  /** Of the normal matrices, as their share of a point: a scan line leaves terms of a
+   * quartic undetermined, and a curve those of y. */
+  double quadric_ridge;
+};
+
+Shape
+surfaceShape(const SurfaceModelOptions& options)
+{
+  return {options.num_neighbors, 6, 15, 21, options.max_misfit, 0.0};
+}
+
+/** A curve has as many points on its radius as a surface. Its quartic has two terms
+ * more than its parabola; F is as seldom above 4 as that of a surface is above 2.2. */
+constexpr Shape curve_shape = {9, 3, 5, 8, 4.0, 1e-9};
 
 /** Principal axes of a neighbourhood. */
 struct PrincipalFrame {
-  /** Columns: widest, second, normal. */
+  /** Columns: widest, second, normal. The second is zero if the cloud lies in a plane.
+   */
   Matrix3d axes;
   /** Standard deviation across the surface [m]. */
   double thickness;
 };
 
+/** \param[in] plane_normal as in fitPatch() */
 PrincipalFrame
-principalFrame(const PointRows& points)
+principalFrame(const PointRows& points, const Vector3d* plane_normal)
 {
   const Eigen::RowVector3d mean = points.colwise().mean();
   Matrix3d covariance;
@@ -77,11 +97,18 @@ principalFrame(const PointRows& points)
       covariance(i, j) = covariance(j, i) =
           ((points.col(i).array() - mean[i]) * (points.col(j).array() - mean[j])).sum();
   covariance /= static_cast<double>(points.rows());
+  // The normal of the cloud's plane becomes the widest axis, and is left out.
+  if (plane_normal)
+    covariance += 2.0 * covariance.trace() * *plane_normal * plane_normal->transpose();
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
   solver.computeDirect(covariance);
   PrincipalFrame frame;
-  frame.axes << solver.eigenvectors().col(2), solver.eigenvectors().col(1),
-      solver.eigenvectors().col(0);
+  if (plane_normal)
+    frame.axes << solver.eigenvectors().col(1), Vector3d::Zero(),
+        solver.eigenvectors().col(0);
+  else
+    frame.axes << solver.eigenvectors().col(2), solver.eigenvectors().col(1),
+        solver.eigenvectors().col(0);
   frame.thickness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
   return frame;
 }
@@ -300,6 +327,7 @@ private:
 /** F statistic of the quartic's extra terms. */
 double
 misfit(const PointRows& local,
+       const Shape& shape,
        double radius,
        double squared_heights,
        double quadric_rss)
@@ -307,14 +335,16 @@ misfit(const PointRows& local,
   constexpr double ridge = 1e-9, least_rss = 1e-18;
   const Regression<4> quartic(local, radius, ridge);
   const double rss = std::max(least_rss, squared_heights - quartic.explained());
-  constexpr double extra_terms = num_quartic_terms - num_quadric_terms;
+  const double extra_terms = shape.num_quartic_terms - shape.num_quadric_terms;
   return (quadric_rss - rss) / extra_terms /
-         (rss / static_cast<double>(local.rows() - num_quartic_terms));
+         (rss / static_cast<double>(local.rows() - shape.num_quartic_terms));
 }
 
 /** Make a patch the quadric of the neighbours in its frame, if they lie on one. */
 void
 fitQuadric(const PointRows& local,
+           const Shape& shape,
+           bool is_curve,
            double aspect,
            const SurfaceModelOptions& options,
            SurfacePatch& patch)
@@ -324,19 +354,20 @@ fitQuadric(const PointRows& local,
         centroid_offset < options.max_centroid_offset * patch.radius))
     return;
   const auto num_points = static_cast<double>(local.rows());
-  const Regression<2> quadric(local, patch.radius, 0.0);
+  const Regression<2> quadric(local, patch.radius, shape.quadric_ridge);
   const double squared_heights = local.col(2).squaredNorm();
   const double rss = std::max(0.0, squared_heights - quadric.explained());
-  const double sigma = std::sqrt(rss / (num_points - num_quadric_terms));
+  const double sigma = std::sqrt(rss / (num_points - shape.num_quadric_terms));
   const double slope_variance =
-      num_points * std::max(quadric.varianceOf(1), quadric.varianceOf(2));
+      num_points *
+      std::max(quadric.varianceOf(1), is_curve ? 0.0 : quadric.varianceOf(2));
   // The tests that cost as much as the fit are last.
   const bool is_quadric =
       slope_variance < max_slope_variance &&
       patch.radius > options.min_radius_to_noise * sigma &&
       (sigma < negligible_misfit * patch.radius ||
-       misfit(local, patch.radius, squared_heights, rss) < options.max_misfit) &&
-      evennessOf(local) > min_evenness;
+       misfit(local, shape, patch.radius, squared_heights, rss) < shape.max_misfit) &&
+      (is_curve || evennessOf(local) > min_evenness);
   if (!is_quadric)
     return;
   const Vector6d solution = quadric.solution();
@@ -383,6 +414,7 @@ doubtCurve(const PointRows& local, PatchFitWorkspace& workspace, SurfacePatch& p
 void
 gatherNeighbors(const PointNeighbors& cloud,
                 const Vector3f& point,
+                const Vector3d* plane_normal,
                 int count,
                 PatchFitWorkspace& workspace)
 {
@@ -395,7 +427,7 @@ gatherNeighbors(const PointNeighbors& cloud,
     ball.row(i) = (cloud.points().col(indices[static_cast<std::size_t>(i)]) - point)
                       .cast<double>()
                       .transpose();
-  const Matrix3d axes = principalFrame(ball).axes;
+  const Matrix3d axes = principalFrame(ball, plane_normal).axes;
   const Eigen::ArrayXd distances = ball.lazyProduct(axes.col(0)).array().square() +
                                    ball.lazyProduct(axes.col(1)).array().square();
   auto& ordered = workspace.ordered;
@@ -415,21 +447,23 @@ gatherNeighbors(const PointNeighbors& cloud,
 SurfacePatch
 fitPatch(const PointNeighbors& cloud,
          const Vector3f& point,
+         const Vector3d* plane_normal,
          double max_radius,
          const SurfaceModelOptions& options,
          PatchFitWorkspace& workspace,
          double& spacing)
 {
   const int num_points = static_cast<int>(cloud.points().cols());
+  const Shape shape = plane_normal ? curve_shape : surfaceShape(options);
   SurfacePatch patch;
   patch.origin = patch.centre = point.cast<double>();
   for (int growth = 1;; growth *= 2) {
-    const int count = std::min(growth * options.num_neighbors, num_points);
-    gatherNeighbors(cloud, point, count, workspace);
+    const int count = std::min(growth * shape.num_neighbors, num_points);
+    gatherNeighbors(cloud, point, plane_normal, count, workspace);
     const PointRows& neighbors = workspace.neighbors;
-    const PrincipalFrame frame = principalFrame(neighbors);
+    const PrincipalFrame frame = principalFrame(neighbors, plane_normal);
     const PointRows local = neighbors.lazyProduct(frame.axes);
-    const double aspect = aspectOf(local);
+    const double aspect = plane_normal ? 1.0 : aspectOf(local);
     patch.axes = frame.axes;
     patch.radius = std::sqrt(local.leftCols<2>().rowwise().squaredNorm().maxCoeff());
     const bool is_too_wide = patch.radius > max_radius;
@@ -437,17 +471,17 @@ fitPatch(const PointNeighbors& cloud,
     const bool is_narrow = aspect < wanted_aspect;
     const int next = 2 * growth;
     if (!is_too_wide && (is_thick || is_narrow) && next <= max_growth &&
-        next * options.num_neighbors <= num_points)
+        next * shape.num_neighbors <= num_points)
       continue;
     const auto& squared_distances = workspace.nearest.squared_distances;
     spacing =
         squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
     fitPlane(local, frame.thickness, aspect, patch);
-    if (is_too_wide)
+    if (is_too_wide || (plane_normal && is_thick))
       patch.kind = PatchKind::None;
-    else if (neighbors.rows() >= min_points && patch.radius > 0.0)
-      fitQuadric(local, aspect, options, patch);
-    if (patch.kind == PatchKind::Plane)
+    else if (neighbors.rows() >= shape.min_points && patch.radius > 0.0)
+      fitQuadric(local, shape, plane_normal, aspect, options, patch);
+    if (patch.kind == PatchKind::Plane && !plane_normal)
       doubtCurve(local, workspace, patch);
     return patch;
   }

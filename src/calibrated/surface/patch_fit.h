@@ -28,13 +28,16 @@ struct PatchFitWorkspace {
  * if no quadric fits. The neighbourhood grows while it is not much wider than its
  * noise, or while it is as narrow as a scan line.
  *
- * \param[in] max_radius largest radius of a neighbourhood [m]; a wider one has no patch
+ * \param[in] plane_normal null, or the unit normal of the plane in which the cloud
+ * lies. The patch is then a piece of curve: a parabola, or a line. \param[in]
+ * max_radius largest radius of a neighbourhood [m]; a wider one has no patch
  * \param[in,out] workspace from earlier points of the same cloud, or new
  * \param[out] spacing distance to the nearest other point [m]
  * \return the patch, whose sigma comes from this neighbourhood alone */
 SurfacePatch
 fitPatch(const PointNeighbors& cloud,
          const Eigen::Vector3f& point,
+         const Eigen::Vector3d* plane_normal,
          double max_radius,
          const SurfaceModelOptions& options,
          PatchFitWorkspace& workspace,

@@ -66,9 +66,11 @@ isQuadric(const SurfacePatch& patch)
 } // namespace
 
 SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
+                               const std::optional<Vector3d>& plane_normal,
                                const SurfaceModelOptions& options,
                                int num_threads)
-: options_(options)
+: plane_normal_(plane_normal)
+, options_(options)
 , num_threads_(numThreadsFor(num_threads, points.cols() / share_size))
 , points_(points)
 , columns_(evenChoice(points, options.max_patches, ChoiceStream::Patches))
@@ -94,8 +96,13 @@ SurfaceBuilder::fitPatches()
     const std::uint32_t patch = patch_of_[point];
     if (patch == KdTree::none)
       return;
-    patches_[patch] = fitPatch(
-        cloud, points_.col(point), max_radius, options_, workspace, spacings_[patch]);
+    patches_[patch] = fitPatch(cloud,
+                               points_.col(point),
+                               plane_normal_ ? &*plane_normal_ : nullptr,
+                               max_radius,
+                               options_,
+                               workspace,
+                               spacings_[patch]);
     noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
   };
   forEachIndex<PatchFitWorkspace>(cloud.alongTree(), num_threads_, fitAt);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace bayesian_icp {
@@ -18,9 +19,11 @@ namespace bayesian_icp {
 class SurfaceBuilder {
 public:
   /** \param[in] points 3 x n, finite, relative to the model's origin [m]
+   * \param[in] plane_normal of fitPatch()
    * \param[in] options of the patches; like \p points, must outlive this object
    * \param[in] num_threads 0: as OpenMP would */
   SurfaceBuilder(const Eigen::Matrix3Xf& points,
+                 const std::optional<Eigen::Vector3d>& plane_normal,
                  const SurfaceModelOptions& options,
                  int num_threads);
 
@@ -78,6 +81,7 @@ private:
   std::uint32_t
   donorOf(std::size_t patch) const;
 
+  const std::optional<Eigen::Vector3d> plane_normal_;
   const SurfaceModelOptions& options_;
   int num_threads_;
   const Eigen::Matrix3Xf& points_;

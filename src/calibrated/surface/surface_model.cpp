@@ -4,6 +4,8 @@
 #include "calibrated/surface/surface_builder.h"
 #include "search/finite_columns.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -49,6 +51,35 @@ removeRepeated(Matrix3Xf& points)
   points.conservativeResize(3, count);
 }
 
+/** A cloud lies in a plane if its thickness is below this fraction of its width: the
+ * rounding of coordinates, and less than the noise of any sensor. */
+constexpr double max_flatness = 1e-5;
+
+/** Points in a plane fill it, like exact ones of a table, if a smaller share of them is
+ * on a curve. */
+constexpr double min_share_of_curves = 0.1;
+
+/** \param[in] points relative to their centroid, at least one */
+std::optional<Vector3d>
+planeNormalOf(const Matrix3Xf& points)
+{
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Vector3d mean = Vector3d::Zero();
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Vector3d point = points.col(i).cast<double>();
+    mean += point;
+    covariance += point * point.transpose();
+  }
+  const auto count = static_cast<double>(points.cols());
+  covariance -= mean * mean.transpose() / count;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  const Vector3d variances = solver.eigenvalues();
+  const double largest = max_flatness * max_flatness * variances[2];
+  if (variances[0] > largest || variances[1] <= largest)
+    return std::nullopt;
+  return solver.eigenvectors().col(0);
+}
+
 } // namespace
 
 Matrix3Xf
@@ -92,7 +123,20 @@ SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
   removeRepeated(points);
   if (points.cols() > options.maxPoints())
     points = points(Eigen::all, evenlyThinned(points, options.maxPoints())).eval();
-  SurfaceBuilder builder(points, options, num_threads);
+  plane_normal_ = planeNormalOf(points);
+  build(points, options, num_threads);
+  if (plane_normal_ && usable_fraction_ < min_share_of_curves) {
+    plane_normal_.reset();
+    build(points, options, num_threads);
+  }
+}
+
+void
+SurfaceModel::build(const Matrix3Xf& points,
+                    const SurfaceModelOptions& options,
+                    int num_threads)
+{
+  SurfaceBuilder builder(points, plane_normal_, options, num_threads);
   builder.fitPatches();
   builder.poolNoise();
   if (options.takeover_radius > 0.0)

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace bayesian_icp {
@@ -29,7 +30,8 @@ enum class PatchKind {
 struct SurfacePatch {
   /** Origin of the frame [m]. */
   Eigen::Vector3d origin;
-  /** Columns: the frame's x, y and z; z is across the surface. */
+  /** Columns: the frame's x, y and z; z is across the surface. If the cloud lies in a
+   * plane, the surface stands on it: y is zero, and no position depends on it. */
   Eigen::Matrix3d axes;
   /** a0 ... a5 [m, 1, 1, 1/m, 1/m, 1/m]. */
   std::array<double, 6> quadric;
@@ -194,8 +196,22 @@ public:
     return usable_fraction_;
   }
 
+  /** \brief Unit normal of the plane in which all points lie on curves, like those of a
+   * 2-D laser scanner; empty if they do not. */
+  const std::optional<Eigen::Vector3d>&
+  planeNormal() const
+  {
+    return plane_normal_;
+  }
+
 private:
+  void
+  build(const Eigen::Matrix3Xf& points,
+        const SurfaceModelOptions& options,
+        int num_threads);
+
   Eigen::Vector3d origin_;
+  std::optional<Eigen::Vector3d> plane_normal_;
   std::vector<SurfacePatch> patches_;
   KdTree tree_;
   double median_sigma_ = 0.0;

@@ -1,0 +1,33 @@
+/** \file
+ * \brief Clouds that lie in a plane, like those of a 2-D laser scanner. They show the
+ * motion within the plane. The prior alone says how far they are tilted or shifted out
+ * of it.
+ */
+#pragma once
+
+#include "calibrated/surface/surface_model.h"
+#include "geometry/twist.h"
+#include "sampler/chain_set.h"
+
+#include <cstdint>
+
+namespace bayesian_icp {
+
+/** \brief \p prior with a hold if both clouds lie in a plane: the planes coincide.
+ * Otherwise \p prior. */
+HeldPrior
+heldInPlane(const Prior& prior, const SurfaceModel& source, const SurfaceModel& target);
+
+/** \brief Give each draw of a flat cloud's motion a tilt and a shift out of the plane.
+ * They come from \p prior, given the motion within the plane. The pivot of the tilt is
+ * the prior's reference point, projected to the plane. Chains have diverged if the
+ * prior does not limit these motions. \param[in] prior without a plane \param[in] held
+ * heldInPlane() of the prior \param[in] seed of the run \param[in,out] chains draws of
+ * \p held's posterior */
+void
+addMotionOutOfPlane(const Prior& prior,
+                    const HeldPrior& held,
+                    std::uint64_t seed,
+                    ChainSet& chains);
+
+} // namespace bayesian_icp
