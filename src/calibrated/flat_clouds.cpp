@@ -27,19 +27,41 @@ constexpr double signs[4][3] = {
  * less than any motion in the plane is known. */
 constexpr double slack = 1e-5;
 
-/** The pose that lays the source's plane onto the target's by the smallest rotation. */
+/** Newton's steps to the prior's mean out of the plane. A step from a tilt x leaves
+ * x - sin(x) of it: after these, less than 1e-12 of a right angle. */
+constexpr int num_steps_out = 5;
+
+/** Axes of the tilts, in the source's plane. In the plane of x and y the tilts are roll
+ * and pitch. */
+struct TiltAxes {
+  explicit TiltAxes(const Vector3d& normal)
+  {
+    const Vector3d x =
+        std::abs(normal.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
+    first = (x - normal * normal.dot(x)).normalized();
+    second = normal.cross(first);
+  }
+
+  Vector3d first, second;
+};
+
+/** The pose in the plane of which a shift and tilts, as in TiltedPose, make a pose. So
+ * the yaw stays as it is in the plane of x and y. */
 Isometry3d
 laidInPlane(const Isometry3d& T_target_source, const PlaneHold& plane)
 {
+  const TiltAxes axes(plane.source_normal);
+  Vector3d up = T_target_source.linear().transpose() * plane.target_normal;
+  if (up.dot(plane.source_normal) < 0.0)
+    up = -up;
+  const double side = up.dot(axes.second), height = up.dot(plane.source_normal);
+  const Eigen::AngleAxisd first(std::atan2(side, height), axes.first);
+  const Eigen::AngleAxisd second(
+      -std::atan2(up.dot(axes.first), std::hypot(side, height)), axes.second);
   const Vector3d& normal = plane.target_normal;
-  Vector3d tilted = T_target_source.linear() * plane.source_normal;
-  if (tilted.dot(normal) < 0.0)
-    tilted = -tilted;
   const Vector3d pivot = T_target_source * plane.source_point;
   Isometry3d laid = Isometry3d::Identity();
-  laid.linear() =
-      Eigen::Quaterniond::FromTwoVectors(tilted, normal).toRotationMatrix() *
-      T_target_source.linear();
+  laid.linear() = T_target_source.linear() * (second * first).inverse();
   laid.translation() = pivot - normal * normal.dot(pivot - plane.target_point) -
                        laid.linear() * plane.source_point;
   return laid;
@@ -59,9 +81,32 @@ radiusOf(const SurfaceModel& model)
   return std::sqrt(squares / count - (sum / count).squaredNorm());
 }
 
-/** The pose with a motion out of the plane: a shift along the normal, and tilts about
- * two axes of the source's plane through its point, one after the other. In the plane
- * of x and y these are pitch and roll, so the yaw does not change.
+/** A pose with a motion out of the plane: a shift along the normal, and tilts about two
+ * axes of the source's plane through its point, one after the other. In the plane of x
+ * and y these are pitch and roll, so the yaw does not change. */
+struct TiltedPose {
+  /** \param[in] motion shift [m], first and second tilt [rad] */
+  TiltedPose(const Isometry3d& T_target_source,
+             const PlaneHold& plane,
+             const Vector3d& motion)
+  {
+    const TiltAxes axes(plane.source_normal);
+    const Eigen::Translation3d pivot(plane.source_point);
+    const Eigen::AngleAxisd first(motion[1], axes.first);
+    const Eigen::AngleAxisd second(motion[2], axes.second);
+    pose = Eigen::Translation3d(motion[0] * plane.target_normal) * T_target_source *
+           pivot * second * first * pivot.inverse();
+    rates.col(0).head<3>() = plane.target_normal;
+    rates.col(1).tail<3>() = T_target_source.linear() * (second * axes.first);
+    rates.col(2).tail<3>() = T_target_source.linear() * axes.second;
+  }
+
+  Isometry3d pose;
+  /** d(xi) / d(motion), xi about the source's point. */
+  Eigen::Matrix<double, 6, 3> rates = Eigen::Matrix<double, 6, 3>::Zero();
+};
+
+/** The pose with a motion out of the plane that comes from the prior.
  * \param[in] normal_draw standard normal */
 Isometry3d
 movedOut(const Isometry3d& T_target_source,
@@ -69,25 +114,18 @@ movedOut(const Isometry3d& T_target_source,
          const PlaneHold& plane,
          const Vector3d& normal_draw)
 {
-  const Vector3d& normal = plane.source_normal;
-  const Vector3d x = std::abs(normal.x()) < 0.9 ? Vector3d::UnitX() : Vector3d::UnitY();
-  const Vector3d first = (x - normal * normal.dot(x)).normalized();
-  const Vector3d second = normal.cross(first);
-  Eigen::Matrix<double, 6, 3> out = Eigen::Matrix<double, 6, 3>::Zero();
-  out.col(0).head<3>() = plane.target_normal;
-  out.col(1).tail<3>() = T_target_source.linear() * first;
-  out.col(2).tail<3>() = T_target_source.linear() * second;
-  const TwistPrior pull =
-      twistPrior(prior, T_target_source, T_target_source * plane.source_point);
+  Vector3d motion = Vector3d::Zero();
+  Eigen::LLT<Eigen::Matrix3d> precision;
+  for (int step = 0; step < num_steps_out; ++step) {
+    const TiltedPose at(T_target_source, plane, motion);
+    const TwistPrior pull = twistPrior(prior, at.pose, at.pose * plane.source_point);
+    precision.compute(
+        Eigen::Matrix3d(at.rates.transpose() * pull.precision * at.rates));
+    motion -= precision.solve(Vector3d(at.rates.transpose() * pull.gradient));
+  }
   // precision = U^T U, so U^-1 e has its inverse as covariance.
-  const Eigen::LLT<Eigen::Matrix3d> precision(
-      Eigen::Matrix3d(out.transpose() * pull.precision * out));
-  const Vector3d motion = precision.matrixU().solve(normal_draw) -
-                          precision.solve(Vector3d(out.transpose() * pull.gradient));
-  const Eigen::Translation3d pivot(plane.source_point);
-  return Eigen::Translation3d(motion[0] * plane.target_normal) * T_target_source *
-         pivot * Eigen::AngleAxisd(motion[2], second) *
-         Eigen::AngleAxisd(motion[1], first) * pivot.inverse();
+  motion += precision.matrixU().solve(normal_draw);
+  return TiltedPose(T_target_source, plane, motion).pose;
 }
 
 } // namespace

@@ -117,6 +117,21 @@ TEST(FlatClouds, LeaveTheMotionOutOfThePlaneToThePrior)
   EXPECT_EQ(num_free, 3);
 }
 
+TEST(FlatClouds, KeepThePriorsMeanIfItIsFarFromThePlane)
+{
+  const Scans scans("room", 3);
+  Options options;
+  options.prior.variance << 0.125, 0.125, 1e-6, 1e-6, 1e-6, 1e-10;
+  Vector6d guess = Vector6d::Zero();
+  guess.segment<3>(2) << 0.2, 0.5, -0.4;
+  guess[5] = scans.truth[5];
+  const Summary summary = scans.estimate(options, guess).summary;
+  // A hundredth of the deviations of z, roll and pitch; those of yaw are 1e-5 rad.
+  for (const int k : {2, 3, 4, 5})
+    EXPECT_NEAR(summary.mean[k], guess[k], 1e-5);
+  EXPECT_LT(squaredErrorInPlane(summary, scans.truth), 21.1);
+}
+
 TEST(FlatClouds, HaveOneCovarianceInAllConventionsIfThePriorKeepsThemLevel)
 {
   Options options;
