@@ -1,5 +1,7 @@
 #include "calibrated/flat_clouds.h"
 
+#include "calibrated/surface/even_choice.h"
+
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Cholesky>
@@ -67,20 +69,6 @@ laidInPlane(const Isometry3d& T_target_source, const PlaneHold& plane)
   return laid;
 }
 
-/** Root mean square distance of the patches from their centroid [m]. */
-double
-radiusOf(const SurfaceModel& model)
-{
-  Vector3d sum = Vector3d::Zero();
-  double squares = 0.0;
-  for (const SurfacePatch& patch : model.patches()) {
-    sum += patch.centre;
-    squares += patch.centre.squaredNorm();
-  }
-  const auto count = static_cast<double>(model.patches().size());
-  return std::sqrt(squares / count - (sum / count).squaredNorm());
-}
-
 /** A pose with a motion out of the plane: a shift along the normal, and tilts about two
  * axes of the source's plane through its point, one after the other. In the plane of x
  * and y these are pitch and roll, so the yaw does not change. */
@@ -143,7 +131,7 @@ heldInPlane(const Prior& prior, const SurfaceModel& source, const SurfaceModel& 
   plane.source_point =
       prior.referencePoint() - plane.source_normal * plane.source_normal.dot(aside);
   plane.distance_sd = slack * target.medianSigma();
-  plane.angle_sd = plane.distance_sd / radiusOf(source);
+  plane.angle_sd = plane.distance_sd / spreadOf(source.tree().points());
   const Isometry3d mean = laidInPlane(isometryOf(prior.mean()), plane);
   HeldPrior held(Prior(poseOf(mean.matrix()), prior.variance(), plane.source_point));
   held.plane = plane;
