@@ -101,6 +101,8 @@ estimateAndDraw(const SurfaceScorer& scorer,
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data = dataReportOf(heaviest, scorer.model());
+  if (held.plane)
+    result.summary.message += "; both clouds lie in a plane";
   result.summary.message += whatThePriorHolds(result.summary.data.directions);
   addDoubts(describeFlags(result.summary.data), result.summary);
   return result;

@@ -115,6 +115,7 @@ TEST(FlatClouds, LeaveTheMotionOutOfThePlaneToThePrior)
   for (const DataDirection& direction : summary.data.directions)
     num_free += direction.observability == Observability::PriorOnly;
   EXPECT_EQ(num_free, 3);
+  EXPECT_NE(summary.message.find("both clouds lie in a plane"), std::string::npos);
 }
 
 TEST(FlatClouds, KeepThePriorsMeanIfItIsFarFromThePlane)

@@ -238,6 +238,14 @@ TEST(CoverageCases, ShareNoTruth)
   EXPECT_NE(one, truth("bracket", "half", 1));
 }
 
+TEST(CoverageCases, OfALevelScannerLieInAPlane)
+{
+  const CoverageCase made = makeCoverageCase("office_floor", "lidar1", 1);
+  const Eigen::ArrayXd heights = made.target.row(2);
+  EXPECT_GT(heights.size(), 1000);
+  EXPECT_LT((heights - heights[0]).abs().maxCoeff(), 1e-6);
+}
+
 TEST(CoverageCases, AreRefusedIfUnknown)
 {
   EXPECT_THROW(makeCoverageCase("moon", "same", 1), std::invalid_argument);
@@ -245,6 +253,7 @@ TEST(CoverageCases, AreRefusedIfUnknown)
   EXPECT_THROW(makeCoverageCase("bowl", "rain", 1), std::invalid_argument);
   EXPECT_THROW(makeCoverageCase("bowl", "lidar16", 1), std::invalid_argument);
   EXPECT_THROW(makeCoverageCase("street", "same", 1), std::invalid_argument);
+  EXPECT_THROW(makeCoverageCase("bare_ground", "lidar1", 1), std::invalid_argument);
 }
 
 TEST(CoverageCases, DrawTheTruthFromThePrior)
