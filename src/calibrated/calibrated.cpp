@@ -142,8 +142,11 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                                         options.chains.seed,
                                         options.chains.num_threads);
   const Prior prior = priorOf(options, initial_pose, source_points);
-  return estimateAndDraw(
+  PosteriorEstimate result = estimateAndDraw(
       scorer, prior, heldInPlane(prior, source.model, target.model), options, progress);
+  if (result.summary.num_draws > 0)
+    addDoubts(doubtsAboutTilt(prior, source.model, target.model), result.summary);
+  return result;
 }
 
 } // namespace bayesian_icp

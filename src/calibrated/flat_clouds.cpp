@@ -29,6 +29,11 @@ constexpr double signs[4][3] = {
  * less than any motion in the plane is known. */
 constexpr double slack = 1e-5;
 
+/** Largest deviation of a tilt about which there is no doubt [rad]. Of 40 simulated
+ * scans in a map, 11 ended tilted by half a radian where the prior's is 0.35, and one
+ * where it is 0.1. */
+constexpr double max_known_tilt = 0.1;
+
 /** Newton's steps to the prior's mean out of the plane. A step from a tilt x leaves
  * x - sin(x) of it: after these, less than 1e-12 of a right angle. */
 constexpr int num_steps_out = 5;
@@ -160,6 +165,22 @@ addMotionOutOfPlane(const Prior& prior,
                  .transpose();
     }
   }
+}
+
+std::vector<std::string>
+doubtsAboutTilt(const Prior& prior,
+                const SurfaceModel& source,
+                const SurfaceModel& target)
+{
+  if (!source.planeNormal() || target.planeNormal())
+    return {};
+  // A rotation about the normal is no tilt.
+  const Eigen::Array3d tilted = 1.0 - source.planeNormal()->array().square();
+  if ((tilted * prior.variance().tail<3>().array()).maxCoeff() <=
+      max_known_tilt * max_known_tilt)
+    return {};
+  return {"the source lies in a plane and may fit the target with a wrong tilt: state "
+          "how level it is (a prior of at most 0.1 rad)"};
 }
 
 } // namespace bayesian_icp

@@ -10,6 +10,8 @@
 #include "sampler/chain_set.h"
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -29,5 +31,12 @@ addMotionOutOfPlane(const Prior& prior,
                     const HeldPrior& held,
                     std::uint64_t seed,
                     ChainSet& chains);
+
+/** \brief Doubt of a flat source on a target that is not flat, if the prior leaves the
+ * tilt open: the source may fit well with a wrong one. */
+std::vector<std::string>
+doubtsAboutTilt(const Prior& prior,
+                const SurfaceModel& source,
+                const SurfaceModel& target);
 
 } // namespace bayesian_icp
