@@ -22,10 +22,12 @@ heldInPlane(const Prior& prior, const SurfaceModel& source, const SurfaceModel& 
 
 /** \brief Give each draw of a flat cloud's motion a tilt and a shift out of the plane.
  * They come from \p prior, given the motion within the plane. The pivot of the tilt is
- * the prior's reference point, projected to the plane. Chains have diverged if the
- * prior does not limit these motions. \param[in] prior without a plane \param[in] held
- * heldInPlane() of the prior \param[in] seed of the run \param[in,out] chains draws of
- * \p held's posterior */
+ * the prior's reference point, projected to the plane.
+ *
+ * \param[in] prior without a plane
+ * \param[in] held heldInPlane() of the prior
+ * \param[in] seed of the run
+ * \param[in,out] chains draws of the posterior of \p held */
 void
 addMotionOutOfPlane(const Prior& prior,
                     const HeldPrior& held,

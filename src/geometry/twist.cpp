@@ -32,7 +32,7 @@ angleRates(const Vector6d& pose)
 
 /** The pose, with those angles that the prior prefers of two triples. */
 Vector6d
-preferredPose(const HeldPrior& prior, const Isometry3d& T_target_source)
+preferredPose(const Prior& prior, const Isometry3d& T_target_source)
 {
   constexpr double pi = 3.14159265358979323846;
   const Vector6d pose = poseOf(T_target_source.matrix());
@@ -51,7 +51,7 @@ struct PriorDeviation {
   /** d(deviation) / d(xi). */
   Matrix6d rates = Matrix6d::Identity();
 
-  PriorDeviation(const HeldPrior& prior,
+  PriorDeviation(const Prior& prior,
                  const Isometry3d& T_target_source,
                  const Vector3d& centre)
   {
@@ -64,7 +64,7 @@ struct PriorDeviation {
   }
 
   Vector6d
-  gradient(const HeldPrior& prior) const
+  gradient(const Prior& prior) const
   {
     Vector6d slope = deviation.cwiseQuotient(prior.variance());
     for (int k = 3; k < 6; ++k)

@@ -29,8 +29,8 @@ struct PatchFitWorkspace {
  * noise, or while it is as narrow as a scan line.
  *
  * \param[in] plane_normal null, or the unit normal of the plane in which the cloud
- * lies. The patch is then a piece of curve: a parabola, or a line. \param[in]
- * max_radius largest radius of a neighbourhood [m]; a wider one has no patch
+ *            lies; the patch is then a piece of curve: a parabola, or a line
+ * \param[in] max_radius largest radius of a neighbourhood [m]; a wider one has no patch
  * \param[in,out] workspace from earlier points of the same cloud, or new
  * \param[out] spacing distance to the nearest other point [m]
  * \return the patch, whose sigma comes from this neighbourhood alone */
