@@ -81,8 +81,8 @@ estimateAndDraw(const SurfaceScorer& scorer,
   search.estimate.num_mode_points = options.calibrated.num_mode_points;
   search.estimate.num_threads = options.chains.num_threads;
   // 3 to 7, in estimateCalibrated() for each mode.
-  const std::vector<CalibratedMode> modes = calibratedModes(scorer, held, search);
-  CalibratedEstimate heaviest = modes.front().estimate;
+  std::vector<CalibratedMode> modes = calibratedModes(scorer, held, search);
+  CalibratedEstimate& heaviest = modes.front().estimate;
   const std::string complaint = complaintAbout(heaviest);
   if (!complaint.empty())
     return failure(Status::TooFewCorrespondences, complaint);

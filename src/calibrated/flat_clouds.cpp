@@ -52,8 +52,8 @@ struct TiltAxes {
   Vector3d first, second;
 };
 
-/** The pose in the plane of which a shift and tilts, as in TiltedPose, make a pose. So
- * the yaw stays as it is in the plane of x and y. */
+/** The pose without its motion out of the plane: a TiltedPose of the result is the
+ * pose. In the plane of x and y the yaw stays as it is. */
 Isometry3d
 laidInPlane(const Isometry3d& T_target_source, const PlaneHold& plane)
 {

@@ -95,6 +95,12 @@ struct PlaneDeviation {
         (normal.dot(tilted) * Matrix3d::Identity() - tilted * normal.transpose()) /
         plane.angle_sd;
   }
+
+  Vector6d
+  gradient() const
+  {
+    return rates.transpose() * deviation;
+  }
 };
 
 } // namespace
@@ -136,10 +142,8 @@ twistPriorGradient(const HeldPrior& prior,
                    const Vector3d& centre)
 {
   Vector6d gradient = PriorDeviation(prior, T_target_source, centre).gradient(prior);
-  if (prior.plane) {
-    const PlaneDeviation at(*prior.plane, T_target_source, centre);
-    gradient += at.rates.transpose() * at.deviation;
-  }
+  if (prior.plane)
+    gradient += PlaneDeviation(*prior.plane, T_target_source, centre).gradient();
   return gradient;
 }
 
@@ -152,10 +156,11 @@ twistPrior(const HeldPrior& prior,
   TwistPrior result;
   result.precision =
       at.rates.transpose() * prior.variance().cwiseInverse().asDiagonal() * at.rates;
-  result.gradient = twistPriorGradient(prior, T_target_source, centre);
+  result.gradient = at.gradient(prior);
   if (prior.plane) {
     const PlaneDeviation out(*prior.plane, T_target_source, centre);
     result.precision += out.rates.transpose() * out.rates;
+    result.gradient += out.gradient();
   }
   Vector6d wrapped = at.deviation;
   for (int k = 3; k < 6; ++k)

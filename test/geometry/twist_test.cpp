@@ -40,6 +40,16 @@ references()
   return {Vector3d::Zero(), Vector3d(1.5, -2.0, 0.7)};
 }
 
+/** Gradient of twistPriorEnergy() by central differences. */
+Vector6d
+energyGradient(const HeldPrior& prior, const Isometry3d& pose, const Vector3d& centre)
+{
+  const auto energy = [&](const Vector6d& xi) {
+    return twistPriorEnergy(prior, movedBy(xi, centre, pose));
+  };
+  return test::centralDifferences(energy, Vector6d::Zero());
+}
+
 TEST(Twist, MovesPointsAsTheExponentialAboutItsCentreDoes)
 {
   Random random(51, 0);
@@ -76,10 +86,7 @@ TEST(TwistPrior, GradientIsThatOfThePriorsEnergy)
       const Prior prior = randomPrior(random, reference);
       const Isometry3d pose = isometryOf(test::randomPose(random, 0.8));
       const Vector3d centre = randomCentre(random);
-      const auto energy = [&](const Vector6d& xi) {
-        return twistPriorEnergy(prior, movedBy(xi, centre, pose));
-      };
-      const Vector6d expected = test::centralDifferences(energy, Vector6d::Zero());
+      const Vector6d expected = energyGradient(prior, pose, centre);
       // Central differences of step 1e-5: about 1e-10 in rounding and truncation,
       // times third derivatives of up to 1e3 times the gradient (levers, pitch).
       const Vector6d gradient = twistPriorGradient(prior, pose, centre);
@@ -198,10 +205,7 @@ TEST(TwistPrior, OfAHoldIsTheGradientOfItsEnergyToo)
     prior.plane = plane;
     const Isometry3d pose = isometryOf(test::randomPose(random, 0.8));
     const Vector3d centre = randomCentre(random);
-    const auto energyAt = [&](const Vector6d& xi) {
-      return twistPriorEnergy(prior, movedBy(xi, centre, pose));
-    };
-    const Vector6d expected = test::centralDifferences(energyAt, Vector6d::Zero());
+    const Vector6d expected = energyGradient(prior, pose, centre);
     const Vector6d gradient = twistPriorGradient(prior, pose, centre);
     EXPECT_LT((gradient - expected).norm(), 1e-5 * (1.0 + expected.norm()));
   }

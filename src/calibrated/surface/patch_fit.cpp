@@ -56,6 +56,8 @@ constexpr double curve_slope_error = 0.03;
 
 /** What is fitted to a neighbourhood. */
 struct Shape {
+  /** Of a cloud that lies in a plane: no term of y, and no surface to cover. */
+  bool is_curve;
   /** Number of points of a neighbourhood. */
   int num_neighbors;
   int num_quadric_terms, num_quartic_terms;
@@ -70,12 +72,12 @@ struct Shape {
 Shape
 surfaceShape(const SurfaceModelOptions& options)
 {
-  return {options.num_neighbors, 6, 15, 21, options.max_misfit, 0.0};
+  return {false, options.num_neighbors, 6, 15, 21, options.max_misfit, 0.0};
 }
 
 /** A curve has as many points on its radius as a surface. Its quartic has two terms
  * more than its parabola; F is as seldom above 4 as that of a surface is above 2.2. */
-constexpr Shape curve_shape = {9, 3, 5, 8, 4.0, 1e-9};
+constexpr Shape curve_shape = {true, 9, 3, 5, 8, 4.0, 1e-9};
 
 /** Principal axes of a neighbourhood. */
 struct PrincipalFrame {
@@ -344,7 +346,6 @@ misfit(const PointRows& local,
 void
 fitQuadric(const PointRows& local,
            const Shape& shape,
-           bool is_curve,
            double aspect,
            const SurfaceModelOptions& options,
            SurfacePatch& patch)
@@ -360,14 +361,14 @@ fitQuadric(const PointRows& local,
   const double sigma = std::sqrt(rss / (num_points - shape.num_quadric_terms));
   const double slope_variance =
       num_points *
-      std::max(quadric.varianceOf(1), is_curve ? 0.0 : quadric.varianceOf(2));
+      std::max(quadric.varianceOf(1), shape.is_curve ? 0.0 : quadric.varianceOf(2));
   // The tests that cost as much as the fit are last.
   const bool is_quadric =
       slope_variance < max_slope_variance &&
       patch.radius > options.min_radius_to_noise * sigma &&
       (sigma < negligible_misfit * patch.radius ||
        misfit(local, shape, patch.radius, squared_heights, rss) < shape.max_misfit) &&
-      (is_curve || evennessOf(local) > min_evenness);
+      (shape.is_curve || evennessOf(local) > min_evenness);
   if (!is_quadric)
     return;
   const Vector6d solution = quadric.solution();
@@ -463,7 +464,7 @@ fitPatch(const PointNeighbors& cloud,
     const PointRows& neighbors = workspace.neighbors;
     const PrincipalFrame frame = principalFrame(neighbors, plane_normal);
     const PointRows local = neighbors.lazyProduct(frame.axes);
-    const double aspect = plane_normal ? 1.0 : aspectOf(local);
+    const double aspect = shape.is_curve ? 1.0 : aspectOf(local);
     patch.axes = frame.axes;
     patch.radius = std::sqrt(local.leftCols<2>().rowwise().squaredNorm().maxCoeff());
     const bool is_too_wide = patch.radius > max_radius;
@@ -477,11 +478,11 @@ fitPatch(const PointNeighbors& cloud,
     spacing =
         squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
     fitPlane(local, frame.thickness, aspect, patch);
-    if (is_too_wide || (plane_normal && is_thick))
+    if (is_too_wide || (shape.is_curve && is_thick))
       patch.kind = PatchKind::None;
     else if (neighbors.rows() >= shape.min_points && patch.radius > 0.0)
-      fitQuadric(local, shape, plane_normal, aspect, options, patch);
-    if (patch.kind == PatchKind::Plane && !plane_normal)
+      fitQuadric(local, shape, aspect, options, patch);
+    if (patch.kind == PatchKind::Plane && !shape.is_curve)
       doubtCurve(local, workspace, patch);
     return patch;
   }
