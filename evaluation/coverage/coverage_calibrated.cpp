@@ -100,7 +100,7 @@ runCalibrated(const CoverageCase& problem)
   const Registration registration(problem);
   const CalibratedEstimate estimate = registration.estimate();
   MethodResult result = resultOf(estimate);
-  result.notes = notesOf(dataReportOf(estimate, registration.scorer.model()));
+  result.notes = notesOf(dataReportOf(estimate, registration.scorer.noise()));
   result.num_queries = estimate.num_queries;
   return result;
 }

@@ -85,6 +85,10 @@ planScans(const CoverageSetup& setup, const std::string& condition, Random& rand
   ScanPlan plan{setup.sensor, setup.sensor, setup.view, setup.view};
   if (condition == "moved" || condition == "far")
     plan.source_view = secondView(setup, 1.0, random);
+  else if (condition == "clean_target" || condition == "exact_target") {
+    plan.source_view = secondView(setup, 1.0, random);
+    plan.target_sensor.noise *= condition == "clean_target" ? 0.1 : 0.0;
+  }
   else if (condition == "half")
     scaleResolution(0.5, plan.source_sensor);
   else if (const auto found = densities.find(condition); found != densities.end()) {

@@ -34,10 +34,13 @@ inline const std::vector<std::string> coverage_conditions = {
  *
  * - far: `moved` with a true pose 1 m and 0.8 rad off (standard deviations of each
  * axis) and a prior that says so: most starts end in another basin.
+ * - clean_target, exact_target: `moved` with a tenth of the noise in the target, as in
+ *   the map of a better scanner, and with none, as in a CAD model.
  * - points_quarter, points_x4, points_x16, points_x64: `same` with that many times the
  *   points in both clouds. */
 inline const std::vector<std::string> further_conditions = {
-    "far", "points_quarter", "points_x4", "points_x16", "points_x64"};
+    "far", "clean_target", "exact_target", "points_quarter",
+    "points_x4", "points_x16", "points_x64"};
 
 /** \brief What lidar_scenes are seen with: carLidar(), whose rings have other offsets
  * in every case, from both of drivenViews(). No ray is jittered.

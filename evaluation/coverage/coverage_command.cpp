@@ -103,9 +103,10 @@ describeOptions(CoverageOptions& options)
      "conditions, separated by commas; every scene takes those that it has. Lidar "
      "scenes have lidar16, lidar32, lidar64 (rings) and lidar64_sweep (the sensor "
      "moves during each scan). The default is all conditions of the scenes except far "
-     "(the true pose is 1 m and 0.8 rad off, and the prior is as wide), "
-     "points_quarter, points_x4, points_x16 and points_x64 (both clouds have that many "
-     "times the points), and lidar1 (a 2-D laser scanner)")
+     "(the true pose is 1 m and 0.8 rad off, and the prior is as wide), clean_target "
+     "and exact_target (a tenth of the noise in the target, and none), points_quarter, "
+     "points_x4, points_x16 and points_x64 (both clouds have that many times the "
+     "points), and lidar1 (a 2-D laser scanner)")
     ("methods", list(options.methods),
      ("methods, separated by commas; the default is all that have a name. Preset exact "
       "is exact:RESIDUAL:STEPS:SIGMA:N:POINTS, with sigma [m], N effective points and "

@@ -100,7 +100,7 @@ estimateAndDraw(const SurfaceScorer& scorer,
   // 9: report.
   if (result.summary.status == Status::SeveralModes)
     result.summary.message += "; the report of the data is of the heaviest";
-  result.summary.data = dataReportOf(heaviest, scorer.model());
+  result.summary.data = dataReportOf(heaviest, scorer.noise());
   if (held.plane)
     result.summary.message += "; both clouds lie in a plane";
   result.summary.message += whatThePriorHolds(result.summary.data.directions);

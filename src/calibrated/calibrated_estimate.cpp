@@ -101,7 +101,7 @@ startScale(const HeldPrior& prior, const SurfaceScorer& scorer)
 {
   const double radius = radiusOf(displacementMetric(scorer, Isometry3d::Identity()));
   return std::min(radius, std::sqrt(prior.variance().head<3>().maxCoeff())) /
-         scorer.model().medianSigma();
+         scorer.noise();
 }
 
 Ends
@@ -113,7 +113,7 @@ followStarts(const SurfaceScorer& scorer,
   const SurfaceScorer subset = scorer.ofFirst(options.num_mode_points);
   const Index num_points = subset.numPoints();
   RobustFitOptions fit;
-  fit.tolerance = start_tolerance * scorer.model().medianSigma();
+  fit.tolerance = start_tolerance * scorer.noise();
   Ends ends;
   if (start) {
     ends.best = ends.other = fitRobustly(subset, prior, *start, fit);
@@ -147,7 +147,7 @@ fitOnAllPoints(const SurfaceScorer& scorer,
   RobustFitOptions fit;
   fit.hold = hold;
   fit.max_steps = max_mode_steps;
-  fit.tolerance = mode_tolerance * scorer.model().medianSigma();
+  fit.tolerance = mode_tolerance * scorer.noise();
   return fitRobustly(scorer, prior, start, fit);
 }
 
@@ -165,7 +165,7 @@ followEnds(const SurfaceScorer& scorer, const HeldPrior& prior, Ends& ends)
       std::swap(ends.best, ends.other);
   };
   putBetterFirst();
-  const double noise = scorer.model().medianSigma();
+  const double noise = scorer.noise();
   const Vector6d way =
       twistBetween(ends.best.pose, ends.other.pose, ends.best.pose * scorer.centroid());
   const bool are_apart =
@@ -294,7 +294,7 @@ measureCurvature(const SurfaceScorer& scorer,
                  const EstimateOptions& options,
                  CalibratedEstimate& e)
 {
-  const double noise = scorer.model().medianSigma(), tau = e.residual_scale;
+  const double noise = scorer.noise(), tau = e.residual_scale;
   e.covariance = firstCovariance(e, noise);
   Curvature curvature;
   for (int round = 0; round < options.num_rounds; ++round) {
@@ -390,7 +390,7 @@ moveToMean(const SurfaceScorer& scorer,
            bool last,
            CalibratedEstimate& e)
 {
-  const double tolerance = mode_tolerance * scorer.model().medianSigma();
+  const double tolerance = mode_tolerance * scorer.noise();
   const RobustFit mode =
       fitOnAllPoints(scorer,
                      prior,
@@ -480,6 +480,8 @@ scorerOf(const Matrix3Xd& source_points,
   SurfaceScorer scorer(of_source, target.model, num_threads);
   if (source.model.planeNormal() && !target.model.planeNormal())
     scorer.setRayPlane(*source.model.planeNormal());
+  if (source.complaint.empty())
+    scorer.setSourceNoise(source.model);
   if (are_both_compared)
     scorer.addTargetPoints(of_target, source.model);
   return scorer;

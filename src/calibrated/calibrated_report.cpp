@@ -179,12 +179,12 @@ priorProbability(const CalibratedEstimate& estimate,
 } // namespace
 
 DataReport
-dataReportOf(const CalibratedEstimate& estimate, const SurfaceModel& target)
+dataReportOf(const CalibratedEstimate& estimate, double noise)
 {
   DataReport report;
   report.is_available = true;
   report.residual_scale = estimate.residual_scale;
-  report.noise_scale = estimate.residual_scale * target.medianSigma();
+  report.noise_scale = estimate.residual_scale * noise;
   report.effective_patches =
       num_smallest_clusters * std::max(1.0, estimate.kappa_48) / estimate.kappa_inf;
   report.active_fraction = static_cast<double>(estimate.scores.num_active_of_source) /

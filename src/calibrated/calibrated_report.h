@@ -12,8 +12,8 @@ namespace bayesian_icp {
 /** \brief The report of \p estimate; directions are ordered by their posterior standard
  * deviation.
  * \param[in] estimate to report
- * \param[in] target surface of the target of the estimate */
+ * \param[in] noise unit of its residual_scale [m] */
 DataReport
-dataReportOf(const CalibratedEstimate& estimate, const SurfaceModel& target);
+dataReportOf(const CalibratedEstimate& estimate, double noise);
 
 } // namespace bayesian_icp

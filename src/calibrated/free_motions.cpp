@@ -40,7 +40,7 @@ turnDirection(int k,
               int num_threads,
               CalibratedEstimate& e)
 {
-  const double noise = scorer.model().medianSigma();
+  const double noise = scorer.noise();
   RobustFitOptions options;
   options.start_scale = start_scale;
   options.max_steps = max_steps;
@@ -89,7 +89,7 @@ turnFreeDirections(const SurfaceScorer& scorer,
     double length = longestStep(estimate.directions.col(k),
                                 estimate.prior.precision,
                                 estimate.displacement_metric);
-    while (length > shortest * scorer.model().medianSigma() &&
+    while (length > shortest * scorer.noise() &&
            !turnDirection(k, length, scorer, prior, misfit, num_threads, estimate))
       length *= shortening;
   }

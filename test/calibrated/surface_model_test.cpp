@@ -522,6 +522,77 @@ TEST(SurfaceModel, ExactCurvedSurfacesAreQuadrics)
   EXPECT_GT(shareOf(PatchKind::Quadric, can), 0.9);
 }
 
+/** Random points of the rectangle at height z, 8000 for each square metre. */
+Matrix3Xd
+sheetOf(Random& random, double size, double z)
+{
+  Matrix3Xd points(3, static_cast<Index>(8000.0 * size * size));
+  for (Index i = 0; i < points.cols(); ++i)
+    points.col(i) << size * random.uniform(), size * random.uniform(), z;
+  return points;
+}
+
+/** A board above a ground, which it does not touch. */
+Matrix3Xd
+exactBoard(double thickness)
+{
+  Random random(81, 0);
+  Matrix3Xd points(3, 8000 * 6);
+  points << sheetOf(random, 2.0, 0.0), sheetOf(random, 1.0, 0.5),
+      sheetOf(random, 1.0, 0.5 + thickness);
+  return points;
+}
+
+/** Share of the patches of the board, away from its rim, that lie in one of its faces.
+ */
+double
+shareInFaces(const SurfaceModel& model, double thickness)
+{
+  int num_inside = 0, num_in_faces = 0;
+  for (const SurfacePatch& patch : model.patches()) {
+    const Vector3d centre = patch.centre + model.origin();
+    if (centre.z() < 0.4 || centre.head<2>().minCoeff() < 0.1 ||
+        centre.head<2>().maxCoeff() > 0.9)
+      continue;
+    ++num_inside;
+    const Projection projection = projectionOf(model, patch);
+    const double height = projection.point.z() - 0.5;
+    num_in_faces +=
+        patch.isUsable() && std::abs(projection.normal.z()) > 0.999 &&
+        std::min(std::abs(height), std::abs(height - thickness)) < 1e-3 * thickness;
+  }
+  return double(num_in_faces) / num_inside;
+}
+
+TEST(SurfaceModel, BothSidesOfAnExactBoardAreApart)
+{
+  // A neighbourhood of 18 points has a radius of 27 mm, and one of 45 has 42 mm.
+  constexpr double thickness = 0.035;
+  Matrix3Xd points = exactBoard(thickness);
+  EXPECT_GT(shareInFaces(SurfaceModel(points), thickness), 0.9);
+  // Neighbourhoods of noisy points have to be larger.
+  Random random(82, 0);
+  for (Index i = 0; i < points.cols(); ++i)
+    points(2, i) += 0.002 * random.normal();
+  EXPECT_LT(shareInFaces(SurfaceModel(points), thickness), 0.1);
+}
+
+TEST(SurfaceModel, TheLevelsOfAQuantisedSensorAreNotExact)
+{
+  // A sensor 2 m above the ground, whose readings come in steps of 4 mm: about 40
+  // neighbouring pixels have the same.
+  Random random(83, 0);
+  Matrix3Xd points = test::gridPlane(120, 0.005).points;
+  for (Index i = 0; i < points.cols(); ++i)
+    points(2, i) = 0.004 * std::round((0.1 * points(0, i) + 0.05 * points(1, i) +
+                                       0.001 * random.normal()) /
+                                      0.004);
+  const SurfaceModel model(points);
+  // Uniform within a step, and the noise.
+  EXPECT_GT(model.medianSigma(), 0.001);
+  EXPECT_LT(model.medianSigma(), 0.002);
+}
+
 TEST(SurfaceModel, ThinningADenseSurfaceKeepsItsNoiseAndItsPlace)
 {
   // 20 points on a square as wide as the noise: cubes that hold one point each of those

@@ -188,6 +188,54 @@ TEST(SurfaceScore, OfATargetPointIsTheGradientToo)
             1e-12 * scores.scores.norm());
 }
 
+/** The plane of PlaneCase with this noise, and every k-th row and column of it. */
+SurfaceModel
+noisyPlane(double noise, Index k)
+{
+  Random random(62, 0);
+  Matrix3Xd points = test::gridPlane(40 / k, 0.05 * double(k)).points;
+  for (Index i = 0; i < points.cols(); ++i)
+    points(2, i) += noise * random.normal();
+  return SurfaceModel(points);
+}
+
+TEST(SurfaceScore, PatchesAreNotKnownBetterThanThePointsThatMeetThem)
+{
+  // The plane is exact. Its points are compared with a copy of it.
+  const PlaneCase c;
+  const double own = c.model.medianSigma();
+  SurfaceScorer scorer(c.source, c.model);
+  scorer.addTargetPoints(c.pose * c.source, c.model);
+  const auto residuals = [&] {
+    return test::scoresAt(scorer, c.pose, c.centre(), infinity).residuals;
+  };
+  const Index count = c.source.cols();
+  const Eigen::VectorXd alone = residuals();
+  EXPECT_EQ(scorer.noise(), own);
+  // Patches of the source never change.
+  const auto expectSigma = [&](double sigma) {
+    EXPECT_LT((residuals().head(count) - alone.head(count) * own / sigma).norm(),
+              1e-9 * alone.norm());
+    EXPECT_EQ(residuals().tail(count), alone.tail(count));
+    EXPECT_EQ(scorer.noise(), sigma);
+    EXPECT_EQ(scorer.ofFirst(10).noise(), sigma);
+  };
+  scorer.setSourceNoise(c.model);
+  expectSigma(own);
+  const SurfaceModel noisy = noisyPlane(0.01, 1);
+  scorer.setSourceNoise(noisy);
+  expectSigma(std::min(1.0, c.model.medianRadius() / noisy.medianRadius()) *
+                  noisy.medianSigma() -
+              0.7 * own);
+  // A cloud with a quarter of the points has patches of twice the radius.
+  const SurfaceModel sparse = noisyPlane(0.01, 2);
+  scorer.setSourceNoise(sparse);
+  EXPECT_NEAR(sparse.medianRadius() / noisy.medianRadius(), 2.0, 0.2);
+  EXPECT_NEAR(scorer.noise() / (c.model.medianRadius() / sparse.medianRadius() * 0.01),
+              1.0,
+              0.1);
+}
+
 TEST(SurfaceScore, FirstPointsAreHalfOfEachCloud)
 {
   Random random(65, 0);

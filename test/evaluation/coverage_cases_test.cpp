@@ -139,6 +139,25 @@ TEST(FarCases, HaveAsWideAPriorAsTheyAreFar)
   EXPECT_GT(rotations, 0.0);
 }
 
+TEST(CleanTargetCases, HaveNoiseInTheSourceAlone)
+{
+  for (const char* const name : {"mug", "stairs", "room"}) { // one of each sensor
+    SCOPED_TRACE(name);
+    const simulator::Scene scene =
+        simulator::makeScene(coverageSetup(name).simulated_scene);
+    const CoverageCase moved = makeCoverageCase(name, "moved", 1);
+    const CoverageCase clean = makeCoverageCase(name, "clean_target", 1);
+    const CoverageCase exact = makeCoverageCase(name, "exact_target", 1);
+    const double noise = medianDistance(scene, moved.target);
+    // Medians of thousands of points.
+    EXPECT_NEAR(medianDistance(scene, clean.target), 0.1 * noise, 0.02 * noise);
+    EXPECT_LT(medianDistance(scene, exact.target), 0.001 * noise);
+    EXPECT_NEAR(medianDistance(scene, exact.truth * exact.source),
+                medianDistance(scene, moved.truth * moved.source),
+                0.2 * noise);
+  }
+}
+
 TEST(DensityCases, HaveThatManyTimesThePoints)
 {
   const std::map<std::string, double> factors = {

@@ -214,7 +214,7 @@ areConnected(const SurfaceScorer& subset,
   if (from.keep.minCoeff() > 0.0 || to.keep.minCoeff() > 0.0)
     return false;
   const Vector6d way = twistBetween(from.mode, to.mode, from.centre);
-  const double noise = subset.model().medianSigma();
+  const double noise = subset.noise();
   const double length = std::sqrt(way.dot(from.displacement_metric * way));
   RobustFitOptions fit;
   fit.max_steps = num_way_steps;
@@ -248,7 +248,7 @@ followStarts(const SurfaceScorer& subset,
              const std::vector<Isometry3d>& starts,
              int num_threads)
 {
-  const double noise = subset.model().medianSigma();
+  const double noise = subset.noise();
   const double radius = radiusOf(displacementMetric(subset, Isometry3d::Identity()));
   const auto num_icp_points =
       static_cast<Index>(icp_part * static_cast<double>(subset.sourcePoints().cols()));

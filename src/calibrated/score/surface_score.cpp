@@ -34,6 +34,9 @@ constexpr double min_contacts = 0.1;
  */
 constexpr double max_cosine_of_rays = 0.9;
 
+/** See SurfaceScorer::setSourceNoise(). */
+constexpr double part_of_own_noise = 0.7;
+
 /** Number of points that a thread of evaluate() takes at a time. */
 constexpr Eigen::Index points_per_piece = 256;
 
@@ -51,23 +54,40 @@ struct Contact {
 /** Energy of a point off the plane that touches a patch at its origin.
  * \param[in] in_plane its distance from there [m] */
 double
-energyOffPlane(const SurfacePatch& patch, const Vector3d& point, double in_plane)
+energyOffPlane(const SurfacePatch& patch,
+               const Vector3d& point,
+               double in_plane,
+               double min_sigma)
 {
   const auto& a = patch.quadric;
   const Vector3d local = patch.axes.transpose() * (point - patch.origin);
   const double distance = local.z() - a[0] - a[1] * local.x() - a[2] * local.y();
   const double slopes = slope_error * in_plane / patch.radius;
-  const double sigma = patch.sigma * std::sqrt(1.0 + slopes * slopes);
+  const double sigma =
+      std::max(patch.sigma, min_sigma) * std::sqrt(1.0 + slopes * slopes);
   return tukeyEnergy(distance / (SurfaceScorer::tukey_constant * sigma));
+}
+
+/** See SurfaceScorer::setSourceNoise(). */
+double
+leastSigma(const SurfaceModel& model, const SurfaceModel& of_points)
+{
+  const double narrowing =
+      std::min(1.0, model.medianRadius() / of_points.medianRadius());
+  return std::max(0.0,
+                  narrowing * of_points.medianSigma() -
+                      part_of_own_noise * model.medianSigma());
 }
 
 /** \param[in] point in the model's frame
  * \param[in] ray_plane normal of the plane of the point's ray, or zero
+ * \param[in] min_sigma as in SurfaceScorer::setSourceNoise() [m]
  * \param[in,out] hint nearest patch of the last time, and of this one */
 Contact
 contactWith(const SurfaceModel& model,
             const Vector3d& point,
             const Vector3d& ray_plane,
+            double min_sigma,
             std::uint32_t& hint)
 {
   Contact contact;
@@ -83,12 +103,13 @@ contactWith(const SurfaceModel& model,
   if (std::abs(offset.normal.dot(ray_plane)) > max_cosine_of_rays)
     return contact;
   if (offset.in_plane > SurfaceScorer::max_in_plane * patch.radius) {
-    contact.off_continuation = energyOffPlane(patch, point, offset.in_plane);
+    contact.off_continuation = energyOffPlane(patch, point, offset.in_plane, min_sigma);
     return contact;
   }
   contact.has_patch = true;
-  contact.residual = offset.distance / patch.sigma;
-  contact.normal = offset.normal / patch.sigma;
+  const double sigma = std::max(patch.sigma, min_sigma);
+  contact.residual = offset.distance / sigma;
+  contact.normal = offset.normal / sigma;
   return contact;
 }
 
@@ -140,7 +161,8 @@ public:
     Vector3d arm;
     if (index < num_source) {
       const Vector3d point = T_model_source_ * scorer_.source_points_.col(index);
-      contact = contactWith(scorer_.model_, point, ray_plane_, hint);
+      contact =
+          contactWith(scorer_.model_, point, ray_plane_, scorer_.min_sigma_, hint);
       arm = point - centre_in_model_;
     }
     else {
@@ -148,6 +170,7 @@ public:
       contact = contactWith(*scorer_.source_model_,
                             T_source_model_target_ * point,
                             Vector3d::Zero(),
+                            scorer_.min_source_sigma_,
                             hint);
       // The surface moves, and the point does not: the opposite of the above.
       contact.normal = -(R_ * contact.normal);
@@ -248,6 +271,13 @@ SurfaceScorer::addTargetPoints(const Eigen::Matrix3Xd& target_points,
   source_model_ = &source_model;
 }
 
+void
+SurfaceScorer::setSourceNoise(const SurfaceModel& source_model)
+{
+  min_sigma_ = leastSigma(model_, source_model);
+  min_source_sigma_ = leastSigma(source_model, model_);
+}
+
 SurfaceScorer
 SurfaceScorer::ofFirst(Eigen::Index num_points) const
 {
@@ -257,6 +287,8 @@ SurfaceScorer::ofFirst(Eigen::Index num_points) const
       num_threads_);
   first.centroid_ = centroid_;
   first.ray_plane_ = ray_plane_;
+  first.min_sigma_ = min_sigma_;
+  first.min_source_sigma_ = min_source_sigma_;
   return first;
 }
 

@@ -117,6 +117,16 @@ public:
   addTargetPoints(const Eigen::Matrix3Xd& target_points,
                   const SurfaceModel& source_model);
 
+  /** \brief Take the noise of the source's points from the surface of the source. A
+   * patch of the cleaner cloud, for example of a CAD model, is not known better than
+   * the points that meet it: its sigma is at least the median sigma of their cloud,
+   * less 0.7 times that of its own. This is 0.3 times a noise that both have, which no
+   * patch is below, and the noise of one cloud if the other is exact. The sigma of wide
+   * patches is rather the roughness of the surface than noise, so it is reduced to the
+   * median radius of the patches that it is compared with. */
+  void
+  setSourceNoise(const SurfaceModel& source_model);
+
   /** \brief State that the source lies in a plane with this unit normal (source frame)
    * and the target does not. The rays of a 2-D scanner do not meet a surface that is
    * parallel to their plane, so a source point has no patch there. Without this, a scan
@@ -199,6 +209,14 @@ public:
     return model_;
   }
 
+  /** \brief Unit of lengths: the target's median noise, or that of the source where the
+   * target is far cleaner [m]. */
+  double
+  noise() const
+  {
+    return std::max(model_.medianSigma(), min_sigma_);
+  }
+
   /** \brief The source's centroid, source frame [m]. */
   const Eigen::Vector3d&
   centroid() const
@@ -215,6 +233,8 @@ private:
   int num_threads_;
   Eigen::Matrix3Xd target_points_;
   const SurfaceModel* source_model_ = nullptr;
+  /** Smallest sigma of the target's and of the source's patches [m]. */
+  double min_sigma_ = 0.0, min_source_sigma_ = 0.0;
   /** See setRayPlane(); zero if the source is not flat. */
   Eigen::Vector3d ray_plane_ = Eigen::Vector3d::Zero();
 };

@@ -33,8 +33,7 @@ constexpr double max_slope_variance = 4.0 / (min_aspect * min_aspect);
 constexpr double min_evenness = 0.8;
 /** Number of points whose nearest neighbours are searched. */
 constexpr Eigen::Index num_evenness_points = 32;
-/** A quadric that misses its points by less than this fraction of the radius is good
- * enough, however exact the points are. */
+/** See isExact(). */
 constexpr double negligible_misfit = 1e-3;
 
 /** Number of points gathered in a ball, in units of the neighbourhood. Neighbours are
@@ -61,7 +60,7 @@ struct Shape {
   /** Number of points of a neighbourhood. */
   int num_neighbors;
   int num_quadric_terms, num_quartic_terms;
-  /** With fewer points, the quartic does not test the quadric. */
+  /** With fewer points, the quartic does not test the quadric, which must be exact. */
   Eigen::Index min_points;
   double max_misfit;
   /** Of the normal matrices, as their share of a point: a scan line leaves terms of a
@@ -326,6 +325,13 @@ private:
   Terms reduced_moments_;
 };
 
+/** Whether a quadric is good enough, however exact the points are. */
+bool
+isExact(double radius, double sigma)
+{
+  return sigma < negligible_misfit * radius;
+}
+
 /** F statistic of the quartic's extra terms. */
 double
 misfit(const PointRows& local,
@@ -366,8 +372,9 @@ fitQuadric(const PointRows& local,
   const bool is_quadric =
       slope_variance < max_slope_variance &&
       patch.radius > options.min_radius_to_noise * sigma &&
-      (sigma < negligible_misfit * patch.radius ||
-       misfit(local, shape, patch.radius, squared_heights, rss) < shape.max_misfit) &&
+      (isExact(patch.radius, sigma) ||
+       (local.rows() >= shape.min_points &&
+        misfit(local, shape, patch.radius, squared_heights, rss) < shape.max_misfit)) &&
       (shape.is_curve || evennessOf(local) > min_evenness);
   if (!is_quadric)
     return;
@@ -445,6 +452,12 @@ gatherNeighbors(const PointNeighbors& cloud,
 
 } // namespace
 
+bool
+isExactQuadric(const SurfacePatch& patch)
+{
+  return patch.kind == PatchKind::Quadric && isExact(patch.radius, patch.sigma);
+}
+
 SurfacePatch
 fitPatch(const PointNeighbors& cloud,
          const Vector3f& point,
@@ -480,7 +493,7 @@ fitPatch(const PointNeighbors& cloud,
     fitPlane(local, frame.thickness, aspect, patch);
     if (is_too_wide || (shape.is_curve && is_thick))
       patch.kind = PatchKind::None;
-    else if (neighbors.rows() >= shape.min_points && patch.radius > 0.0)
+    else if (neighbors.rows() > shape.num_quadric_terms && patch.radius > 0.0)
       fitQuadric(local, shape, aspect, options, patch);
     if (patch.kind == PatchKind::Plane && !shape.is_curve)
       doubtCurve(local, workspace, patch);

@@ -43,4 +43,9 @@ fitPatch(const PointNeighbors& cloud,
          PatchFitWorkspace& workspace,
          double& spacing);
 
+/** \brief Whether a patch is a quadric that misses its points by less than a thousandth
+ * of its radius, as in a cloud without noise. */
+bool
+isExactQuadric(const SurfacePatch& patch);
+
 } // namespace bayesian_icp

@@ -49,9 +49,6 @@ complaintAbout(const SurfaceModel& model)
   if (!(model.usableFraction() > 0.0))
     return "the target has no usable surface: its points are too noisy, too sparse or "
            "too tangled for distances to a surface";
-  if (!(model.medianSigma() > 0.0))
-    return "the target's points lie on their surface exactly: without noise there is "
-           "no scale";
   const double width = widthOf(model);
   if (width < min_width_to_noise * model.medianSigma())
     return formatted("the target has no surface: it is a line to within %.2g m, %.1f "

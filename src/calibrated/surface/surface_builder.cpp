@@ -36,6 +36,18 @@ constexpr double max_radius_to_extent = 0.25, max_radius_of_few = 4.0;
 /** A smaller share of quadrics does not determine the noise of the target. */
 constexpr double min_share_of_quadrics = 0.05;
 
+/** Number of neighbourhoods that show whether a cloud is exact, and the share of them
+ * that must be exact. Noise leaves none. In depth images whose readings are quantised,
+ * up to 0.09 have all points on one level. In CAD models, edges and thin walls leave
+ * 0.4 to 0.9. */
+constexpr std::size_t num_exact_trials = 200;
+constexpr double min_share_of_exact = 0.25;
+
+/** The roughness of a plane in an exact cloud is that of an edge, which moves all
+ * points that meet it in the same direction. sigma is this many times as large, so that
+ * edges hold only what nothing else holds. */
+constexpr double edge_doubt = 4.0;
+
 /** Number of indices that a thread takes at a time. */
 constexpr int share_size = 64;
 
@@ -92,6 +104,8 @@ SurfaceBuilder::fitPatches()
       spreadOf(points_) *
       std::max(max_radius_to_extent,
                max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
+  if (!plane_normal_)
+    adaptToExactCloud(cloud, max_radius);
   const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
     const std::uint32_t patch = patch_of_[point];
     if (patch == KdTree::none)
@@ -107,6 +121,32 @@ SurfaceBuilder::fitPatches()
   };
   forEachIndex<PatchFitWorkspace>(cloud.alongTree(), num_threads_, fitAt);
   completeNeighbors();
+}
+
+/** Find out whether the cloud is exact from the neighbourhoods of a few points. In an
+ * exact cloud, a neighbourhood that is thick is at an edge, and does not grow. */
+void
+SurfaceBuilder::adaptToExactCloud(const PointNeighbors& cloud, double max_radius)
+{
+  SurfaceModelOptions exact = options_;
+  exact.min_radius_to_noise = 0.0;
+  PatchFitWorkspace workspace;
+  double spacing;
+  const std::size_t step = std::max<std::size_t>(1, columns_.size() / num_exact_trials);
+  double num_trials = 0.0, num_exact = 0.0;
+  for (std::size_t j = 0; j < columns_.size(); j += step, ++num_trials)
+    num_exact += isExactQuadric(fitPatch(cloud,
+                                         points_.col(columns_[j]),
+                                         nullptr,
+                                         max_radius,
+                                         exact,
+                                         workspace,
+                                         spacing));
+  is_exact_ = num_exact > min_share_of_exact * num_trials;
+  if (!is_exact_)
+    return;
+  options_ = exact;
+  options_.num_neighbors = options_.num_exact_neighbors;
 }
 
 /** \param[in] points nearest first */
@@ -174,8 +214,9 @@ SurfaceBuilder::poolNoise()
 #pragma omp parallel for num_threads(num_threads_) schedule(static)
   for (std::ptrdiff_t j = 0; j < count; ++j) {
     const auto patch = static_cast<std::size_t>(j);
-    noise[patch] =
-        isQuadric(patches_[patch]) ? pooledNoise(patch) : patches_[patch].sigma;
+    noise[patch] = isQuadric(patches_[patch])
+                       ? pooledNoise(patch)
+                       : (is_exact_ ? edge_doubt : 1.0) * patches_[patch].sigma;
   }
   std::vector<double> of_quadrics;
   for (std::size_t j = 0; j < patches_.size(); ++j)

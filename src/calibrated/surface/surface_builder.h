@@ -18,9 +18,10 @@ namespace bayesian_icp {
  * parallel and give the same bits for every number of threads. */
 class SurfaceBuilder {
 public:
-  /** \param[in] points 3 x n, finite, relative to the model's origin [m]
+  /** \param[in] points 3 x n, finite, relative to the model's origin [m]; must outlive
+   *            this object
    * \param[in] plane_normal of fitPatch()
-   * \param[in] options of the patches; like \p points, must outlive this object
+   * \param[in] options of the patches
    * \param[in] num_threads 0: as OpenMP would */
   SurfaceBuilder(const Eigen::Matrix3Xf& points,
                  const std::optional<Eigen::Vector3d>& plane_normal,
@@ -69,6 +70,9 @@ private:
   };
 
   void
+  adaptToExactCloud(const PointNeighbors& cloud, double max_radius);
+
+  void
   noteNeighbors(const std::vector<std::uint32_t>& points,
                 NearestPatches& nearest) const;
 
@@ -82,7 +86,7 @@ private:
   donorOf(std::size_t patch) const;
 
   const std::optional<Eigen::Vector3d> plane_normal_;
-  const SurfaceModelOptions& options_;
+  SurfaceModelOptions options_;
   int num_threads_;
   const Eigen::Matrix3Xf& points_;
   /** The point of each patch. */
@@ -93,6 +97,7 @@ private:
   std::vector<NearestPatches> neighbors_;
   std::vector<double> spacings_;
   double median_sigma_ = 0.0;
+  bool is_exact_ = false;
 };
 
 } // namespace bayesian_icp

@@ -1,5 +1,6 @@
 #include "calibrated/surface/surface_model.h"
 
+#include "calibrated/median.h"
 #include "calibrated/surface/even_choice.h"
 #include "calibrated/surface/surface_builder.h"
 #include "search/finite_columns.h"
@@ -9,6 +10,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 namespace bayesian_icp {
 
@@ -146,12 +149,13 @@ SurfaceModel::build(const Matrix3Xf& points,
   median_sigma_ = builder.medianSigma();
   spacing_ = builder.spacing();
   patches_ = builder.takePatches();
-  const auto num_usable =
-      std::count_if(patches_.begin(), patches_.end(), [](const SurfacePatch& p) {
-        return p.isUsable();
-      });
+  std::vector<double> radii;
+  for (const SurfacePatch& patch : patches_)
+    if (patch.isUsable())
+      radii.push_back(patch.radius);
   usable_fraction_ =
-      static_cast<double>(num_usable) / static_cast<double>(patches_.size());
+      static_cast<double>(radii.size()) / static_cast<double>(patches_.size());
+  median_radius_ = medianOf(std::move(radii));
 }
 
 } // namespace bayesian_icp

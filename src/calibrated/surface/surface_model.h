@@ -97,6 +97,9 @@ struct SurfaceModelOptions {
   /** Number of points of a neighbourhood. It is doubled where the neighbourhood is
    * hardly wider than its noise, or is a scan line. */
   int num_neighbors = 30;
+  /** The same in an exact cloud, like that of a CAD model: there is no noise to
+   * average, and small neighbourhoods keep off edges and the other side of walls. */
+  int num_exact_neighbors = 12;
   /** Smallest ratio of a quadric's radius to its noise. */
   double min_radius_to_noise = 3.75;
   /** Largest F statistic of a quartic against the quadric. It is tested where the
@@ -181,6 +184,13 @@ public:
     return median_sigma_;
   }
 
+  /** \brief Median radius of the usable patches [m]; 0 if there are none. */
+  double
+  medianRadius() const
+  {
+    return median_radius_;
+  }
+
   /** \brief Median distance of a patch's point to its nearest neighbour, among the
    * points that neighbourhoods are taken from [m]. */
   double
@@ -215,6 +225,7 @@ private:
   std::vector<SurfacePatch> patches_;
   KdTree tree_;
   double median_sigma_ = 0.0;
+  double median_radius_ = 0.0;
   double spacing_ = 0.0;
   double usable_fraction_ = 0.0;
 };
