@@ -38,9 +38,13 @@ inline const std::vector<std::string> coverage_conditions = {
  *   the map of a better scanner, and with none, as in a CAD model.
  * - points_quarter, points_x4, points_x16, points_x64: `same` with that many times the
  *   points in both clouds. */
-inline const std::vector<std::string> further_conditions = {
-    "far", "clean_target", "exact_target", "points_quarter",
-    "points_x4", "points_x16", "points_x64"};
+inline const std::vector<std::string> further_conditions = {"far",
+                                                            "clean_target",
+                                                            "exact_target",
+                                                            "points_quarter",
+                                                            "points_x4",
+                                                            "points_x16",
+                                                            "points_x64"};
 
 /** \brief What lidar_scenes are seen with: carLidar(), whose rings have other offsets
  * in every case, from both of drivenViews(). No ray is jittered.

@@ -102,8 +102,8 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   bool is_available = false;
   /** Standard deviation of a source point's distance to the target's surface [m]. */
   double noise_scale = std::numeric_limits<double>::quiet_NaN();
-  /** noise_scale in units of the target's own noise, or of the source's if the target is
-   * far cleaner. Normally 1 to 1.5. */
+  /** noise_scale in units of the target's own noise, or of the source's if the target
+   * is far cleaner. Normally 1 to 1.5. */
   double residual_scale = std::numeric_limits<double>::quiet_NaN();
   /** Number of independent patches of surface with the same information: 96 kappa_48 /
    * kappa_inf. It is about 96 if neighbouring points are independent. */
