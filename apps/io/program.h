@@ -24,14 +24,24 @@ print(const std::string& text)
     throw FileError("standard output", "cannot be written");
 }
 
-/** \brief Say on standard error why \p program ends. To be called in a `catch (...)`.
+/** \brief The running program as its messages name it: what runProgram() was told. */
+inline std::string program_name;
+
+/** \brief Say something on standard error, after the program's name; nothing if
+ * \p message is empty. */
+inline void
+tell(const std::string& message)
+{
+  if (!message.empty())
+    std::cerr << program_name + ": " + message + '\n';
+}
+
+/** \brief Say on standard error why the program ends. To be called in a
+ * `catch (...)`.
  * \return the exit code: 2 usage, 3 a file, 1 anything else */
 inline int
-explainFailure(const std::string& program)
+explainFailure()
 {
-  const auto tell = [&program](const std::string& reason) {
-    std::cerr << program << ": " << reason << '\n';
-  };
   try {
     throw;
   }
@@ -64,12 +74,13 @@ runProgram(
     const Work& work,
     const std::function<void(int exit_code)>& on_failure = [](int) {})
 {
+  program_name = program;
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return work();
   }
   catch (...) {
-    const int exit_code = explainFailure(program);
+    const int exit_code = explainFailure();
     on_failure(exit_code);
     return exit_code;
   }

@@ -14,7 +14,6 @@
 #include "pose_graph/graph_report.h"
 
 #include <filesystem>
-#include <iostream>
 #include <optional>
 #include <stdexcept>
 
@@ -23,12 +22,6 @@ namespace {
 
 /** Failures have those of io::explainFailure(). */
 enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
-
-void
-tell(const std::string& message)
-{
-  std::cerr << "pcl_bayesian_icp_pose_graph: " + message + '\n';
-}
 
 /** The most likely poses, if they can be found.
  * \param[in] edges that \p graph has taken */
@@ -48,8 +41,8 @@ optimized(const ScanGraph& graph, const std::vector<GraphEdge>& edges, RobustLos
   catch (const std::invalid_argument& error) {
     complaint = error.what();
   }
-  tell("the poses cannot be optimized: " + complaint +
-       "; the graph is written with the poses of the chain");
+  io::tell("the poses cannot be optimized: " + complaint +
+           "; the graph is written with the poses of the chain");
   return std::nullopt;
 }
 
@@ -61,11 +54,12 @@ tellDisagreements(const std::vector<GraphEdge>& edges,
 {
   const std::vector<Disagreement> all = disagreementsOf(cycles, optimum);
   for (const Disagreement& found : all)
-    tell("edge " + nameOf(edges[found.edge]) + " contradicts the others: " +
-         (isContradiction(found.squared_error)
-              ? "squared error " + io::fixedTextOf(found.squared_error, 1) +
-                    " for 6 degrees of freedom"
-              : "none of its " + io::textOf(found.num_open_cycles) + " cycles closes"));
+    io::tell(
+        "edge " + nameOf(edges[found.edge]) + " contradicts the others: " +
+        (isContradiction(found.squared_error)
+             ? "squared error " + io::fixedTextOf(found.squared_error, 1) +
+                   " for 6 degrees of freedom"
+             : "none of its " + io::textOf(found.num_open_cycles) + " cycles closes"));
   return all.empty();
 }
 
@@ -92,7 +86,7 @@ addOptimum(const GraphCommand& command,
     folder.add("report.html", graphReportHtml(command, graph, *optimum, cycles));
   }
   catch (const plot::GnuplotError& error) {
-    tell(std::string(error.what()) + "; report.html is left out");
+    io::tell(std::string(error.what()) + "; report.html is left out");
     folder.leaveOut("report.html");
   }
 }
@@ -101,7 +95,7 @@ int
 makeGraph(const GraphCommand& command)
 {
   if (!command.note.empty() && !command.is_quiet)
-    tell("note: " + command.note);
+    io::tell("note: " + command.note);
   io::silencePcl();
   const std::filesystem::path file(command.output_file);
   std::optional<io::OutputFolder> folder_of_file, optimized_folder;
@@ -117,16 +111,13 @@ makeGraph(const GraphCommand& command)
       registerScans(command.request, [&](bool is_ok, const std::string& line) {
         is_good = is_good && is_ok;
         if (!is_ok || !command.is_quiet)
-          tell(line);
+          io::tell(line);
       });
   if (io::wasInterrupted()) {
-    tell("interrupted; nothing is written");
+    io::tell("interrupted; nothing is written");
     return Interrupted;
   }
-  if (const std::string warning =
-          unmeasuredText(graph.numUnmeasured(), graph.chain.size() - 1);
-      !warning.empty())
-    tell(warning);
+  io::tell(unmeasuredText(graph.numUnmeasured(), graph.chain.size() - 1));
   const std::vector<GraphEdge> edges = edgesOf(graph.taken());
   std::optional<OptimizedPoses> optimum;
   if (optimized_folder) {

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <optional>
 
 namespace bayesian_icp::app {
@@ -23,12 +22,6 @@ namespace {
 
 /** Failures have those of io::explainFailure(). */
 enum ExitCode { Good = 0, NoPosterior = 1, Interrupted = io::interrupted_exit_code };
-
-void
-tell(const std::string& message)
-{
-  std::cerr << "pcl_bayesian_icp: " << message << '\n';
-}
 
 /** A hint where the source is larger than any LiDAR scan, and the default prior the
  * only one: its rotation moves such points hundreds of times as far as its translation.
@@ -58,12 +51,11 @@ runRegistration(const Request& request)
   io::silencePcl();
   Run run = readRun(request.source_file, request.target_file, request.settings);
   // PCL registers coordinates of 32 bits.
-  for (const io::CloudFile* cloud : {&run.source, &run.target})
-    if (const std::string note = io::noteOfLostDigits(*cloud);
-        !note.empty() && !request.is_quiet)
-      tell(note);
-  if (const std::string note = noteOfSize(run); !note.empty() && !request.is_quiet)
-    tell(note);
+  if (!request.is_quiet)
+    for (const std::string& note : {io::noteOfLostDigits(run.source),
+                                    io::noteOfLostDigits(run.target),
+                                    noteOfSize(run)})
+      io::tell(note);
   ProgressBar bar(!request.is_quiet);
   io::catchInterrupt();
   registerClouds(
@@ -86,7 +78,7 @@ printExport(const Request& request, const Run& run)
     return true;
   }
   catch (const std::invalid_argument& error) {
-    tell("--export " + format + ": " + error.what());
+    io::tell("--export " + format + ": " + error.what());
     return false;
   }
 }
@@ -124,10 +116,9 @@ writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
   });
   addPosteriorFiles(run, folder);
   folder.commit();
-  if (!complaint.empty())
-    tell(complaint);
+  io::tell(complaint);
   for (const std::string& refusal : refusals)
-    tell(refusal);
+    io::tell(refusal);
   return refusals.empty();
 }
 
@@ -141,7 +132,7 @@ writeFailure(const Run& run, io::OutputFolder& folder)
     folder.leaveOut(name);
   addPosteriorFiles(run, folder);
   folder.commit();
-  tell("there are no draws, so no files but posterior.json are written");
+  io::tell("there are no draws, so no files but posterior.json are written");
 }
 
 /** \return whether all that was asked for could be exported */
@@ -158,7 +149,7 @@ report(const Request& request, const Run& run)
   const bool is_exported = !prints_export || printExport(request, run);
   // The table has the status already.
   if (run.result.summary.status != Status::Ok && !has_table)
-    tell(statusText(run.result.summary));
+    io::tell(statusText(run.result.summary));
   return is_exported;
 }
 
@@ -166,7 +157,7 @@ int
 registerAsAsked(const Request& request)
 {
   if (!request.note.empty() && !request.is_quiet)
-    tell("note: " + request.note);
+    io::tell("note: " + request.note);
   std::optional<io::OutputFolder> folder;
   if (!request.output_folder.empty())
     folder.emplace(request.output_folder);
@@ -178,7 +169,7 @@ registerAsAsked(const Request& request)
   else if (folder && run.result.summary.status != Status::Cancelled)
     writeFailure(run, *folder);
   else if (folder)
-    tell("there are no draws, so no files are written");
+    io::tell("there are no draws, so no files are written");
   is_exported &= report(request, run);
   if (io::wasInterrupted())
     return Interrupted;

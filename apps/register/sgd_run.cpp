@@ -207,13 +207,13 @@ runSgdIcp(const Request& request)
   if (folder && has_files)
     writeFiles(run, *folder);
   if (folder && !has_moved)
-    std::cerr << "pcl_bayesian_icp: no step was made, so no files "
-              << (has_files ? "but sgd_icp.json " : "") << "are written\n";
+    io::tell(std::string("no step was made, so no files ") +
+             (has_files ? "but sgd_icp.json " : "") + "are written");
   if (!request.is_quiet)
     io::print(request.is_json ? sgdJson(run) : sgdReportText(run));
   // The table has the status already.
   if (!run.result.has_converged && (request.is_json || request.is_quiet))
-    std::cerr << "pcl_bayesian_icp: " << endText(run) << '\n';
+    io::tell(endText(run));
   if (io::wasInterrupted())
     return io::interrupted_exit_code;
   return run.result.has_converged ? 0 : 1;

@@ -19,19 +19,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 
 namespace bayesian_icp::app {
 namespace {
 
 /** Failures have those of io::explainFailure(). */
 enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
-
-void
-tell(const std::string& message)
-{
-  std::cerr << "pcl_bayesian_icp_track: " + message + '\n';
-}
 
 /** The steps that an interrupted track has left.
  * \return whether it is one: its files have not changed */
@@ -64,10 +57,10 @@ tellStep(const TrackCommand& command, const TrackStep& step)
   if (is_good && command.is_quiet)
     return;
   const std::string file = command.request.scans.at(std::size_t(step.scan));
-  tell(io::textOf(step.scan) + '/' + io::textOf(command.request.scans.size() - 1) +
-       ' ' + std::filesystem::path(file).filename().string() + ": " +
-       toString(step.kind) + " (" + io::fixedTextOf(step.seconds, 2) + " s)" +
-       (is_good ? "" : ", " + step.status + ": " + step.message));
+  io::tell(io::textOf(step.scan) + '/' + io::textOf(command.request.scans.size() - 1) +
+           ' ' + std::filesystem::path(file).filename().string() + ": " +
+           toString(step.kind) + " (" + io::fixedTextOf(step.seconds, 2) + " s)" +
+           (is_good ? "" : ", " + step.status + ": " + step.message));
 }
 
 void
@@ -81,7 +74,7 @@ writeFiles(const TrackCommand& command, const Track& track, io::OutputFolder& fo
     folder.add("report.html", trackReportHtml(command, track));
   }
   catch (const plot::GnuplotError& error) {
-    tell(std::string(error.what()) + "; report.html is left out");
+    io::tell(std::string(error.what()) + "; report.html is left out");
     folder.leaveOut("report.html");
   }
   folder.commit();
@@ -105,7 +98,7 @@ makeTrack(const TrackCommand& command)
 {
   const TrackRequest& request = command.request;
   if (!command.note.empty() && !command.is_quiet)
-    tell("note: " + command.note);
+    io::tell("note: " + command.note);
   io::silencePcl();
   io::OutputFolder folder(command.output_folder);
   Track track(motionModelOf(request),
@@ -119,11 +112,13 @@ makeTrack(const TrackCommand& command)
     return !has_changed;
   });
   if (has_changed)
-    tell("scan 0 or " + io::textOf(track.size()) +
-         " has changed, so the track goes on from scan " + io::textOf(track.size()));
+    io::tell("scan 0 or " + io::textOf(track.size()) +
+             " has changed, so the track goes on from scan " +
+             io::textOf(track.size()));
   if (track.size() > 1 && !command.is_quiet)
-    tell(io::textOf(track.size() - 1) + " of " + io::textOf(request.scans.size() - 1) +
-         " steps are in " + edges + " already");
+    io::tell(io::textOf(track.size() - 1) + " of " +
+             io::textOf(request.scans.size() - 1) + " steps are in " + edges +
+             " already");
   io::catchInterrupt();
   Tracker tracker(request, track);
   while (track.size() < static_cast<int>(request.scans.size()) &&
@@ -139,13 +134,10 @@ makeTrack(const TrackCommand& command)
   }
   writeFiles(command, track, folder);
   if (io::wasInterrupted()) {
-    tell("interrupted; the same command goes on");
+    io::tell("interrupted; the same command goes on");
     return Interrupted;
   }
-  if (const std::string warning =
-          unmeasuredText(track.numUnmeasured(), track.steps().size());
-      !warning.empty())
-    tell(warning);
+  io::tell(unmeasuredText(track.numUnmeasured(), track.steps().size()));
   const bool are_all_good = std::all_of(
       track.steps().begin(), track.steps().end(), [](const TrackStep& step) {
         return step.kind == StepKind::Registered;

@@ -13,7 +13,6 @@
 #include "viewer/scene_files.h"
 
 #include <filesystem>
-#include <iostream>
 #include <optional>
 
 namespace bayesian_icp::viewer {
@@ -21,12 +20,6 @@ namespace {
 
 /** Failures have those of io::explainFailure(). */
 enum ExitCode { Good = 0, NotToBeTrusted = 1, Interrupted = io::interrupted_exit_code };
-
-void
-tell(const std::string& message)
-{
-  std::cerr << "pcl_bayesian_icp_viewer: " << message << '\n';
-}
 
 void
 registerWithoutWindow(bool is_quiet, app::Run& run)
@@ -75,7 +68,7 @@ prepareScene(const Request& request, std::optional<Window>& window)
     Scene scene =
         readScene(request.posterior_file, request.source_file, request.target_file);
     if (!scene.note.empty())
-      tell("warning: not of one registration: " + scene.note);
+      io::tell("warning: not of one registration: " + scene.note);
     requireDisplay();
     return scene;
   }
@@ -96,7 +89,7 @@ show(const Request& request)
 {
   io::silencePcl();
   if (!request.note.empty() && !request.is_quiet)
-    tell("note: " + request.note);
+    io::tell("note: " + request.note);
   // It is known before the work whether the picture can be written.
   std::optional<io::OutputFolder> folder;
   const std::filesystem::path file = request.view.screenshot_file;
@@ -121,7 +114,7 @@ show(const Request& request)
   else
     letUserLook(*window);
   if (scene.status != toString(Status::Ok))
-    tell(scene.status + ": " + scene.status_message);
+    io::tell(scene.status + ": " + scene.status_message);
   return exitCodeFor(scene);
 }
 
