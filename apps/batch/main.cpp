@@ -17,7 +17,6 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
-#include <sstream>
 
 namespace bayesian_icp::app {
 namespace {
@@ -45,11 +44,9 @@ struct Request {
 po::options_description
 describeOptions(Request& request)
 {
-  po::options_description group("General");
+  po::options_description group = io::generalOptions();
   // clang-format off
   group.add_options()
-    ("help,h", "Show this text.")
-    ("version", "Show the version.")
     ("results", io::fileName("FILE", request.results_file),
      "Write the lines to this file, and skip pairs that already have a line in it, "
      "unless their files have changed. (default: standard output)")
@@ -77,11 +74,12 @@ refuseSecondPrior(const po::variables_map& given)
                            " exclude each other");
 }
 
-std::string
-helpText(const po::options_description& options)
+io::ToolText
+toolText()
 {
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_batch MANIFEST [options]
+  return {std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
+              (Ranks::hasMpi() ? " with MPI" : " without MPI"),
+          R"(Usage: pcl_bayesian_icp_batch MANIFEST [options]
        mpirun -n N pcl_bayesian_icp_batch MANIFEST --results FILE [options]
 
 Registers many pairs of clouds in parallel. Prints one line of JSON for each
@@ -98,8 +96,8 @@ A batch that was stopped continues if it is started again with the same
 --results. Pairs of which a file has another size or modification time than when
 it was read lose their line and are registered again. If a pair cannot be read
 or registered, its line has the status "error", and the other pairs continue.
-)" << options
-       << R"(
+)",
+          R"(
 Exit codes:
   0    the status of all pairs is "ok"
   1    the status of some pairs is not "ok"
@@ -110,8 +108,7 @@ Exit codes:
 Example:
   pcl_bayesian_icp_batch manifest.json --results results.jsonl \
       --prior-variance 0.01
-)";
-  return help.str();
+)"};
 }
 
 /** Reads the command line, and the configuration file that it names.
@@ -123,13 +120,10 @@ parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const po::variables_map given = io::splitCommandLine(argc, argv, options, "manifest");
-  if (io::printHelpOrVersion(
-          given,
-          std::string("pcl_bayesian_icp_batch " BAYESIAN_ICP_VERSION) +
-              (Ranks::hasMpi() ? " with MPI" : " without MPI"),
-          [&options] { return helpText(options); }))
+  const auto read = io::readCommandLine(argc, argv, options, "manifest", toolText());
+  if (!read)
     return std::nullopt;
+  const po::variables_map& given = *read;
   const std::vector<std::string> manifests = io::optionTexts(given, "manifest");
   if (manifests.empty())
     throw io::UsageError("expected a manifest");
@@ -142,12 +136,6 @@ parseCommandLine(int argc, const char* const* argv)
     refuseSecondPrior(given);
   request.settings = settingsFrom(given, Settings(), request.note);
   return request;
-}
-
-void
-tell(const std::string& message)
-{
-  std::cerr << "pcl_bayesian_icp_batch: " + message + '\n';
 }
 
 /** Reports each pair on standard error. */
@@ -234,9 +222,9 @@ tellMissingFiles(const Request& request,
                                      pairs[k].name / "posterior.json",
                                  error);
   if (num_missing > 0)
-    tell(io::textOf(num_missing) + " pairs have a line in " + request.results_file +
-         " but no files in " + request.output_folder +
-         ", and are not run again; docs/batch.md says how to");
+    io::tell(io::textOf(num_missing) + " pairs have a line in " + request.results_file +
+             " but no files in " + request.output_folder +
+             ", and are not run again; docs/batch.md says how to");
 }
 
 /** Process 0 owns the file; the others write theirs, which it takes in at the end. */
@@ -252,11 +240,11 @@ runToFile(const Request& request,
     positions = file->remaining();
     const std::size_t num_finished = pairs.size() - positions.size();
     if (num_finished > 0 && !request.is_quiet)
-      tell(io::textOf(num_finished) + " of " + io::textOf(pairs.size()) +
-           " pairs already have a line in " + request.results_file);
+      io::tell(io::textOf(num_finished) + " of " + io::textOf(pairs.size()) +
+               " pairs already have a line in " + request.results_file);
     if (file->numChanged() > 0)
-      tell(io::textOf(file->numChanged()) +
-           " pairs are registered again, because their files have changed");
+      io::tell(io::textOf(file->numChanged()) +
+               " pairs are registered again, because their files have changed");
     tellMissingFiles(request, pairs, file->remaining());
   }
   const auto share = shareOf(ranks, ranks.broadcast(positions), pairs);
@@ -287,7 +275,7 @@ runTool(int argc, char** argv, const Ranks& ranks)
     return Good;
   const Request& request = *asked;
   if (!request.note.empty() && !request.is_quiet && ranks.rank() == 0)
-    tell("note: " + request.note);
+    io::tell("note: " + request.note);
   if (ranks.size() > 1 && request.results_file.empty())
     throw io::UsageError("several processes need --results");
   io::silencePcl();
@@ -298,7 +286,7 @@ runTool(int argc, char** argv, const Ranks& ranks)
                             ? runToStandardOutput(request, ranks, pairs)
                             : runToFile(request, ranks, pairs);
   if (exit_code == Interrupted && ranks.rank() == 0)
-    tell("interrupted; the pairs under way are abandoned");
+    io::tell("interrupted; the pairs under way are abandoned");
   return exit_code;
 }
 

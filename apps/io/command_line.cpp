@@ -5,6 +5,7 @@
 #include <boost/program_options/parsers.hpp>
 
 #include <set>
+#include <sstream>
 
 namespace bayesian_icp::io {
 
@@ -68,18 +69,32 @@ takeOptions(const po::variables_map& given, const po::options_description& optio
                  [&] { option->semantic()->notify(found->second.value()); });
 }
 
-bool
-printHelpOrVersion(const po::variables_map& given,
-                   const std::string& version,
-                   const std::function<std::string()>& helpText)
+po::options_description
+generalOptions()
 {
+  po::options_description group("General");
+  group.add_options()("help,h", "Show this text.")("version", "Show the version.");
+  return group;
+}
+
+std::optional<po::variables_map>
+readCommandLine(int argc,
+                const char* const* argv,
+                const po::options_description& options,
+                const char* positional_name,
+                const ToolText& tool)
+{
+  const po::variables_map given =
+      splitCommandLine(argc, argv, options, positional_name);
+  if (given.count("help") == 0 && given.count("version") == 0)
+    return given;
+  std::ostringstream text;
   if (given.count("help") > 0)
-    print(helpText());
-  else if (given.count("version") > 0)
-    print(version + '\n');
+    text << tool.usage << options << tool.end;
   else
-    return false;
-  return true;
+    text << tool.version << '\n';
+  print(text.str());
+  return std::nullopt;
 }
 
 void

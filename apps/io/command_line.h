@@ -16,6 +16,7 @@
 #include <boost/program_options/variables_map.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -46,13 +47,28 @@ void
 takeOptions(const boost::program_options::variables_map& given,
             const boost::program_options::options_description& options);
 
-/** \brief Print the help or the version if the command line asks for it.
- * \param[in] version the tool's name and version
- * \return whether it does; there is nothing else to do then */
-bool
-printHelpOrVersion(const boost::program_options::variables_map& given,
-                   const std::string& version,
-                   const std::function<std::string()>& helpText);
+/** \brief What a tool says of itself. */
+struct ToolText {
+  /** For --version: its name and version. */
+  std::string version;
+  /** For --help: what stands before the options, and behind them. */
+  std::string usage;
+  std::string end;
+};
+
+/** \brief The group of options that all tools have: --help and --version. */
+boost::program_options::options_description
+generalOptions();
+
+/** \brief splitCommandLine(), and print help or version if the command line asks for
+ * it.
+ * \return nothing if it does */
+std::optional<boost::program_options::variables_map>
+readCommandLine(int argc,
+                const char* const* argv,
+                const boost::program_options::options_description& options,
+                const char* positional_name,
+                const ToolText& tool);
 
 /** \brief A command line as a shell takes it. */
 std::string

@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 namespace bayesian_icp::app {
 
@@ -24,11 +23,9 @@ constexpr double max_radius = 1e6;
 po::options_description
 describeOptionsOfGraph(GraphCommand& command)
 {
-  po::options_description group("General");
+  po::options_description group = io::generalOptions();
   // clang-format off
   group.add_options()
-    ("help,h", "Show this text.")
-    ("version", "Show the version.")
     ("output,o", io::fileName("FILE", command.output_file),
      "File for the graph in g2o's format. (this or --optimize is required)")
     ("quiet", io::flag(command.is_quiet), "Print problems only.");
@@ -109,11 +106,9 @@ check(const po::variables_map& given, const GraphCommand& command)
                          "units of a cloud's size");
 }
 
-std::string
-helpText(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_pose_graph FOLDER -o FILE.g2o [options]
+const io::ToolText tool_text = {
+    "pcl_bayesian_icp_pose_graph " BAYESIAN_ICP_VERSION,
+    R"(Usage: pcl_bayesian_icp_pose_graph FOLDER -o FILE.g2o [options]
        pcl_bayesian_icp_pose_graph FOLDER --optimize FOLDER [options]
        pcl_bayesian_icp_pose_graph SCAN SCAN ... -o FILE.g2o [options]
 
@@ -137,8 +132,8 @@ that you name stays in the graph even if it contradicts the chain.
                              contradict the others (needs gnuplot)
 
 For more, see docs/pose_graph_and_filter.md.
-)" << options
-       << R"(
+)",
+    R"(
 Exit codes:
   0    all registrations are ok, except for those of --loops
   1    some are not, a loop that you named or an optimized edge contradicts the
@@ -152,9 +147,7 @@ Example:
   pcl_bayesian_icp_pose_graph scans -o graph.g2o --loop 0,3 \
       --guess 0.5,0,0,0,0,0 --prior-variance 0.01,0.01,0.0004,1e-4,1e-4,1e-2
   pcl_bayesian_icp_pose_graph scans --span 3 --loops 2 --optimize result
-)";
-  return help.str();
-}
+)"};
 
 } // namespace
 
@@ -163,11 +156,10 @@ parseGraphCommand(int argc, const char* const* argv)
 {
   GraphCommand command;
   const po::options_description options = describeOptionsOfGraph(command);
-  const po::variables_map given = io::splitCommandLine(argc, argv, options, "scan");
-  if (io::printHelpOrVersion(given,
-                             "pcl_bayesian_icp_pose_graph " BAYESIAN_ICP_VERSION,
-                             [&options] { return helpText(options); }))
+  const auto read = io::readCommandLine(argc, argv, options, "scan", tool_text);
+  if (!read)
     return std::nullopt;
+  const po::variables_map& given = *read;
   GraphRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);

@@ -4,7 +4,6 @@
 #include "register/settings_options.h"
 
 #include <filesystem>
-#include <sstream>
 #include <system_error>
 
 namespace bayesian_icp::app {
@@ -115,19 +114,18 @@ checkExports(const Request& request)
         "--export without --output excludes --json and --quiet, because it prints");
 }
 
-std::string
-helpText(const po::options_description& options)
+io::ToolText
+toolText()
 {
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp SOURCE TARGET [options]
+  return {"pcl_bayesian_icp " BAYESIAN_ICP_VERSION,
+          R"(Usage: pcl_bayesian_icp SOURCE TARGET [options]
 
 Registers a source cloud to a target cloud by ICP and samples the posterior of
 the pose that maps source points into the target frame: mean, covariance,
 quantiles, draws. Clouds are .pcd or .ply files in metres. Options begin with
 one or two dashes; their values follow a space or '='.
-)" << options
-       << '\n'
-       << describeSgdOptions() << R"(
+)",
+          R"(
 Preset exact needs facts about the sensor: --sigma, the standard deviation of a
 distance, and --effective-points, the number of independent measurements in the
 source.
@@ -137,8 +135,8 @@ surface of the other cloud in units of the noise that it finds there, and it
 accounts for correlations between neighbouring points. It reports how well the
 clouds determine the pose in each direction. Along directions that they do not
 determine, the posterior is the prior, which has to be finite.
-)" << aboutSgdIcp()
-       << R"(
+)" + aboutSgdIcp() +
+              R"(
 Exit codes:
   0    the posterior can be trusted
   1    the registration failed, the chains have not mixed or are in several
@@ -153,8 +151,7 @@ Example:
       --effective-points 300 --prior-frame source-centroid
   pcl_bayesian_icp source.pcd target.pcd --prior-mean 0,0,0.2,0,0,1.57 \
       --prior-variance 0.01,0.01,0.01,0.04,0.04,0.04
-)";
-  return help.str();
+)"};
 }
 
 /** Every option of Bayesian ICP, described with its unit and its default. They fill
@@ -162,11 +159,9 @@ Example:
 po::options_description
 describeOptions(Request& request)
 {
-  po::options_description general("General");
+  po::options_description general = io::generalOptions();
   // clang-format off
   general.add_options()
-    ("help,h", "Show this text.")
-    ("version", "Show the version.")
     ("method", po::value<std::string>()->value_name("NAME"),
      "Method: bayesian-icp samples the posterior, sgd-icp finds a pose only. (default "
      "bayesian-icp)")
@@ -185,6 +180,7 @@ describeOptions(Request& request)
   po::options_description all;
   all.add(general).add(describeExportOptions(request.exports));
   describeSettings(Settings(), all);
+  all.add(describeSgdOptions());
   return all;
 }
 
@@ -216,13 +212,10 @@ parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  po::options_description all;
-  all.add(options).add(describeSgdOptions());
-  const po::variables_map given = io::splitCommandLine(argc, argv, all, "cloud");
-  if (io::printHelpOrVersion(given,
-                             "pcl_bayesian_icp " BAYESIAN_ICP_VERSION,
-                             [&options] { return helpText(options); }))
+  const auto read = io::readCommandLine(argc, argv, options, "cloud", toolText());
+  if (!read)
     return std::nullopt;
+  const po::variables_map& given = *read;
   request.command = io::commandOf(argc, argv);
   const bool is_sgd = isSgdIcpAskedFor(given);
   if (is_sgd)

@@ -92,7 +92,7 @@ po::options_description
 describeOptions(Request& request)
 {
   std::array<po::options_description, 5> groups = {
-      po::options_description("General"),
+      io::generalOptions(),
       po::options_description(
           "Views and frames (world frame, z up; defaults depend on the scene)"),
       po::options_description("Sensor"),
@@ -101,7 +101,6 @@ describeOptions(Request& request)
       po::options_description("Other errors of the sensor")};
   auto& general = groups[static_cast<std::size_t>(OptionGroup::General)];
   auto& views = groups[static_cast<std::size_t>(OptionGroup::Views)];
-  general.add_options()("help,h", "Show this text.")("version", "Show the version.");
   SimulationOptions& options = request.options;
   visitOptions(options, [&groups, &options](const OptionField& field, auto& value) {
     groups[static_cast<std::size_t>(field.group)].add_options()(
@@ -127,20 +126,17 @@ describeOptions(Request& request)
   return all;
 }
 
-std::string
-helpText(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_simulate --scene NAME -o DIR [options]
+const io::ToolText tool_text = {
+    "pcl_bayesian_icp_simulate " BAYESIAN_ICP_VERSION,
+    R"(Usage: pcl_bayesian_icp_simulate --scene NAME -o DIR [options]
 
 Scans a simulated scene twice. Writes source.pcd, target.pcd,
 T_target_source.txt (maps source points into the target frame) and scene.json
 (all options, so that the pair can be made again).
 Exit codes: 0 success, 1 out of memory, 2 usage, 3 cannot write,
 130 interrupted.
-)" << options;
-  return help.str();
-}
+)",
+    ""};
 
 std::string
 sceneList()
@@ -174,11 +170,10 @@ parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const po::variables_map given = io::splitCommandLine(argc, argv, options, nullptr);
-  if (io::printHelpOrVersion(given,
-                             "pcl_bayesian_icp_simulate " BAYESIAN_ICP_VERSION,
-                             [&options] { return helpText(options); }))
+  const auto read = io::readCommandLine(argc, argv, options, nullptr, tool_text);
+  if (!read)
     return std::nullopt;
+  const po::variables_map& given = *read;
   if (given.count("list-scenes") > 0) {
     io::print(sceneList());
     return std::nullopt;

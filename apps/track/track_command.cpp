@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
 
 namespace bayesian_icp::app {
 
@@ -35,11 +34,9 @@ po::options_description
 describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
 {
   TrackRequest& request = command.request;
-  po::options_description group("General");
+  po::options_description group = io::generalOptions();
   // clang-format off
   group.add_options()
-    ("help,h", "Show this text.")
-    ("version", "Show the version.")
     ("output,o", io::fileName("FOLDER", command.output_folder),
      "Folder for the results. If it has the results of the same track, interrupted, "
      "the track continues, from the first scan on whose file has changed. (required)")
@@ -186,11 +183,9 @@ check(const po::variables_map& given, const TrackCommand& command)
                          "of the sensor, whose frame is the origin");
 }
 
-std::string
-helpText(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_track FOLDER -o FOLDER [options]
+const io::ToolText tool_text = {
+    "pcl_bayesian_icp_track " BAYESIAN_ICP_VERSION,
+    R"(Usage: pcl_bayesian_icp_track FOLDER -o FOLDER [options]
        pcl_bayesian_icp_track SCAN SCAN ... -o FOLDER [options]
 
 Registers each scan to the one before it, or to a local map (--map), and writes
@@ -222,8 +217,8 @@ FOLDER gets
   report.html                the trajectory in pictures (needs gnuplot)
 
 For more, see docs/track.md.
-)" << options
-       << R"(
+)",
+    R"(
 Exit codes:
   0    all scans are registered, with status ok
   1    some are not, and all files have been written; or another failure
@@ -234,9 +229,7 @@ Exit codes:
 
 Example:
   pcl_bayesian_icp_track scans -o track --period 0.1 --guess 0.5,0,0,0,0,0
-)";
-  return help.str();
-}
+)"};
 
 } // namespace
 
@@ -246,11 +239,10 @@ parseTrackCommand(int argc, const char* const* argv)
   TrackCommand command;
   TimeOptions times;
   const po::options_description options = describeOptionsOfTrack(command, times);
-  const po::variables_map given = io::splitCommandLine(argc, argv, options, "scan");
-  if (io::printHelpOrVersion(given,
-                             "pcl_bayesian_icp_track " BAYESIAN_ICP_VERSION,
-                             [&options] { return helpText(options); }))
+  const auto read = io::readCommandLine(argc, argv, options, "scan", tool_text);
+  if (!read)
     return std::nullopt;
+  const po::variables_map& given = *read;
   TrackRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);

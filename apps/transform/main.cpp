@@ -13,9 +13,7 @@
 #include <Eigen/Geometry>
 
 #include <filesystem>
-#include <iostream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -40,11 +38,9 @@ struct Request {
 po::options_description
 describeOptions(Request& request)
 {
-  po::options_description options("Options");
+  po::options_description options = io::generalOptions();
   // clang-format off
   options.add_options()
-    ("help,h", "Show this text.")
-    ("version", "Show the version.")
     ("pose,p", io::text("POSE|FILE", request.pose),
      "Motion to apply: x,y,z,roll,pitch,yaw [m, rad] with R = Rz(yaw) Ry(pitch) "
      "Rx(roll); a text file with the 4x4 matrix; or a posterior.json (a name that ends "
@@ -64,18 +60,16 @@ describeOptions(Request& request)
   return options;
 }
 
-std::string
-helpText(const po::options_description& options)
-{
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_transform INPUT OUTPUT --pose POSE|FILE [options]
+const io::ToolText tool_text = {
+    "pcl_bayesian_icp_transform " BAYESIAN_ICP_VERSION,
+    R"(Usage: pcl_bayesian_icp_transform INPUT OUTPUT --pose POSE|FILE [options]
 
 Moves a cloud, a .pcd or .ply file in metres. It moves points and viewpoint,
 rotates normals, and keeps all other fields. The name of OUTPUT decides the
 format: a compressed PCD or a binary PLY. OUTPUT is complete, or there is none.
 
-)" << options
-       << R"(
+)",
+    R"(
 Exit codes:
   0    done
   1    out of memory
@@ -87,9 +81,7 @@ Example:
   pcl_bayesian_icp source.pcd target.pcd -o out
   pcl_bayesian_icp_transform source.pcd moved.ply --pose out/posterior.json \
       --use mean
-)";
-  return help.str();
-}
+)"};
 
 /** Read the command line.
  * \return nothing if it asks for help or version, which has been printed
@@ -99,11 +91,10 @@ parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const po::variables_map given = io::splitCommandLine(argc, argv, options, "cloud");
-  if (io::printHelpOrVersion(given,
-                             "pcl_bayesian_icp_transform " BAYESIAN_ICP_VERSION,
-                             [&options] { return helpText(options); }))
+  const auto read = io::readCommandLine(argc, argv, options, "cloud", tool_text);
+  if (!read)
     return std::nullopt;
+  const po::variables_map& given = *read;
   const std::vector<std::string> clouds = io::optionTexts(given, "cloud");
   if (clouds.size() != 2)
     throw io::UsageError("expected two files, the input and the output, but got " +
@@ -153,8 +144,7 @@ transformCloud(const Request& request)
       note = io::noteOfLostDigits(moved);
   });
   folder.commit();
-  if (!note.empty())
-    std::cerr << "pcl_bayesian_icp_transform: " << note << '\n';
+  io::tell(note);
 }
 
 int

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <sstream>
 #include <vector>
 
 namespace bayesian_icp::viewer {
@@ -139,14 +138,12 @@ describeOptions(Request& request)
   constexpr double largest = std::numeric_limits<double>::max();
   constexpr const char* color = "a colour r,g,b, each 0 to 1 or each 0 to 255";
   ViewOptions& view = request.view;
-  po::options_description general("General");
+  po::options_description general = io::generalOptions();
   po::options_description pcl_viewers(
       "As in pcl_viewer (give fc, ps and opaque for source, target, aligned)");
   po::options_description own("Posterior");
   // clang-format off
   general.add_options()
-    ("help,h", "Show this text.")
-    ("version", "Show the version.")
     ("quiet", io::flag(request.is_quiet), "Print errors only, and show no progress bar.");
   pcl_viewers.add_options()
     ("bc", value("R,G,B", readColor, view.background, color),
@@ -201,11 +198,11 @@ describeOptions(Request& request)
   return all;
 }
 
-std::string
-helpText(const po::options_description& options)
+io::ToolText
+toolText()
 {
-  std::ostringstream help;
-  help << R"(Usage: pcl_bayesian_icp_viewer SOURCE TARGET [options]
+  return {"pcl_bayesian_icp_viewer " BAYESIAN_ICP_VERSION,
+          R"(Usage: pcl_bayesian_icp_viewer SOURCE TARGET [options]
        pcl_bayesian_icp_viewer POSTERIOR.json [SOURCE TARGET] [options]
 
 Registers a source cloud to a target cloud, or opens a result of
@@ -213,9 +210,8 @@ pcl_bayesian_icp -o (samples.csv is read from the folder of posterior.json).
 Shows the posterior of the pose: how far off each point may be, and which poses
 are likely. Clouds are .pcd or .ply files in metres. Everything is in the
 target frame. Options begin with one or two dashes.
-)" << options
-       << '\n'
-       << keysText() << R"(
+)",
+          '\n' + keysText() + R"(
 Exit codes:
   0    the result shown can be trusted
   1    it cannot (the status in the picture says why), or nothing could be
@@ -229,8 +225,7 @@ Example:
   pcl_bayesian_icp_viewer result/posterior.json -multiview 1
   xvfb-run -a pcl_bayesian_icp_viewer result/posterior.json \
       --show target,deviation --screenshot deviation.png --size 800x600
-)";
-  return help.str();
+)"};
 }
 
 /** Two clouds, or a posterior with or without the two clouds. */
@@ -275,11 +270,10 @@ parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const po::variables_map given = io::splitCommandLine(argc, argv, options, "file");
-  if (io::printHelpOrVersion(given,
-                             "pcl_bayesian_icp_viewer " BAYESIAN_ICP_VERSION,
-                             [&options] { return helpText(options); }))
+  const auto read = io::readCommandLine(argc, argv, options, "file", toolText());
+  if (!read)
     return std::nullopt;
+  const po::variables_map& given = *read;
   takeFiles(given, request);
   io::takeOptions(given, options);
   const std::string& picture = request.view.screenshot_file;

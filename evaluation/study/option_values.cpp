@@ -7,7 +7,6 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
-#include <sstream>
 #include <thread>
 
 namespace bayesian_icp::evaluate {
@@ -111,16 +110,10 @@ readOptions(int argc,
             const std::string& help,
             const char* positional_name)
 {
-  const po::variables_map given =
-      io::splitCommandLine(argc, argv, description, positional_name);
-  const auto helpText = [&] {
-    std::ostringstream text;
-    text << help << '\n' << description;
-    return text.str();
-  };
-  if (io::printHelpOrVersion(given, "", helpText))
-    return std::nullopt;
-  io::takeOptions(given, description);
+  const auto given = io::readCommandLine(
+      argc, argv, description, positional_name, {"", help + '\n', ""});
+  if (given)
+    io::takeOptions(*given, description);
   return given;
 }
 
