@@ -116,33 +116,39 @@ priorOf(Preset preset)
   return prior;
 }
 
-AccuracyEstimate
-bayesianMean(Preset preset, const PaperProblem& problem, const DrawPlan& plan)
+AccuracyMethod
+bayesianMean(const char* name, Preset preset)
 {
-  Options options;
-  options.preset = preset;
-  options.prior = priorOf(preset);
-  options.chains.seed = plan.seed;
-  options.chains.num_threads = plan.num_threads;
-  options.paper.num_burn_in = num_burn_in;
-  const PosteriorEstimate estimate =
-      estimatePosterior(problem.pair.source, problem.tree, plan.start, options);
-  AccuracyEstimate result{estimate.summary.mean, toString(estimate.summary.status)};
-  if (estimate.samples.rows() == 0)
-    result.pose.setConstant(std::numeric_limits<double>::quiet_NaN());
-  return result;
+  return {name, [preset](const PaperProblem& problem, const DrawPlan& plan) {
+            Options options;
+            options.preset = preset;
+            options.prior = priorOf(preset);
+            options.chains.seed = plan.seed;
+            options.chains.num_threads = plan.num_threads;
+            options.paper.num_burn_in = num_burn_in;
+            const PosteriorEstimate estimate = estimatePosterior(
+                problem.pair.source, problem.tree, plan.start, options);
+            AccuracyEstimate result{estimate.summary.mean,
+                                    toString(estimate.summary.status)};
+            if (estimate.samples.rows() == 0)
+              result.pose.setConstant(std::numeric_limits<double>::quiet_NaN());
+            return result;
+          }};
 }
 
-AccuracyEstimate
-sgdIcp(bool is_one_to_one, const PaperProblem& problem, const DrawPlan& plan)
+AccuracyMethod
+sgdIcp(const char* name, bool is_one_to_one)
 {
-  StochasticGradientIcpOptions options;
-  options.seed = plan.seed;
-  options.is_one_to_one = is_one_to_one;
-  const TreeSearch search(problem.tree, std::numeric_limits<double>::infinity());
-  const StochasticGradientIcpResult result =
-      stochasticGradientIcp(problem.pair.source, search, plan.start, options);
-  return {result.pose, toString(result.end)};
+  return {name, [is_one_to_one](const PaperProblem& problem, const DrawPlan& plan) {
+            StochasticGradientIcpOptions options;
+            options.seed = plan.seed;
+            options.is_one_to_one = is_one_to_one;
+            const TreeSearch search(problem.tree,
+                                    std::numeric_limits<double>::infinity());
+            const StochasticGradientIcpResult result =
+                stochasticGradientIcp(problem.pair.source, search, plan.start, options);
+            return AccuracyEstimate{result.pose, toString(result.end)};
+          }};
 }
 
 AccuracyEstimate
@@ -153,22 +159,6 @@ icp(const PaperProblem& problem, const DrawPlan& plan)
   const IcpResult result = iterativeClosestPoint(
       problem.pair.source, problem.tree, isometryOf(plan.start), options);
   return {poseOf(result.T_target_source.matrix()), toString(result.stop)};
-}
-
-AccuracyMethod
-sgdMethod(const char* name, bool is_one_to_one)
-{
-  return {name, [is_one_to_one](const PaperProblem& problem, const DrawPlan& plan) {
-            return sgdIcp(is_one_to_one, problem, plan);
-          }};
-}
-
-AccuracyMethod
-bayesianMethod(const char* name, Preset preset)
-{
-  return {name, [preset](const PaperProblem& problem, const DrawPlan& plan) {
-            return bayesianMean(preset, problem, plan);
-          }};
 }
 
 } // namespace
@@ -209,11 +199,11 @@ paperMethod(const std::string& name)
 std::vector<AccuracyMethod>
 accuracyMethods()
 {
-  return {bayesianMethod("paper", Preset::Paper),
-          bayesianMethod("exact", Preset::Exact),
-          bayesianMethod("calibrated", Preset::Calibrated),
-          sgdMethod("sgd-icp", false),
-          sgdMethod("sgd-icp-filter", true),
+  return {bayesianMean("paper", Preset::Paper),
+          bayesianMean("exact", Preset::Exact),
+          bayesianMean("calibrated", Preset::Calibrated),
+          sgdIcp("sgd-icp", false),
+          sgdIcp("sgd-icp-filter", true),
           {"icp", icp}};
 }
 
