@@ -23,9 +23,6 @@ namespace {
 
 namespace po = boost::program_options;
 
-/** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
-
 /** What the user asks for. */
 struct Request {
   std::string manifest_file;
@@ -167,7 +164,7 @@ private:
 int
 exitCodeOf(bool are_all_ok)
 {
-  return io::wasInterrupted() ? Interrupted : are_all_ok ? Good : NotAllOk;
+  return io::wasInterrupted() ? io::Interrupted : are_all_ok ? io::Good : io::NotGood;
 }
 
 BatchRunOptions
@@ -272,7 +269,7 @@ runTool(int argc, char** argv, const Ranks& ranks)
 {
   const std::optional<Request> asked = parseCommandLine(argc, argv);
   if (!asked)
-    return Good;
+    return io::Good;
   const Request& request = *asked;
   if (!request.note.empty() && !request.is_quiet && ranks.rank() == 0)
     io::tell("note: " + request.note);
@@ -285,7 +282,7 @@ runTool(int argc, char** argv, const Ranks& ranks)
   const int exit_code = request.results_file.empty()
                             ? runToStandardOutput(request, ranks, pairs)
                             : runToFile(request, ranks, pairs);
-  if (exit_code == Interrupted && ranks.rank() == 0)
+  if (exit_code == io::Interrupted && ranks.rank() == 0)
     io::tell("interrupted; the pairs under way are abandoned");
   return exit_code;
 }

@@ -5,9 +5,6 @@
 
 namespace bayesian_icp::io {
 
-/** \brief Exit code of a program that was asked to stop, by whichever signal. */
-constexpr int interrupted_exit_code = 130;
-
 /** \brief From now on the first SIGINT or SIGTERM is only remembered, the second one
  * kills. A signal that is ignored, as SIGINT in background jobs, stays so. */
 void

@@ -57,17 +57,13 @@ complaintAboutMotion(const Eigen::Matrix4d& matrix)
 Eigen::Matrix4d
 readMotion(const std::string& option, const std::string& text)
 {
-  const auto items = splitAt(',', text);
-  Vector6d pose;
-  bool is_pose = items.size() == 6;
-  for (std::size_t k = 0; is_pose && k < 6; ++k)
-    is_pose = readNumber(items[k], pose[static_cast<Eigen::Index>(k)]);
-  if (is_pose && !pose.allFinite())
-    throw UsageError("--" + option + ": must be finite");
-  if (is_pose)
+  if (Vector6d pose; readNumbers(text, pose)) {
+    if (!pose.allFinite())
+      throw UsageError("--" + option + ": must be finite");
     return matrixOf(pose);
+  }
   std::error_code ignored;
-  if (items.size() > 1 && !std::filesystem::exists(text, ignored))
+  if (text.find(',') != std::string::npos && !std::filesystem::exists(text, ignored))
     throw UsageError("--" + option + ": " + io::inQuotes(text) +
                      " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad] nor "
                      "a file");

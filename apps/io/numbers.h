@@ -3,7 +3,10 @@
  */
 #pragma once
 
+#include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -108,6 +111,21 @@ splitAt(char separator, std::string_view text)
       return pieces;
     begin = end + 1;
   }
+}
+
+/** \brief Read \p text as so many numbers as \p values has, with separators between.
+ * \return whether it is that; if not, some of \p values may have changed */
+template <typename Values>
+bool
+readNumbers(std::string_view text, Values& values, char separator = ',')
+{
+  const auto items = splitAt(separator, text);
+  auto value = std::begin(values);
+  return std::distance(value, std::end(values)) ==
+             static_cast<std::ptrdiff_t>(items.size()) &&
+         std::all_of(items.begin(), items.end(), [&value](std::string_view item) {
+           return readNumber(item, *value++);
+         });
 }
 
 } // namespace bayesian_icp::io

@@ -24,6 +24,18 @@ print(const std::string& text)
     throw FileError("standard output", "cannot be written");
 }
 
+/** \brief Exit codes of all programs. */
+enum ExitCode {
+  Good = 0,
+  /** There is a result, which is not to be relied on; or an unusual failure. */
+  NotGood = 1,
+  BadUsage = 2,
+  /** A file cannot be read, used or written. */
+  BadFile = 3,
+  /** SIGINT or SIGTERM, see interrupt.h. */
+  Interrupted = 130
+};
+
 /** \brief The running program as its messages name it: what runProgram() was told. */
 inline std::string program_name;
 
@@ -38,7 +50,7 @@ tell(const std::string& message)
 
 /** \brief Say on standard error why the program ends. To be called in a
  * `catch (...)`.
- * \return the exit code: 2 usage, 3 a file, 1 anything else */
+ * \return its exit code */
 inline int
 explainFailure()
 {
@@ -47,19 +59,19 @@ explainFailure()
   }
   catch (const UsageError& error) {
     tell(std::string(error.what()) + " (see --help)");
-    return 2;
+    return BadUsage;
   }
   catch (const FileError& error) {
     tell(error.what());
-    return 3;
+    return BadFile;
   }
   catch (const std::bad_alloc&) {
     tell("out of memory");
-    return 1;
+    return NotGood;
   }
   catch (const std::exception& error) {
     tell(std::string("failed: ") + error.what());
-    return 1;
+    return NotGood;
   }
 }
 

@@ -65,10 +65,9 @@ describeOptionsOfGraph(GraphCommand& command)
 std::pair<int, int>
 loopOf(const std::string& text, std::size_t num_scans)
 {
-  const auto items = io::splitAt(',', text);
-  int target = -1, source = -1;
-  const bool is_good = items.size() == 2 && io::readNumber(items[0], target) &&
-                       io::readNumber(items[1], source) && target >= 0 && source >= 0 &&
+  std::array<int, 2> loop = {-1, -1};
+  const auto& [target, source] = loop;
+  const bool is_good = io::readNumbers(text, loop) && target >= 0 && source >= 0 &&
                        target != source &&
                        static_cast<std::size_t>(std::max(target, source)) < num_scans;
   if (!is_good)

@@ -20,9 +20,6 @@
 namespace bayesian_icp::app {
 namespace {
 
-/** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
-
 /** The most likely poses, if they can be found.
  * \param[in] edges that \p graph has taken */
 std::optional<OptimizedPoses>
@@ -115,7 +112,7 @@ makeGraph(const GraphCommand& command)
       });
   if (io::wasInterrupted()) {
     io::tell("interrupted; nothing is written");
-    return Interrupted;
+    return io::Interrupted;
   }
   io::tell(unmeasuredText(graph.numUnmeasured(), graph.chain.size() - 1));
   const std::vector<GraphEdge> edges = edgesOf(graph.taken());
@@ -137,7 +134,7 @@ makeGraph(const GraphCommand& command)
     folder_of_file->commit();
   if (optimized_folder)
     optimized_folder->commit();
-  return is_good ? Good : NotAllOk;
+  return is_good ? io::Good : io::NotGood;
 }
 
 } // namespace
@@ -149,6 +146,6 @@ main(int argc, char** argv)
   using namespace bayesian_icp;
   return io::runProgram("pcl_bayesian_icp_pose_graph", [&] {
     const auto command = app::parseGraphCommand(argc, argv);
-    return command ? app::makeGraph(*command) : app::Good;
+    return command ? app::makeGraph(*command) : io::Good;
   });
 }

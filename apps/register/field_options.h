@@ -71,13 +71,11 @@ struct Describer {
 inline void
 readNumbers(const std::string& text, bool may_be_one, Vector6d& value)
 {
-  const auto items = io::splitAt(',', text);
   Vector6d numbers;
-  bool is_good = items.size() == 6 || (may_be_one && items.size() == 1);
-  for (std::size_t k = 0; is_good && k < 6; ++k)
-    is_good = io::readNumber(items[items.size() == 1 ? 0 : k],
-                             numbers[static_cast<Eigen::Index>(k)]);
-  if (!is_good)
+  double number = 0.0;
+  if (may_be_one && io::readNumber(text, number))
+    numbers.setConstant(number);
+  else if (!io::readNumbers(text, numbers))
     io::refuseValue(text,
                     std::string("six numbers separated by commas") +
                         (may_be_one ? ", or one for all" : ""));

@@ -20,9 +20,6 @@
 namespace bayesian_icp::app {
 namespace {
 
-/** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NoPosterior = 1, Interrupted = io::interrupted_exit_code };
-
 /** A hint where the source is larger than any LiDAR scan, and the default prior the
  * only one: its rotation moves such points hundreds of times as far as its translation.
  * Empty if all is plausible. */
@@ -172,9 +169,9 @@ registerAsAsked(const Request& request)
     io::tell("there are no draws, so no files are written");
   is_exported &= report(request, run);
   if (io::wasInterrupted())
-    return Interrupted;
+    return io::Interrupted;
   const bool is_good = run.result.summary.status == Status::Ok && is_exported;
-  return is_good ? Good : NoPosterior;
+  return is_good ? io::Good : io::NotGood;
 }
 
 int
@@ -182,7 +179,7 @@ runTool(int argc, char** argv)
 {
   const std::optional<Request> request = parseCommandLine(argc, argv);
   if (!request)
-    return Good;
+    return io::Good;
   return request->sgd ? runSgdIcp(*request) : registerAsAsked(*request);
 }
 

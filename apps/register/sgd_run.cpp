@@ -215,7 +215,7 @@ runSgdIcp(const Request& request)
   if (!run.result.has_converged && (request.is_json || request.is_quiet))
     io::tell(endText(run));
   if (io::wasInterrupted())
-    return io::interrupted_exit_code;
+    return io::Interrupted;
   return run.result.has_converged ? 0 : 1;
 }
 

@@ -28,14 +28,8 @@ take(const std::string& text,
      Eigen::Matrix<double, size, 1>& values,
      SimulationOptions&)
 {
-  const auto items = io::splitAt(',', text);
-  Eigen::Matrix<double, size, 1> numbers;
-  bool is_good = items.size() == size;
-  for (int k = 0; is_good && k < size; ++k)
-    is_good = io::readNumber(items[static_cast<std::size_t>(k)], numbers[k]);
-  if (!is_good)
+  if (!io::readNumbers(text, values))
     io::refuseValue(text, io::textOf(size) + " numbers separated by commas");
-  values = numbers;
 }
 
 /** The scene, which changes all options. */

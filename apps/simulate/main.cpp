@@ -33,7 +33,7 @@ runTool(int argc, const char* const* argv)
   io::print(request->output_folder + ": " + request->options.scene + ", source " +
             std::to_string(pair.source.cols()) + " points, target " +
             std::to_string(pair.target.cols()) + " points\n");
-  return io::wasInterrupted() ? io::interrupted_exit_code : 0;
+  return io::wasInterrupted() ? io::Interrupted : 0;
 }
 
 } // namespace

@@ -23,9 +23,6 @@
 namespace bayesian_icp::app {
 namespace {
 
-/** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NotAllOk = 1, Interrupted = io::interrupted_exit_code };
-
 /** The steps that an interrupted track has left.
  * \return whether it is one: its files have not changed */
 bool
@@ -135,14 +132,14 @@ makeTrack(const TrackCommand& command)
   writeFiles(command, track, folder);
   if (io::wasInterrupted()) {
     io::tell("interrupted; the same command goes on");
-    return Interrupted;
+    return io::Interrupted;
   }
   io::tell(unmeasuredText(track.numUnmeasured(), track.steps().size()));
   const bool are_all_good = std::all_of(
       track.steps().begin(), track.steps().end(), [](const TrackStep& step) {
         return step.kind == StepKind::Registered;
       });
-  return are_all_good ? Good : NotAllOk;
+  return are_all_good ? io::Good : io::NotGood;
 }
 
 } // namespace
@@ -154,6 +151,6 @@ main(int argc, char** argv)
   using namespace bayesian_icp;
   return io::runProgram("pcl_bayesian_icp_track", [&] {
     const auto command = app::parseTrackCommand(argc, argv);
-    return command ? app::makeTrack(*command) : app::Good;
+    return command ? app::makeTrack(*command) : io::Good;
   });
 }

@@ -154,7 +154,7 @@ runTool(int argc, char** argv)
     io::silencePcl();
     transformCloud(*request);
   }
-  return io::wasInterrupted() ? io::interrupted_exit_code : 0;
+  return io::wasInterrupted() ? io::Interrupted : 0;
 }
 
 } // namespace

@@ -42,10 +42,8 @@ oneOf(const char* first_name, Value first, const char* second_name, Value second
 bool
 readColor(const std::string& text, Color& color)
 {
-  const auto items = io::splitAt(',', text);
-  const auto readPart = within(0.0, 255.0);
-  if (items.size() != 3 || !readPart(items[0], color[0]) ||
-      !readPart(items[1], color[1]) || !readPart(items[2], color[2]))
+  const auto isPart = [](double part) { return part >= 0.0 && part <= 255.0; };
+  if (!io::readNumbers(text, color) || !std::all_of(color.begin(), color.end(), isPart))
     return false;
   if (*std::max_element(color.begin(), color.end()) > 1.0)
     for (double& part : color)

@@ -18,9 +18,6 @@
 namespace bayesian_icp::viewer {
 namespace {
 
-/** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, NotToBeTrusted = 1, Interrupted = io::interrupted_exit_code };
-
 void
 registerWithoutWindow(bool is_quiet, app::Run& run)
 {
@@ -45,8 +42,8 @@ int
 exitCodeFor(const Scene& scene)
 {
   if (io::wasInterrupted())
-    return Interrupted;
-  return scene.status == toString(Status::Ok) ? Good : NotToBeTrusted;
+    return io::Interrupted;
+  return scene.status == toString(Status::Ok) ? io::Good : io::NotGood;
 }
 
 /** Opens the window, or the picture that stands in for it. */
@@ -127,6 +124,6 @@ main(int argc, char** argv)
   using namespace bayesian_icp;
   return io::runProgram("pcl_bayesian_icp_viewer", [&]() -> int {
     const auto request = viewer::parseCommandLine(argc, argv);
-    return request ? viewer::show(*request) : viewer::Good;
+    return request ? viewer::show(*request) : io::Good;
   });
 }
