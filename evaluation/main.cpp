@@ -4,7 +4,6 @@
  */
 #include "commands.h"
 #include "io/program.h"
-#include "study/report_program.h"
 
 #include <iomanip>
 #include <iostream>
@@ -17,9 +16,6 @@ namespace io = bayesian_icp::io;
 using evaluate::SubCommand;
 
 namespace {
-
-/** Failures have those of io::explainFailure(). */
-enum ExitCode { Good = 0, BadUsage = 2 };
 
 std::vector<SubCommand>
 subCommands()
@@ -68,17 +64,17 @@ runTool(int argc, const char* const* argv)
   const std::string name = argc > 1 ? argv[1] : "";
   if (name == "--help") {
     printHelp(std::cout);
-    return Good;
+    return io::Good;
   }
   if (name == "--version") {
     io::print("pcl_bayesian_icp_evaluate " BAYESIAN_ICP_VERSION "\n");
-    return Good;
+    return io::Good;
   }
   for (const SubCommand& command : subCommands())
     if (command.name == name)
       return command.run(argc - 1, argv + 1);
   printHelp(std::cerr);
-  return BadUsage;
+  return io::BadUsage;
 }
 
 } // namespace

@@ -15,6 +15,7 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -75,15 +76,13 @@ Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the report.
 AxisDeviation
 deviationOf(const std::string& text)
 {
-  const auto items = io::splitAt(',', text);
-  AxisDeviation sd;
-  if (items.size() != 2 || !io::readNumber(items[0], sd.translation) ||
-      !io::readNumber(items[1], sd.rotation) || !(sd.translation >= 0.0) ||
-      !(sd.rotation >= 0.0) || std::isinf(sd.translation + sd.rotation))
+  std::array<double, 2> sd;
+  if (!io::readNumbers(text, sd) || !(sd[0] >= 0.0) || !(sd[1] >= 0.0) ||
+      std::isinf(sd[0] + sd[1]))
     throw io::BadValue(" is " + io::inQuotes(text) +
                        ", but must be two numbers [m, rad], not negative, separated by "
                        "a comma");
-  return sd;
+  return {sd[0], sd[1]};
 }
 
 po::options_description
@@ -419,7 +418,11 @@ runCoverageCommand(int argc, const char* const* argv)
   study.report = reportProgress;
   CoverageFile results(options->result.file);
   runCoverageStudy(study, results);
-  printCoverageTable(runsOf(study, results), std::cout);
+  std::cout
+      << "Share of truths within the regions of some probabilities, with its 95 % "
+         "interval:\n";
+  for (const TextTable& table : coverageTables(runsOf(study, results)))
+    table.print(std::cout);
   return options->result.report();
 }
 

@@ -4,9 +4,9 @@
 #pragma once
 
 #include "coverage/coverage_study.h"
+#include "study/text_table.h"
 
 #include <array>
-#include <iosfwd>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -68,8 +68,8 @@ summaryOf(const std::vector<CoverageRun>& runs);
 
 /** \brief A block of one line a method for each scene and condition, for each scene and
  * each condition that has several, and for all; in the order in which \p runs name them
- * first. Runs of recordings have columns of their own. */
-void
-printCoverageTable(const std::vector<CoverageRun>& runs, std::ostream& stream);
+ * first. Runs of recordings have a table of their own, with other columns. */
+std::vector<TextTable>
+coverageTables(const std::vector<CoverageRun>& runs);
 
 } // namespace bayesian_icp::evaluate

@@ -1,10 +1,10 @@
 #include "coverage/coverage_summary.h"
-#include "study/text_table.h"
+#include "io/coordinates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <ostream>
+#include <iterator>
 
 namespace bayesian_icp::evaluate {
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double mm = 1e3;
 constexpr double mrad = 1e3;
-constexpr double degree = 180.0 / 3.14159265358979323846;
+constexpr double degrees = app::degrees_per_radian;
 
 using Runs = std::vector<CoverageRun>;
 
@@ -78,12 +78,12 @@ simulatedColumns()
       shareColumn(2),
       shareColumn(3),
       numberColumn("mean\nlog p", &CoverageSummary::mean_log_score, 2),
-      numberColumn("mean\nenergy", &CoverageSummary::mean_energy_score, 4),
-      numberColumn("median\nmm", &CoverageSummary::translation_error, 2, mm),
-      numberColumn("median\ndeg", &CoverageSummary::rotation_error, 2, degree),
-      percentColumn("flagged\nall %", &CoverageSummary::flagged),
-      percentColumn("flagged\nout95 %", &CoverageSummary::flagged_outside),
-      numberColumn("median\ns", &CoverageSummary::median_seconds, 3),
+      numberColumn("energy\nscore", &CoverageSummary::mean_energy_score, 4),
+      numberColumn("median\nerror [mm]", &CoverageSummary::translation_error, 2, mm),
+      numberColumn("median\nerror [deg]", &CoverageSummary::rotation_error, 2, degrees),
+      percentColumn("flagged\n[%]", &CoverageSummary::flagged),
+      percentColumn("flagged if\noutside [%]", &CoverageSummary::flagged_outside),
+      numberColumn("median\ntime [s]", &CoverageSummary::median_seconds, 3),
       {"median\nqueries", [](const CoverageSummary& s) {
          return numberText(s.median_queries >= 0.0 ? s.median_queries : std::nan(""),
                            0);
@@ -98,17 +98,17 @@ sequenceColumns()
   static const Columns columns = {
       {"\npairs", [](const CoverageSummary& s) { return std::to_string(s.num_runs); }},
       {"\nlost", [](const CoverageSummary& s) { return std::to_string(s.num_lost); }},
-      numberColumn("not lost\nNEES/6", &CoverageSummary::anees, 2),
+      numberColumn("mean NEES/6\nnot lost", &CoverageSummary::anees, 2),
       shareColumn(0),
       shareColumn(coverage_levels.size() - 1),
       numberColumn("mean\nlog p", &CoverageSummary::mean_log_score, 2),
-      numberColumn("median\nmm", &CoverageSummary::translation_error, 2, mm),
-      numberColumn("median\nmrad", &CoverageSummary::rotation_error, 3, mrad),
+      numberColumn("median\nerror [mm]", &CoverageSummary::translation_error, 2, mm),
+      numberColumn("median\nerror [mrad]", &CoverageSummary::rotation_error, 3, mrad),
       {"alarms\n/good",
        [](const CoverageSummary& s) { return countText(s.num_alarms, s.num_good); }},
       {"misses\n/bad",
        [](const CoverageSummary& s) { return countText(s.num_misses, s.num_bad); }},
-      numberColumn("median\ns", &CoverageSummary::median_seconds, 3)};
+      numberColumn("median\ntime [s]", &CoverageSummary::median_seconds, 3)};
   return columns;
 }
 
@@ -156,15 +156,12 @@ addBlock(const std::string& title,
   }
 }
 
-} // namespace
-
-void
-printCoverageTable(const Runs& runs, std::ostream& stream)
+/** Of runs that are all of recordings, or none of them. */
+TextTable
+tableOf(const Runs& runs, const Columns& columns)
 {
   const auto scenes = namesOf(runs, &CoverageRunName::scene);
   const auto conditions = namesOf(runs, &CoverageRunName::condition);
-  const bool has_limit = !runs.empty() && runs.front().score.hasLimit();
-  const Columns& columns = has_limit ? sequenceColumns() : simulatedColumns();
   std::vector<std::string> header = {"\nmethod"};
   for (const Column& column : columns)
     header.push_back(column.title);
@@ -186,9 +183,29 @@ printCoverageTable(const Runs& runs, std::ostream& stream)
       add("all scenes, " + condition, pool);
   if (scenes.size() * conditions.size() > 1)
     add("all", runs);
-  stream << "Share of truths within the regions of some probabilities, with its 95 % "
-            "interval:\n";
-  table.print(stream);
+  return table;
+}
+
+} // namespace
+
+std::vector<TextTable>
+coverageTables(const Runs& runs)
+{
+  const auto isOfRecording = [](const CoverageRun& run) {
+    return run.score.hasLimit();
+  };
+  Runs simulated, recorded;
+  std::partition_copy(runs.begin(),
+                      runs.end(),
+                      std::back_inserter(recorded),
+                      std::back_inserter(simulated),
+                      isOfRecording);
+  std::vector<TextTable> tables;
+  if (!simulated.empty())
+    tables.push_back(tableOf(simulated, simulatedColumns()));
+  if (!recorded.empty())
+    tables.push_back(tableOf(recorded, sequenceColumns()));
+  return tables;
 }
 
 } // namespace bayesian_icp::evaluate

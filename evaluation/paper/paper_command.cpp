@@ -2,9 +2,9 @@
 #include "io/cloud_file.h"
 #include "io/command_line.h"
 #include "io/folders.h"
+#include "io/program.h"
 #include "paper/paper_experiment.h"
 #include "study/option_values.h"
-#include "study/report_program.h"
 
 #include <iostream>
 #include <numeric>
@@ -15,8 +15,6 @@ namespace bayesian_icp::evaluate {
 namespace po = boost::program_options;
 
 namespace {
-
-constexpr int incomplete_exit_code = 3;
 
 using Experiment = std::function<void(const PaperStudy&)>;
 
@@ -163,7 +161,7 @@ runExperiments(const std::string& summary,
     std::cerr << study.num_skipped << " pairs were skipped" << std::endl;
   const int report_code =
       study.options.has_report ? makeReport(study.options.output_folder) : 0;
-  return study.num_skipped > 0 ? incomplete_exit_code : report_code;
+  return study.num_skipped > 0 ? io::BadFile : report_code;
 }
 
 } // namespace

@@ -69,22 +69,6 @@ def median(values):
     return np.median(values) if values.size else np.nan
 
 
-def share_of(is_hit):
-    """A share and its 95 % interval by Wilson; NaN of nothing."""
-    n = len(is_hit)
-    if n == 0:
-        return (np.nan,) * 3
-    z = 1.959963984540054  # 97.5 % quantile of the standard normal distribution
-    share = np.mean(is_hit)
-    centre = (share + z**2 / (2 * n)) / (1 + z**2 / n)
-    half = z / (1 + z**2 / n) * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
-    return (share, max(0.0, centre - half), min(1.0, centre + half))
-
-
-def share_text(share):
-    return "-" if np.isnan(share[0]) else "{:.2f} [{:.2f}, {:.2f}]".format(*share)
-
-
 def number(value, decimals):
     """So many decimals, fewer of a number so large that nobody reads them."""
     if np.isnan(value):

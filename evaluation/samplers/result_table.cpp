@@ -1,11 +1,9 @@
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
-#include "study/text_table.h"
 
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <ostream>
 #include <tuple>
 
 namespace bayesian_icp::evaluate {
@@ -96,12 +94,11 @@ familyOf(const std::string& sampler)
 
 /** Step sizes that were tried less often than others of the family are left out. */
 void
-addCell(const CellName& cell,
+addCell(const std::string& title,
         const std::map<std::string, Scores>& samplers,
         TextTable& table)
 {
-  const auto& [scene, sigma, effective_points] = cell;
-  table.addTitle(scene + format(", sigma %g m, N %g", sigma, effective_points));
+  table.addTitle(title);
   std::map<std::string, std::size_t> most_runs;
   for (const auto& [sampler, scores] : samplers) {
     std::size_t& most = most_runs[familyOf(sampler)];
@@ -114,13 +111,15 @@ addCell(const CellName& cell,
 
 } // namespace
 
-void
-printTable(const std::vector<ScoredRun>& runs, std::ostream& stream)
+TextTable
+samplerTable(const std::vector<ScoredRun>& runs)
 {
-  std::map<CellName, std::map<std::string, Scores>> cells;
+  using ScoresOfSamplers = std::map<std::string, Scores>;
+  std::map<CellName, std::map<std::string, ScoresOfSamplers>> cells; // and gold keys
   for (const ScoredRun& run : runs)
-    cells[{run.name.scene, run.name.sigma, run.name.effective_points}][run.name.sampler]
-        .push_back(run.score);
+    cells[{run.name.scene, run.name.sigma, run.name.effective_points}]
+         [run.name.gold_key][run.name.sampler]
+             .push_back(run.score);
   TextTable table({"\nsampler",
                    "\nruns",
                    "6-D KL\nmedian",
@@ -134,9 +133,15 @@ printTable(const std::vector<ScoredRun>& runs, std::ostream& stream)
                    "ESS/s\nmedian",
                    "CPU [s]\nmedian",
                    "mixed\nruns"});
-  for (const auto& [cell, samplers] : cells)
-    addCell(cell, samplers, table);
-  table.print(stream);
+  for (const auto& [cell, standards] : cells)
+    for (const auto& [gold_key, samplers] : standards) {
+      const auto& [scene, sigma, effective_points] = cell;
+      addCell(scene + format(", sigma %g m, N %g", sigma, effective_points) +
+                  (standards.size() > 1 ? ", gold standard " + gold_key : ""),
+              samplers,
+              table);
+    }
+  return table;
 }
 
 } // namespace bayesian_icp::evaluate

@@ -388,7 +388,7 @@ runSamplersCommand(int argc, const char* const* argv)
   boost::range::remove_erase_if(runs, [&keys](const ScoredRun& run) {
     return keys.count(run.name.gold_key) == 0;
   });
-  printTable(runs, std::cout);
+  samplerTable(runs).print(std::cout);
   const int report_code = options->result.report();
   return all_converged ? report_code : 1;
 }

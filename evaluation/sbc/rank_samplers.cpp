@@ -2,10 +2,13 @@
 
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_methods.h"
+#include "io/coordinates.h"
 #include "sbc/rank_models.h"
 #include "summary/estimates.h"
 
 #include <bayesian_icp/pipeline.h>
+
+#include <cmath>
 
 namespace bayesian_icp::evaluate {
 
@@ -78,6 +81,46 @@ rankSamplers()
        [](std::uint64_t seed) { return runExactPreset(seed, ExactSteps::Metropolis); }},
       {"calibrated", true, runLinearScores},
       {"calibrated-scans", false, runScans}};
+}
+
+RankVerdict
+verdictOf(const std::vector<RankRun>& runs)
+{
+  std::vector<std::string> header = {"sampler", "valid/runs"};
+  header.insert(
+      header.end(), app::coordinate_names.begin(), app::coordinate_names.end());
+  header.emplace_back("verdict");
+  RankVerdict result{TextTable(header)};
+  result.table.addTitle(format("Chi-square of %d bins, uniform if below %g (0.1 %%)",
+                               num_rank_bins,
+                               max_rank_chi_square));
+  for (const RankSampler& sampler : rankSamplers()) {
+    std::vector<Ranks> ranks; // of good runs
+    std::size_t num_runs = 0;
+    for (const RankRun& run : runs) {
+      num_runs += run.name.sampler == sampler.name ? 1 : 0;
+      if (run.name.sampler == sampler.name && run.is_valid)
+        ranks.push_back(run.ranks);
+    }
+    if (num_runs == 0)
+      continue;
+    std::vector<std::string> cells = {
+        sampler.name, std::to_string(ranks.size()) + '/' + std::to_string(num_runs)};
+    bool is_uniform = ranks.size() == num_runs;
+    for (int k = 0; k < 6; ++k) {
+      const double statistic =
+          ranks.empty() ? std::nan("") : chiSquareOf(rankHistogram(ranks, k));
+      is_uniform = is_uniform && statistic < max_rank_chi_square;
+      cells.push_back(numberText(statistic, 1));
+    }
+    cells.emplace_back(!sampler.is_well_specified
+                           ? "no model of the scans: for information"
+                       : is_uniform ? "uniform"
+                                    : "NOT UNIFORM");
+    result.table.add(cells);
+    result.are_uniform &= is_uniform || !sampler.is_well_specified;
+  }
+  return result;
 }
 
 } // namespace bayesian_icp::evaluate

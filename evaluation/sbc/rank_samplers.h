@@ -4,6 +4,7 @@
 #pragma once
 
 #include "sbc/rank_statistics.h"
+#include "study/text_table.h"
 
 #include <cstdint>
 #include <functional>
@@ -33,5 +34,18 @@ struct RankSampler {
  *   view; not a well-specified model. */
 std::vector<RankSampler>
 rankSamplers();
+
+/** \brief What the ranks of some runs say. */
+struct RankVerdict {
+  /** A line for each sampler: runs, chi-square statistic of each coordinate, verdict.
+   */
+  TextTable table;
+  /** Whether every well-specified sampler has uniform ranks: all runs good and every
+   * statistic below max_rank_chi_square. */
+  bool are_uniform = true;
+};
+
+RankVerdict
+verdictOf(const std::vector<RankRun>& runs);
 
 } // namespace bayesian_icp::evaluate

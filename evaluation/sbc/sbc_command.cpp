@@ -1,13 +1,10 @@
 #include "commands.h"
-#include "io/coordinates.h"
 #include "sbc/rank_samplers.h"
 #include "sbc/rank_statistics.h"
 #include "study/named.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
-#include "study/text_table.h"
 
-#include <cmath>
 #include <iostream>
 
 namespace bayesian_icp::evaluate {
@@ -116,60 +113,6 @@ runMissing(const SbcOptions& options, RankFile& results)
   runTasks(missing.size(), options.num_threads, run, report);
 }
 
-/** The ranks of a sampler's good runs. */
-std::vector<Ranks>
-ranksOf(const RankSampler& sampler, const SbcOptions& options, const RankFile& results)
-{
-  std::vector<Ranks> ranks;
-  for (const RankRun::Name& name : runNamesOf(sampler, options))
-    if (const RankRun* run = results.find(name); run != nullptr && run->is_valid)
-      ranks.push_back(run->ranks);
-  return ranks;
-}
-
-std::string
-verdictOf(const RankSampler& sampler, bool is_uniform)
-{
-  if (!sampler.is_well_specified)
-    return "no model of the scans: for information";
-  return is_uniform ? "uniform" : "NOT UNIFORM";
-}
-
-/** A line for each sampler: runs, chi-square statistic of each coordinate,
- * verdict.
- * \return whether every well-specified sampler has uniform ranks: all runs good and
- *         every statistic below max_rank_chi_square */
-bool
-printRankTable(const SbcOptions& options, const RankFile& results, std::ostream& stream)
-{
-  std::vector<std::string> header = {"sampler", "valid/runs"};
-  header.insert(
-      header.end(), app::coordinate_names.begin(), app::coordinate_names.end());
-  header.push_back("verdict");
-  TextTable table(header);
-  bool are_all_uniform = true;
-  for (const RankSampler& sampler : options.samplers) {
-    const std::vector<Ranks> runs = ranksOf(sampler, options, results);
-    std::vector<std::string> cells = {sampler.name,
-                                      std::to_string(runs.size()) + '/' +
-                                          std::to_string(options.num_runs)};
-    bool is_uniform = runs.size() == static_cast<std::size_t>(options.num_runs);
-    for (int k = 0; k < 6; ++k) {
-      const double statistic =
-          runs.empty() ? std::nan("") : chiSquareOf(rankHistogram(runs, k));
-      is_uniform = is_uniform && statistic < max_rank_chi_square;
-      cells.push_back(numberText(statistic, 1));
-    }
-    cells.push_back(verdictOf(sampler, is_uniform));
-    table.add(cells);
-    are_all_uniform = are_all_uniform && (is_uniform || !sampler.is_well_specified);
-  }
-  stream << "Chi-square of 10 bins, uniform if below " << max_rank_chi_square
-         << " (0.1 %):\n";
-  table.print(stream);
-  return are_all_uniform;
-}
-
 } // namespace
 
 int
@@ -180,9 +123,14 @@ runSbcCommand(int argc, const char* const* argv)
     return 0;
   RankFile results(options.result.file);
   runMissing(options, results);
-  const bool are_uniform = printRankTable(options, results, std::cout);
+  std::vector<RankRun> runs;
+  for (const RankSampler& sampler : options.samplers)
+    for (const RankRun::Name& name : runNamesOf(sampler, options))
+      runs.push_back(*results.find(name));
+  const RankVerdict verdict = verdictOf(runs);
+  verdict.table.print(std::cout);
   const int report_code = options.result.report();
-  return are_uniform ? report_code : 1;
+  return verdict.are_uniform ? report_code : 1;
 }
 
 } // namespace bayesian_icp::evaluate

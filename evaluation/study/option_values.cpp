@@ -1,8 +1,8 @@
 #include "study/option_values.h"
 
+#include "commands.h"
 #include "io/folders.h"
 #include "io/numbers.h"
-#include "study/report_program.h"
 
 #include <boost/algorithm/string/join.hpp>
 

@@ -15,9 +15,12 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <deque>
+#include <fstream>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -115,21 +118,23 @@ rowOf(Run run)
   return row.text();
 }
 
-/** \throws std::runtime_error if the line is not a row */
+/** \brief Read a row.
+ * \param[in] header of its file; columns that it does not have are as in a new run
+ * \throws std::runtime_error if the line is not a row */
 template <typename Run>
 Run
-runOf(const std::string& line)
+runOf(const std::string& line, const std::string& header = headerOf<Run>())
 {
   const std::vector<std::string_view> fields = io::splitAt(',', line);
-  std::size_t next = 0;
+  const std::vector<std::string_view> titles = io::splitAt(',', header);
+  if (fields.size() != titles.size())
+    throw std::runtime_error("not as many fields as there are titles");
   Run run;
-  run.columns([&](const std::string&, auto& value) {
-    if (next == fields.size())
-      throw std::runtime_error("too few fields");
-    detail::readField(fields[next++], value);
+  run.columns([&](const std::string& title, auto& value) {
+    const auto found = std::find(titles.begin(), titles.end(), title);
+    if (found != titles.end())
+      detail::readField(fields[std::size_t(found - titles.begin())], value);
   });
-  if (next != fields.size())
-    throw std::runtime_error("too many fields");
   return run;
 }
 
@@ -163,21 +168,35 @@ public:
    * \throws io::FileError if the file exists and has another header or a bad row, or
    *         cannot be written, or is in use by another process */
   explicit RunFile(const std::string& file)
-  : file_(file, [&, has_header = false](const std::string& line) mutable {
-    if (!has_header && line != headerOf<Run>())
-      throw io::FileError(file, "is not a file of results of this version");
-    try {
-      if (has_header)
-        keep(runOf<Run>(line));
-    }
-    catch (const std::exception&) {
-      throw io::FileError(file, "bad line '" + line + "'");
-    }
-    return has_header = true;
-  })
   {
-    if (file_.isNew())
-      file_.add(headerOf<Run>());
+    file_.emplace(file, [&, has_header = false](const std::string& line) mutable {
+      if (!has_header && line != headerOf<Run>())
+        throw io::FileError(file, "is not a file of results of this version");
+      if (has_header)
+        read(line, headerOf<Run>(), file);
+      return has_header = true;
+    });
+    if (file_->isNew())
+      file_->add(headerOf<Run>());
+  }
+
+  /** \brief The runs of a file that others may write meanwhile, of any version that has
+   * the columns of the name; none of another file.
+   * \throws io::FileError of a bad row */
+  static std::vector<Run>
+  runsIn(const std::string& file)
+  {
+    RunFile found;
+    std::ifstream stream(file);
+    std::string header, line;
+    std::getline(stream, header);
+    const std::string ours = headerOf<Run>();
+    const auto same_end =
+        std::mismatch(header.begin(), header.end(), ours.begin(), ours.end()).first;
+    if (std::count(header.begin(), same_end, ',') >= Run::num_name_columns)
+      while (std::getline(stream, line) && !stream.eof())
+        found.read(line, header, file);
+    return found.runs();
   }
 
   /** \brief The run of this name, or null; valid as long as this object. */
@@ -196,7 +215,7 @@ public:
   add(const Run& run)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    file_.add(rowOf(run));
+    file_->add(rowOf(run));
     return keep(run);
   }
 
@@ -218,6 +237,19 @@ public:
   }
 
 private:
+  RunFile() = default;
+
+  void
+  read(const std::string& line, const std::string& header, const std::string& file)
+  {
+    try {
+      keep(runOf<Run>(line, header));
+    }
+    catch (const std::exception&) {
+      throw io::FileError(file, "bad line '" + line + "'");
+    }
+  }
+
   static std::string
   keyOf(const Name& name)
   {
@@ -244,7 +276,7 @@ private:
   std::deque<Run> runs_;
   std::map<std::string, std::size_t> places_;
   mutable std::mutex mutex_;
-  io::LineFile file_;
+  std::optional<io::LineFile> file_;
 };
 
 } // namespace bayesian_icp::evaluate

@@ -9,28 +9,24 @@
 
 namespace bayesian_icp::evaluate {
 
-TextTable::TextTable(const std::vector<std::string>& header)
+void
+TextTable::print(std::ostream& stream) const
 {
   std::vector<std::string> first, second;
-  for (const std::string& cell : header) {
+  for (const std::string& cell : rows_[0]) {
     const std::size_t end = std::min(cell.find('\n'), cell.size());
     first.push_back(cell.substr(0, end));
     second.push_back(cell.substr(std::min(end + 1, cell.size())));
   }
-  const std::vector<std::string> nothing(second.size());
-  rows_.push_back(first);
-  if (second != nothing)
-    rows_.push_back(second);
-}
-
-void
-TextTable::print(std::ostream& stream) const
-{
-  std::vector<std::size_t> widths(rows_[0].size(), 0);
-  for (const auto& row : rows_)
+  auto rows = rows_;
+  rows[0] = first;
+  if (second != std::vector<std::string>(second.size()))
+    rows.insert(rows.begin() + 1, second);
+  std::vector<std::size_t> widths(first.size(), 0);
+  for (const auto& row : rows)
     for (std::size_t k = 0; k < row.size() && row.size() > 1; ++k)
       widths[k] = std::max(widths[k], row[k].size());
-  for (const auto& row : rows_) {
+  for (const auto& row : rows) {
     if (row.size() == 1) {
       stream << row[0] << '\n';
       continue;

@@ -32,7 +32,7 @@ numberText(double value, int num_decimals);
 class TextTable {
 public:
   /** \param[in] header what follows a line break is on a second line */
-  explicit TextTable(const std::vector<std::string>& header);
+  explicit TextTable(const std::vector<std::string>& header) : rows_{header} {}
 
   /** \brief A line of all rows that follow, across the columns. */
   void
@@ -51,8 +51,14 @@ public:
   void
   print(std::ostream& stream) const;
 
+  /** \brief The header, and what was added; a row of one cell is a title. */
+  const std::vector<std::vector<std::string>>&
+  rows() const
+  {
+    return rows_;
+  }
+
 private:
-  /** One cell is a title. */
   std::vector<std::vector<std::string>> rows_;
 };
 

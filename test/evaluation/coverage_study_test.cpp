@@ -143,13 +143,57 @@ TEST_F(CoverageStudyTest, TableHasEveryCellAndThePools)
                       coverageScoreOf(right.problem, right.result)});
     }
   std::ostringstream table;
-  printCoverageTable(runs, table);
+  for (const TextTable& made : coverageTables(runs))
+    made.print(table);
   for (const char* title : {"\nbox, same\n",
                             "\ncan, moved\n",
                             "\nbox, all conditions\n",
                             "\nall scenes, moved\n",
                             "\nall\n"})
     expectIn(table.str(), title);
+}
+
+TEST(CoverageTables, TellOfTenRuns)
+{
+  std::vector<CoverageRun> runs;
+  for (std::uint64_t k = 0; k < 10; ++k) {
+    CoverageScore& score = runs.emplace_back().score;
+    score.is_valid = true;
+    score.nees = k % 2 == 0 ? 6.0 : 12.0;
+    score.region = (static_cast<double>(k) + 0.5) / 10.0;
+    score.log_score = 2.0;
+    score.energy_score = 0.5;
+    score.translation_error = 1e-3 * static_cast<double>(k + 1);
+    score.rotation_error = 0.1;
+    score.displacement = 0.01;
+    score.seconds = 0.25;
+    score.num_queries = 1000;
+    score.notes = k < 2 ? "flag:modes" : "";
+    runs.back().name = {"can", "same", k, "a"};
+  }
+  // 5, 7, 9 and 10 of 10 regions are within the levels.
+  const std::vector<std::string> cells = {"a",
+                                          "10/10",
+                                          "1.50",
+                                          "0.50 [0.24,0.76]",
+                                          "0.70 [0.40,0.89]",
+                                          "0.90 [0.60,0.98]",
+                                          "1.00 [0.72,1.00]",
+                                          "2.00",
+                                          "0.5000",
+                                          "5.50",
+                                          "5.73",
+                                          "20",
+                                          "-",
+                                          "0.250",
+                                          "1000"};
+  EXPECT_EQ(coverageTables(runs).at(0).rows().at(2), cells);
+  for (CoverageRun& run : runs)
+    run.score.num_queries = -1;
+  EXPECT_EQ(coverageTables(runs).at(0).rows().at(2).back(), "-");
+  runs.push_back(runs[0]);
+  runs.back().score.lost_displacement = 0.1;
+  EXPECT_EQ(coverageTables(runs).size(), 2u) << "recordings have other columns";
 }
 
 MethodResult

@@ -125,9 +125,15 @@ TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)
   runs.push_back(runs[0]);
   runs.back().name.sampler = "paper 0.001"; // only tried once
   std::ostringstream table;
-  printTable(runs, table);
+  samplerTable(runs).print(table);
   for (const char* line :
        {"can, sigma 0.0015 m, N 1000\n", "\n  paper 1e-05     3  0.2000  0.3000  "})
     expectIn(table.str(), line);
   EXPECT_EQ(count("paper 0.001", table.str()), 0);
+  // Of other points or a longer gold standard.
+  runs.push_back(runs[0]);
+  runs.back().name.gold_key = "other";
+  std::ostringstream both;
+  samplerTable(runs).print(both);
+  expectIn(both.str(), ", gold standard other\n  paper 1e-05     1  0.3000");
 }

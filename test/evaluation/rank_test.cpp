@@ -161,6 +161,23 @@ TEST(Ranks, CountDrawsBelowTheTruth)
   EXPECT_EQ(ranksOf(truth, drawsWithX(0.0, 0.1), prior)[0], num_ranked_draws);
 }
 
+TEST(Ranks, VerdictIsOfGoodRunsAlone)
+{
+  std::vector<RankRun> runs;
+  for (std::uint64_t k = 0; k < 10; ++k)
+    for (const char* sampler : {"calibrated", "calibrated-scans"})
+      runs.push_back({{sampler, k}, true, Ranks::Constant(static_cast<int>(10 * k))});
+  const RankVerdict good = verdictOf(runs);
+  EXPECT_TRUE(good.are_uniform);
+  EXPECT_EQ(good.table.rows().at(2).at(1), "10/10");
+  EXPECT_EQ(good.table.rows().at(2).back(), "uniform");
+  EXPECT_EQ(good.table.rows().at(3).back(), "no model of the scans: for information");
+  runs[1].is_valid = false;
+  EXPECT_TRUE(verdictOf(runs).are_uniform);
+  runs[0].is_valid = false;
+  EXPECT_FALSE(verdictOf(runs).are_uniform);
+}
+
 TEST(Ranks, ChiSquareOfHistograms)
 {
   std::vector<Ranks> even;

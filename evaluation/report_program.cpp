@@ -1,9 +1,13 @@
-#include "study/report_program.h"
-
+#include "commands.h"
+#include "coverage/coverage_summary.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "io/program.h"
 #include "plot/child_program.h"
+#include "samplers/score.h"
+#include "sbc/rank_samplers.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <filesystem>
@@ -13,8 +17,6 @@
 namespace bayesian_icp::evaluate {
 
 namespace {
-
-constexpr int exit_code_without_report = 3;
 
 constexpr char looks_for_packages[] =
     "import sys; from importlib.util import find_spec as f; "
@@ -48,6 +50,21 @@ lastLineOf(const std::string& text)
   return lines.empty() ? "the report cannot be made" : std::string(lines.back());
 }
 
+/** The tables of a kind of study, by the names of the files that they are of.
+ * \param[in] tablesOf makes them of runs */
+template <typename Run, typename TablesOf>
+nlohmann::json
+tablesIn(const std::string& folder, const TablesOf& tablesOf)
+{
+  auto tables = nlohmann::json::object();
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().extension() == ".csv")
+      if (const auto runs = RunFile<Run>::runsIn(entry.path().string()); !runs.empty())
+        for (const TextTable& table : tablesOf(runs))
+          tables[entry.path().stem().string()].push_back(table.rows());
+  return tables;
+}
+
 void
 printHelp()
 {
@@ -71,11 +88,22 @@ makeReport(const std::string& folder)
     std::cerr << "The CSV files are complete. The report needs python3-pandas and "
                  "python3-matplotlib; then run: pcl_bayesian_icp_evaluate report "
               << folder << std::endl;
-    return exit_code_without_report;
+    return io::BadFile;
   }
+  const nlohmann::json tables = {
+      {"coverage", tablesIn<CoverageRun>(folder, coverageTables)},
+      {"samplers",
+       tablesIn<ScoredRun>(
+           folder, [](const auto& runs) { return std::vector{samplerTable(runs)}; })},
+      {"sbc", tablesIn<RankRun>(folder, [](const auto& runs) {
+         return std::vector{verdictOf(runs).table};
+       })}};
+  // Names of files need not be UTF-8.
+  const std::string input =
+      tables.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   // -B: nothing is written where the program is.
   const plot::ProgramResult result =
-      plot::runChildProgram({python, "-B", reportProgram(), folder}, "");
+      plot::runChildProgram({python, "-B", reportProgram(), folder}, input);
   if (!result.is_good)
     throw io::FileError(folder, lastLineOf(result.errors));
   io::print(result.output);
