@@ -1,5 +1,6 @@
 #include "batch/batch_run.h"
 
+#include "io/clocks.h"
 #include "io/interrupt.h"
 #include "io/motion.h"
 #include "register/posterior_files.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <mutex>
 #include <new>
@@ -68,12 +68,9 @@ private:
   void
   handle(const BatchPair& pair)
   {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
+    const double start = io::wallSeconds();
     const std::string state = pair.filesState();
-    const auto seconds = [start] {
-      return std::chrono::duration<double>(Clock::now() - start).count();
-    };
+    const auto seconds = [start] { return io::wallSeconds() - start; };
     std::optional<Run> run;
     std::string complaint;
     try {

@@ -11,9 +11,6 @@
 
 namespace bayesian_icp::app {
 
-/** \brief In a radian. */
-constexpr double degrees = 57.29577951308232;
-
 /** \brief A pose that is known as well as its covariance says. */
 struct GaussianPose {
   /** (x, y, z, roll, pitch, yaw) [m, rad]. */

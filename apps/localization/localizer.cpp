@@ -1,5 +1,6 @@
 #include "localization/localizer.h"
 
+#include "io/clocks.h"
 #include "io/errors.h"
 #include "io/field_triple.h"
 #include "io/numbers.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -249,8 +249,7 @@ Localizer::localize(const pcl::PCLPointCloud2& cloud,
                     std::int64_t stamp_ns,
                     const ProgressCallback& progress)
 {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
+  const double start = io::wallSeconds();
   Localization result;
   try {
     prepareMap();
@@ -279,8 +278,7 @@ Localizer::localize(const pcl::PCLPointCloud2& cloud,
     result = Localization();
     result.message = "out of memory";
   }
-  const std::chrono::duration<double> time = Clock::now() - start;
-  result.values.emplace_back("time [s]", shortly(time.count()));
+  result.values.emplace_back("time [s]", shortly(io::wallSeconds() - start));
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "pose_graph/graph_report.h"
 
 #include "graph/closed_cycles.h"
+#include "io/coordinates.h"
 #include "report/path_charts.h"
 #include "report/section.h"
 
@@ -85,7 +86,7 @@ loopsHtml(const ScanGraph& graph)
       const Closure& closure = *edge.closure;
       row = {nameOf(edge.edge),
              shortText(closure.error.head<3>().norm()),
-             shortText(degrees * closure.error.tail<3>().norm()),
+             shortText(degrees_per_radian * closure.error.tail<3>().norm()),
              io::fixedTextOf(closure.squared_error, 1),
              io::textOf(closure.num_degrees),
              shortText(closure.probability)};
@@ -136,11 +137,12 @@ cyclesHtml(const std::vector<ClosedCycle>& cycles)
   open.header = {
       "scans", "error [m]", "error [degrees]", "squared error", "probability"};
   for (const ClosedCycle& cycle : openCycles(cycles))
-    open.rows.push_back({cycle.vertices,
-                         shortText(cycle.closure.error.head<3>().norm()),
-                         shortText(degrees * cycle.closure.error.tail<3>().norm()),
-                         io::fixedTextOf(cycle.closure.squared_error, 1),
-                         shortText(cycle.closure.probability)});
+    open.rows.push_back(
+        {cycle.vertices,
+         shortText(cycle.closure.error.head<3>().norm()),
+         shortText(degrees_per_radian * cycle.closure.error.tail<3>().norm()),
+         io::fixedTextOf(cycle.closure.squared_error, 1),
+         shortText(cycle.closure.probability)});
   return shortTableHtml(table) + shortTableHtml(open);
 }
 
@@ -164,7 +166,7 @@ contradictionsHtml(const std::vector<ScanEdge>& edges,
     const Vector6d twist = twistFrom(edge, optimum.poses);
     table.rows.push_back({nameOf(edge),
                           shortText(twist.head<3>().norm()),
-                          shortText(degrees * twist.tail<3>().norm()),
+                          shortText(degrees_per_radian * twist.tail<3>().norm()),
                           io::fixedTextOf(found.squared_error, 1),
                           io::textOf(found.num_open_cycles),
                           toString(edges[found.edge].kind)});

@@ -1,6 +1,7 @@
 #include "pose_graph/scan_graph.h"
 
 #include "graph/trajectory_files.h"
+#include "io/coordinates.h"
 #include "io/numbers.h"
 #include "localization/stated_pose.h"
 
@@ -301,7 +302,8 @@ sizeOf(const Vector6d& twist)
 {
   constexpr int num_digits = 3;
   return io::textOf(twist.head<3>().norm(), num_digits) + " m and " +
-         io::textOf(degrees * twist.tail<3>().norm(), num_digits) + " degrees";
+         io::textOf(degrees_per_radian * twist.tail<3>().norm(), num_digits) +
+         " degrees";
 }
 
 std::vector<ScanEdge>

@@ -1,5 +1,6 @@
 #include "register/run.h"
 
+#include "io/clocks.h"
 #include "register/configure.h"
 
 #include <bayesian_icp/pose.h>
@@ -9,7 +10,6 @@
 #include <pcl/point_types.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -42,9 +42,6 @@ chainsOf(const Icp& icp)
   return chains;
 }
 
-using Clock = std::chrono::steady_clock;
-using Seconds = std::chrono::duration<double>;
-
 /** Aligns, passes on where ICP is, and measures ICP, which is first, and the estimate.
  * PCL calls back also as it is told to, before ICP has begun. */
 void
@@ -54,23 +51,23 @@ align(const Eigen::Matrix4d& guess,
       Icp& icp,
       RegistrationResult& result)
 {
-  auto last_iteration = Clock::now();
+  double last_iteration = io::wallSeconds();
   bool has_begun = false;
   std::function<Icp::UpdateVisualizerCallbackSignature> tell =
       [&](const Cloud&, const pcl::Indices&, const Cloud&, const pcl::Indices&) {
         if (icp_progress)
           icp_progress(has_begun ? icp.getFinalTransformation().cast<double>().eval()
                                  : guess);
-        last_iteration = Clock::now();
+        last_iteration = io::wallSeconds();
         has_begun = true;
       };
   icp.registerVisualizationCallback(tell);
   icp.setProgressCallback(progress);
-  const auto start = last_iteration = Clock::now();
+  const double start = last_iteration = io::wallSeconds();
   Cloud moved_source;
   icp.align(moved_source, guess.cast<float>());
-  result.icp_seconds = Seconds(last_iteration - start).count();
-  result.sampling_seconds = Seconds(Clock::now() - last_iteration).count();
+  result.icp_seconds = last_iteration - start;
+  result.sampling_seconds = io::wallSeconds() - last_iteration;
 }
 
 /** Largest |x|, |y|, |z| of the finite points [m]. */
@@ -178,10 +175,10 @@ readRun(const std::string& source_file,
         const Settings& settings)
 {
   Run run;
-  const auto start = Clock::now();
+  const double start = io::wallSeconds();
   run.source = io::readCloud(source_file);
   run.target = io::readCloud(target_file);
-  run.reading_seconds = Seconds(Clock::now() - start).count();
+  run.reading_seconds = io::wallSeconds() - start;
   run.settings = settings;
   run.settings.scaleToClouds(
       run.source.num_finite,

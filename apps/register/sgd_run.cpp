@@ -1,5 +1,6 @@
 #include "register/sgd_run.h"
 
+#include "io/clocks.h"
 #include "io/coordinates.h"
 #include "io/interrupt.h"
 #include "io/numbers.h"
@@ -13,7 +14,6 @@
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/tree_search.h>
 
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <optional>
@@ -23,7 +23,6 @@ namespace bayesian_icp::app {
 namespace {
 
 using nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 struct SgdRun {
   SgdSettings settings;
@@ -35,12 +34,6 @@ struct SgdRun {
   double reading_seconds = 0.0;
   double registration_seconds = 0.0;
 };
-
-double
-secondsSince(Clock::time_point start)
-{
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 double
 meanSquaredDistance(const Eigen::Matrix3Xd& source,
@@ -64,14 +57,14 @@ registerFiles(const Request& request)
   io::silencePcl();
   SgdRun run;
   run.settings = *request.sgd;
-  auto start = Clock::now();
+  double start = io::wallSeconds();
   run.source = io::readCloud(request.source_file);
   run.target = io::readCloud(request.target_file);
-  run.reading_seconds = secondsSince(start);
+  run.reading_seconds = io::wallSeconds() - start;
 
   ProgressBar bar(!request.is_quiet, "descending");
   io::catchInterrupt();
-  start = Clock::now();
+  start = io::wallSeconds();
   const Eigen::Matrix3Xd source = io::finitePoints(run.source).cast<double>();
   const KdTree tree(run.target.points);
   const SgdSettings& settings = run.settings;
@@ -85,7 +78,7 @@ registerFiles(const Request& request)
         bar.update({0, steps, steps, settings.options.max_iterations});
         return !io::wasInterrupted();
       });
-  run.registration_seconds = secondsSince(start);
+  run.registration_seconds = io::wallSeconds() - start;
   run.mean_squared_distance = meanSquaredDistance(source, tree, run.result.pose);
   return run;
 }

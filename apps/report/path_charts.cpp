@@ -1,5 +1,7 @@
 #include "report/path_charts.h"
 
+#include "io/coordinates.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -55,7 +57,7 @@ ellipseOf(const GaussianPose& pose, const Axes& axes)
           pose.mean[axes[1]],
           lengths[1],
           lengths[0],
-          degrees * std::atan2(direction[1], direction[0])};
+          degrees_per_radian * std::atan2(direction[1], direction[0])};
 }
 
 /** By how much ellipses are enlarged: a power of ten that makes the largest one at
@@ -183,7 +185,7 @@ deviationCharts(const std::vector<double>& x,
     return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
   };
   const auto of_rotation = [](const Matrix6d& covariance) {
-    return degrees * std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
+    return degrees_per_radian * std::sqrt(covariance.bottomRightCorner<3, 3>().trace());
   };
   const auto chartOf = [&](const std::string& name,
                            const std::string& unit,

@@ -1,5 +1,6 @@
 #include "track/tracker.h"
 
+#include "io/clocks.h"
 #include "io/cloud_file.h"
 #include "io/errors.h"
 #include "io/input_file.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <unordered_set>
 
 namespace bayesian_icp::app {
@@ -160,7 +160,7 @@ Tracker::registerToMore(const PreparedCloud& source,
 std::optional<TrackStep>
 Tracker::registerNext(const ProgressCallback& progress)
 {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = io::wallSeconds();
   prepareTarget();
   prepared_.erase(prepared_.begin(),
                   prepared_.lower_bound(track_.size() - request_.span));
@@ -201,8 +201,7 @@ Tracker::registerNext(const ProgressCallback& progress)
   if (step.kind != StepKind::Predicted && request_.voxel_size > 0.0)
     thinned_[step.scan] =
         thinned(preparedScan(step.scan).points(), request_.voxel_size);
-  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  step.seconds = time.count();
+  step.seconds = io::wallSeconds() - start;
   return step;
 }
 

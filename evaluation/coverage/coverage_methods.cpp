@@ -2,10 +2,10 @@
 
 #include "algebra/decompositions.h"
 #include "geometry/twist.h"
+#include "io/clocks.h"
 #include "io/command_line.h"
 #include "io/numbers.h"
 #include "register/choices.h"
-#include "study/clocks.h"
 
 #include <new>
 
@@ -65,7 +65,7 @@ coverageMethods()
 MethodResult
 timedResult(const CoverageMethod& method, const CoverageCase& problem)
 {
-  const double begin = wallSeconds();
+  const double begin = io::wallSeconds();
   MethodResult result;
   try {
     result = method.run(problem);
@@ -76,7 +76,7 @@ timedResult(const CoverageMethod& method, const CoverageCase& problem)
   catch (const std::exception& error) {
     result.notes = std::string("exception: ") + error.what();
   }
-  result.seconds = wallSeconds() - begin;
+  result.seconds = io::wallSeconds() - begin;
   return result;
 }
 

@@ -126,7 +126,6 @@ summaryOf(const std::vector<CoverageRun>& runs)
   CoverageSummary summary;
   summary.num_runs = runs.size();
   summary.num_valid = select(scores, &CoverageScore::is_valid).size();
-  summary.has_limit = !select(scores, &CoverageScore::hasLimit).empty();
   summary.num_lost = scores.size() - found.size();
   countDoubts(scores, summary);
   summary.anees = meanOf(found, [](const auto& s) { return s.nees / 6.0; });

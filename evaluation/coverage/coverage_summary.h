@@ -36,9 +36,7 @@ constexpr double min_bad_nees = 27.856;
 struct CoverageSummary {
   std::size_t num_runs = 0;
   std::size_t num_valid = 0;
-  /** Whether the runs are of recordings, whose poses can be lost; and those that are.
-   */
-  bool has_limit = false;
+  /** Of recordings. */
   std::size_t num_lost = 0;
   /** Good runs, and those of them that their method doubts; bad ones, and those that it
    * does not doubt. Poses alone are neither. */

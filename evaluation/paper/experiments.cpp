@@ -1,10 +1,10 @@
 #include "geometry/twist.h"
+#include "io/clocks.h"
 #include "io/text_hash.h"
 #include "paper/paper_experiment.h"
 #include "paper/paper_methods.h"
 #include "paper/paper_runs.h"
 #include "paper/picture_data.h"
-#include "study/clocks.h"
 #include "study/text_table.h"
 
 #include <algorithm>
@@ -228,9 +228,9 @@ runtimeRunOf(const PaperProblem& problem, const PaperRunName& name)
   plan.num_draws = 1000;
   plan.seed = name.seed;
   plan.num_threads = name.number;
-  const double begin = wallSeconds();
+  const double begin = io::wallSeconds();
   const SamplerRun made = paperMethod(name.method).run(problem, plan);
-  return {name, wallSeconds() - begin, made.seconds, made.status};
+  return {name, io::wallSeconds() - begin, made.seconds, made.status};
 }
 
 } // namespace

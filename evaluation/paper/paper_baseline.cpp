@@ -1,9 +1,9 @@
 #include "paper/paper_baseline.h"
 
+#include "io/clocks.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "io/text_hash.h"
-#include "study/clocks.h"
 #include "study/input_hash.h"
 #include "study/run_file.h"
 
@@ -119,7 +119,7 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
   for (int index = options.first_run; index < end; ++index)
     if (isMissing(index))
       missing.push_back(index);
-  const double begin = wallSeconds();
+  const double begin = io::wallSeconds();
   std::size_t num_done = 0;
   while (num_done < missing.size()) {
     // The next ones without a gap.
@@ -132,7 +132,8 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
     for (const MonteCarloIcpRun& run : monteCarloIcp(source, target, block))
       runs.add({{run.index}, run});
     num_done += static_cast<std::size_t>(block.num_runs);
-    const double seconds_each = (wallSeconds() - begin) / static_cast<double>(num_done);
+    const double seconds_each =
+        (io::wallSeconds() - begin) / static_cast<double>(num_done);
     const auto num_left = static_cast<double>(missing.size() - num_done);
     if (report)
       report(io::textOf(num_done) + " of " + io::textOf(missing.size()) +

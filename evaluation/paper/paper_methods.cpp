@@ -2,7 +2,7 @@
 
 #include "baselines/iterative_closest_point.h"
 #include "geometry/twist.h"
-#include "study/clocks.h"
+#include "io/clocks.h"
 #include "study/draw_statistics.h"
 #include "study/named.h"
 
@@ -76,7 +76,7 @@ gaussian(const std::string& name,
          const std::function<TwistGaussian(const CoverageCase&)>& fit)
 {
   return {name, [name, fit](const PaperProblem& problem, const DrawPlan& plan) {
-            const double begin = cpuSeconds();
+            const double begin = io::cpuSeconds();
             const auto known = problem.gaussians.find(name);
             const TwistGaussian& fitted =
                 known != problem.gaussians.end()
@@ -86,7 +86,7 @@ gaussian(const std::string& name,
             SamplerRun run;
             Chain chain;
             chain.draws = drawsOf(fitted, plan);
-            run.seconds = cpuSeconds() - begin;
+            run.seconds = io::cpuSeconds() - begin;
             run.status = chain.draws.rows() > 0 ? "gaussian" : "no_covariance";
             run.chains.chains.push_back(std::move(chain));
             return run;

@@ -1,6 +1,6 @@
 #include "samplers/gold_standard.h"
 
-#include "study/clocks.h"
+#include "io/clocks.h"
 #include "study/draw_statistics.h"
 
 #include <bayesian_icp/diagnostics.h>
@@ -256,7 +256,7 @@ sampleGold(const GoldTarget& target,
            const GoldOptions& options,
            const std::function<void(const std::string&)>& report)
 {
-  const double begin = cpuSeconds();
+  const double begin = io::cpuSeconds();
   constexpr int num_runs = 2;
   std::vector<GoldRun> runs;
   runs.reserve(num_runs);
@@ -271,7 +271,7 @@ sampleGold(const GoldTarget& target,
     for (GoldRun& run : runs)
       run.sample();
     judge(runs, options, gold);
-    gold.seconds = cpuSeconds() - begin;
+    gold.seconds = io::cpuSeconds() - begin;
     report(describe(gold));
   }
   for (PoseMatrix& chain : gold.chains)

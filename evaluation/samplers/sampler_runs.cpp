@@ -1,6 +1,6 @@
 #include "samplers/sampler_runs.h"
 
-#include "study/clocks.h"
+#include "io/clocks.h"
 #include "study/draw_statistics.h"
 
 #include <bayesian_icp/pipeline.h>
@@ -22,7 +22,7 @@ runCompetitor(const Problem& problem,
               std::uint64_t seed,
               const RunChain& run_chain)
 {
-  const double begin = cpuSeconds();
+  const double begin = io::cpuSeconds();
   SamplerRun run;
   for (int i = 0; i < num_chains; ++i) {
     Random random(seed, static_cast<std::uint64_t>(i));
@@ -36,7 +36,7 @@ runCompetitor(const Problem& problem,
               .transpose();
     run.chains.chains.push_back(std::move(chain));
   }
-  run.seconds = cpuSeconds() - begin;
+  run.seconds = io::cpuSeconds() - begin;
   return run;
 }
 
@@ -48,10 +48,10 @@ runPreset(const Eigen::Matrix3Xd& source,
           const Options& options,
           const Vector6d& start)
 {
-  const double begin = cpuSeconds();
+  const double begin = io::cpuSeconds();
   PosteriorEstimate estimate = estimatePosterior(source, target, start, options);
   SamplerRun run;
-  run.seconds = cpuSeconds() - begin;
+  run.seconds = io::cpuSeconds() - begin;
   run.chains.chains = std::move(estimate.chains);
   run.status = toString(estimate.summary.status);
   run.message = estimate.summary.message;

@@ -1,6 +1,6 @@
 #include "study/parallel_tasks.h"
 
-#include "study/clocks.h"
+#include "io/clocks.h"
 #include "threads/first_exception.h"
 
 namespace bayesian_icp::evaluate {
@@ -12,7 +12,7 @@ runTasks(
     const std::function<void(std::size_t index)>& run,
     const std::function<void(const StudyProgress& progress, std::size_t index)>& report)
 {
-  const double begin = wallSeconds();
+  const double begin = io::wallSeconds();
   std::size_t num_done = 0;
   FirstException failure;
 #pragma omp parallel for schedule(dynamic) num_threads(num_threads)
@@ -24,7 +24,7 @@ runTasks(
       failure.guard([&] {
         ++num_done;
         const double seconds_each =
-            (wallSeconds() - begin) / static_cast<double>(num_done);
+            (io::wallSeconds() - begin) / static_cast<double>(num_done);
         if (report)
           report({num_done, size, seconds_each * static_cast<double>(size - num_done)},
                  i);

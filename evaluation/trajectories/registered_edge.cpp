@@ -1,9 +1,9 @@
 #include "trajectories/registered_edge.h"
 
 #include "algebra/decompositions.h"
+#include "io/clocks.h"
 #include "io/text_hash.h"
 #include "methods/published_covariances.h"
-#include "study/clocks.h"
 #include "track/registration.h"
 
 #include <bayesian_icp/random.h>
@@ -139,7 +139,7 @@ registeredEdge(const EdgeName& name,
   EdgeRun run;
   run.name = name;
   run.mean = problem.prior_mean;
-  const double begin = wallSeconds();
+  const double begin = io::wallSeconds();
   try {
     registerBy(name.method, problem, run);
   }
@@ -149,7 +149,7 @@ registeredEdge(const EdgeName& name,
   catch (const std::exception& error) {
     run.complaint = error.what();
   }
-  run.seconds = wallSeconds() - begin;
+  run.seconds = io::wallSeconds() - begin;
   return run;
 }
 

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "io/coordinates.h"
 #include "io/errors.h"
 #include "io/folders.h"
 #include "io/output_folder.h"
@@ -199,7 +200,7 @@ tableOf(const std::vector<TrajectoryRun>& runs)
                    run.num_edges,
                    milli * run.score.ate,
                    milli * run.score.rpe_translation,
-                   app::degrees * run.score.rpe_rotation,
+                   app::degrees_per_radian * run.score.rpe_rotation,
                    milli * run.score.drift_translation,
                    run.score.nees,
                    run.cycle_nees);

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace bayesian_icp::evaluate {
+namespace bayesian_icp::io {
 
 /** \brief Processor time of all threads of this program [s]. */
 inline double
@@ -23,4 +23,4 @@ wallSeconds()
   return std::chrono::duration<double>(now).count();
 }
 
-} // namespace bayesian_icp::evaluate
+} // namespace bayesian_icp::io
