@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from report import frames, page
+from report import page
 
 COLUMNS = ("scene", "condition", "seed", "method", "valid", "nees", "region", "pit_vx")
 TWISTS = ("vx", "vy", "vz", "wx", "wy", "wz")
@@ -74,11 +74,10 @@ def section_of(output, name, runs, tables):
     valid = runs[runs.valid == 1]
     if valid.empty:
         return page.Section(f"Coverage ({name}.csv)", blocks)
-    names = frames.names_of(valid.method)
-    methods = [(method, valid[valid.method == method]) for method in names]
+    methods = list(valid.groupby("method", sort=False))
     cells = list(dict.fromkeys(zip(runs.scene, runs.condition)))
     figures = [
-        plot_regions(output, name, [(method, runs[runs.method == method]) for method in names]),
+        plot_regions(output, name, [(method, runs[runs.method == method]) for method, _ in methods]),
         plot_pit(output, name, methods),
         plot_anees(output, name, methods, cells),
     ]

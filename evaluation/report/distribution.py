@@ -1,6 +1,7 @@
 """Table I and its companions: how far is what a method reports from where ICP ends?"""
 
 import numpy as np
+import pandas as pd
 
 from report import frames, page, table_one
 from report.frames import COORDINATES, UNITS
@@ -128,11 +129,10 @@ def coordinate_comparison(rows, coordinate):
     header += [f"ours: {TITLES[method]}" for method in COMPARED]
     header += [f"same: {contest_name(contest)}" for contest in CONTESTS]
     lines, verdicts = [], []
-    for pair in frames.names_of(rows.pair):
+    for pair, of_pair in rows.groupby("pair", sort=False):
         stated = table_one.cell(pair, coordinate)
         if stated is None:
             continue
-        of_pair = rows[rows.pair == pair]
         ours = {m: frames.spread_of(of_pair[of_pair.method == m][f"kl_{coordinate}"]) for m in TITLES}
         order = table_one.order_of(*stated)
         same = [
@@ -170,15 +170,14 @@ def mixing_table(pairs):
         for method, runs in rows[rows.method.isin(CHAINS)].groupby("method", sort=False):
             statuses = runs.status.value_counts().sort_index()
             sd = runs[SD_COLUMNS].to_numpy()
-            translation, rotation = np.sqrt(np.mean(sd.reshape(-1, 2, 3) ** 2, axis=2)).T
+            spreads = pd.DataFrame(np.sqrt(np.mean(sd.reshape(-1, 2, 3) ** 2, axis=2))).median()
             lines.append([
                 f"{pair}, {TITLES[method]}",
                 ", ".join(f"{status} {count}" for status, count in statuses.items()),
-                frames.short(frames.median(runs.rhat)),
-                f"{frames.median(runs.bulk_ess):.0f}",
-                f"{frames.median(translation):.3g}",
-                f"{frames.median(rotation):.3g}",
-                f"{frames.median(runs.seconds):.2g}",
+                frames.short(runs.rhat.median()),
+                f"{runs.bulk_ess.median():.0f}",
+                *(f"{spread:.3g}" for spread in spreads),
+                f"{runs.seconds.median():.2g}",
             ])  # fmt: skip
     return Table(MIXING_CAPTION, header, lines)
 
@@ -227,8 +226,8 @@ def density_of(values):
 def plot_densities(output, pair, draws):
     figure, axes = page.panels(2, 3, 4, 2.8)
     for coordinate, unit, axis in zip(COORDINATES, UNITS, axes.flat):
-        for i, method in enumerate(frames.names_of(draws.method)):
-            values = draws[draws.method == method][f"{coordinate}_{unit}"].to_numpy()
+        for i, (method, of_method) in enumerate(draws.groupby("method", sort=False)):
+            values = of_method[f"{coordinate}_{unit}"].to_numpy()
             curve = density_of(values)
             if method == "baseline":
                 axis.fill_between(*curve, color="#bbbbbb", label="Monte Carlo ICP")
@@ -244,8 +243,8 @@ def plot_densities(output, pair, draws):
 def plot_clouds(output, pair, points):
     """Same scale on all axes, and the same in all panels: those of the target."""
     of_cloud = {
-        name: points[points.cloud == name][["x_m", "y_m", "z_m"]].to_numpy()
-        for name in frames.names_of(points.cloud)
+        name: of_cloud[["x_m", "y_m", "z_m"]].to_numpy()
+        for name, of_cloud in points.groupby("cloud", sort=False)
     }
     target = of_cloud.pop("target")
     least, most = target.min(axis=0), target.max(axis=0)
@@ -266,7 +265,7 @@ def plot_clouds(output, pair, points):
 def section_of(output, rows, tables):
     rows = rows.assign(nees_6=rows.nees / 6)
     rows["is_covered"] = (region_of(rows.nees) <= 0.95).astype(float).where(rows.nees.notna())
-    pairs = [(pair, rows[rows.pair == pair]) for pair in frames.names_of(rows.pair)]
+    pairs = list(rows.groupby("pair", sort=False))
     names = [pair for pair, _ in pairs]
     blocks = [Text(TEXT)]
     if "baseline" in tables:

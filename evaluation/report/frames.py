@@ -27,11 +27,6 @@ def read_folder(folder):
     return {path.stem: read(path) for path in sorted(folder.glob("*.csv"))}
 
 
-def names_of(column):
-    """In the order of their first appearance."""
-    return list(dict.fromkeys(column))
-
-
 def spread_of(values):
     """Mean and standard deviation of the finite ones, how many those are, and of how many.
     Where none is finite, unknown ones do not count."""
@@ -61,12 +56,6 @@ def spread_text(spread):
 
 def spread_cells(rows, columns):
     return [spread_text(spread_of(rows[column])) for column in columns]
-
-
-def median(values):
-    values = np.asarray(values, float)
-    values = values[~np.isnan(values)]
-    return np.median(values) if values.size else np.nan
 
 
 def number(value, decimals):

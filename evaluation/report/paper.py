@@ -65,6 +65,11 @@ ACCURACY_TITLES = {
     "sgd-icp-filter": "SGD-ICP, Adam, repeated matches left out",
     "icp": "ICP to completion",
 }
+# Title, text and axis of the sections.
+CURVES = {
+    "samples": ("Number of draws", SAMPLES, "draws"),
+    "burn_in": ("Burn-in", BURN_IN, "draws left out"),
+}
 # What the paper states of its program on an i7-7700 with four cores: seconds per 1000 draws.
 PAPER_SECONDS = {1: (8.88, 3.59), 2: (6.392, 0.731), 4: (3.298, 0.573)}
 
@@ -83,7 +88,7 @@ def chosen(rows, record):
 
 
 def curve_section(output, name, rows, title, text, axis_title):
-    pairs = [(pair, rows[rows.pair == pair]) for pair in frames.names_of(rows.pair)]
+    pairs = list(rows.groupby("pair", sort=False))
     figure, axes = page.panels(len(pairs), 6, 2.6, 2.4)
     tables = []
     for (pair, of_pair), line in zip(pairs, axes):
@@ -159,7 +164,7 @@ def accuracy_row(title, runs):
 def accuracy_section(output, rows):
     header = ["method", "translation, mean ± sd [mm]", "median [mm]"]
     header += ["rotation, mean ± sd [mrad]", "median [mrad]"]
-    pairs = [(pair, rows[rows.pair == pair]) for pair in frames.names_of(rows.pair)]
+    pairs = list(rows.groupby("pair", sort=False))
     methods = [m for m in ACCURACY_TITLES if (rows.method == m).any()]
     figure, axes = page.panels(2, len(pairs), 2.4, 3.2)
     tables = []
@@ -207,23 +212,18 @@ def sections_of(output, tables):
             rows = chosen(tables[name], record_of.get(name))
             if len(rows):
                 rows_of[name] = rows
-    makers = {
-        "distribution": lambda rows: distribution.section_of(output, rows, tables),
-        "samples": lambda rows: curve_section(
-            output, "samples", rows, "Number of draws", SAMPLES, "draws"
-        ),
-        "burn_in": lambda rows: curve_section(
-            output, "burn_in", rows, "Burn-in", BURN_IN, "draws left out"
-        ),
-        "runtime": lambda rows: runtime_section(
-            output, rows, study and study["versions"].get("cores")
-        ),
-        "accuracy": lambda rows: accuracy_section(output, rows),
-    }
-    sections = [makers[name](rows) for name, rows in rows_of.items()]
-    if not sections:
-        return []
+    cores = study and study["versions"].get("cores")
     records = [record_of[name] for name in rows_of if name in record_of]
-    if study:
+    sections = [introduction(records)] if rows_of else []
+    for name, rows in rows_of.items():
+        if name == "distribution":
+            sections.append(distribution.section_of(output, rows, tables))
+        elif name == "runtime":
+            sections.append(runtime_section(output, rows, cores))
+        elif name == "accuracy":
+            sections.append(accuracy_section(output, rows))
+        else:
+            sections.append(curve_section(output, name, rows, *CURVES[name]))
+    if study and sections:
         sections.append(origin(study, records))
-    return [introduction(records), *sections]
+    return sections

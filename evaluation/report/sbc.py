@@ -26,6 +26,6 @@ def plot_ranks(output, name, samplers):
 
 
 def section_of(output, name, runs, tables):
-    samplers = [(s, runs[runs.sampler == s]) for s in frames.names_of(runs.sampler)]
+    samplers = list(runs.groupby("sampler", sort=False))
     title = f"Simulation-based calibration ({name}.csv)"
     return page.Section(title, [*tables, plot_ranks(output, name, samplers)])

@@ -5,7 +5,6 @@ import numpy as np
 from report import frames, page
 
 COLUMNS = ("recording", "means", "covariances", "ate_m", "rpe_m", "nees", "cycle_nees")
-DEGREES = 180.0 / np.pi
 LIKE_TIES = 1.02
 
 
@@ -36,7 +35,7 @@ def rows_of(table):
                 f"{one['num_edges']:.0f}",
                 f"{ate} *" if one["ate_m"] <= LIKE_TIES * best else ate,
                 f"{1e3 * one['rpe_m']:.2f}",
-                f"{DEGREES * one['rpe_rad']:.3f}",
+                f"{np.degrees(one['rpe_rad']):.3f}",
                 f"{1e3 * one['drift_m']:.1f}",
                 frames.number(one["nees"], 2),
                 frames.number(one["cycle_nees"], 2),

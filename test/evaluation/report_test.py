@@ -61,10 +61,6 @@ class Numbers(unittest.TestCase):
             table = frames.read(file)
         self.assertEqual([list(table[c]) for c in table], [["00", "05"], ["NA", "1e3"], [1, 2]])
 
-    def test_median_leaves_out_what_is_unknown(self):
-        self.assertEqual(frames.median([4.0, np.nan, 1.0, 2.0, 8.0]), 3.0)
-        self.assertTrue(np.isnan(frames.median([])))
-
 
 class TableOne(unittest.TestCase):
     def test_orders_are_decided_beyond_the_deviations(self):
