@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 
 namespace bayesian_icp::evaluate {
 
@@ -12,7 +11,6 @@ namespace {
 
 constexpr double mm = 1e3;
 constexpr double mrad = 1e3;
-constexpr double degrees = app::degrees_per_radian;
 
 using Runs = std::vector<CoverageRun>;
 
@@ -80,7 +78,10 @@ simulatedColumns()
       numberColumn("mean\nlog p", &CoverageSummary::mean_log_score, 2),
       numberColumn("energy\nscore", &CoverageSummary::mean_energy_score, 4),
       numberColumn("median\nerror [mm]", &CoverageSummary::translation_error, 2, mm),
-      numberColumn("median\nerror [deg]", &CoverageSummary::rotation_error, 2, degrees),
+      numberColumn("median\nerror [deg]",
+                   &CoverageSummary::rotation_error,
+                   2,
+                   app::degrees_per_radian),
       percentColumn("flagged\n[%]", &CoverageSummary::flagged),
       percentColumn("flagged if\noutside [%]", &CoverageSummary::flagged_outside),
       numberColumn("median\ntime [s]", &CoverageSummary::median_seconds, 3),
@@ -112,8 +113,10 @@ sequenceColumns()
   return columns;
 }
 
+using Member = std::string CoverageRunName::*;
+
 std::vector<std::string>
-namesOf(const Runs& runs, std::string CoverageRunName::*member)
+namesOf(const Runs& runs, Member member)
 {
   std::vector<std::string> names;
   for (const CoverageRun& run : runs)
@@ -123,12 +126,11 @@ namesOf(const Runs& runs, std::string CoverageRunName::*member)
 }
 
 Runs
-select(const Runs& runs, const std::string& scene, const std::string& condition)
+select(const Runs& runs, Member member, const std::string& name)
 {
   Runs selected;
   for (const CoverageRun& run : runs)
-    if ((scene.empty() || run.name.scene == scene) &&
-        (condition.empty() || run.name.condition == condition))
+    if (run.name.*member == name)
       selected.push_back(run);
   return selected;
 }
@@ -144,11 +146,8 @@ addBlock(const std::string& title,
     return;
   table.addTitle(title);
   for (const std::string& method : namesOf(runs, &CoverageRunName::method)) {
-    Runs of_method;
-    for (const CoverageRun& run : runs)
-      if (run.name.method == method)
-        of_method.push_back(run);
-    const CoverageSummary summary = summaryOf(of_method);
+    const CoverageSummary summary =
+        summaryOf(select(runs, &CoverageRunName::method, method));
     std::vector<std::string> cells = {method};
     for (const Column& column : columns)
       cells.push_back(column.cell(summary));
@@ -172,13 +171,15 @@ tableOf(const Runs& runs, const Columns& columns)
   for (const std::string& scene : scenes)
     for (const std::string& condition : conditions)
       add(std::string(scene).append(", ").append(condition),
-          select(runs, scene, condition));
+          select(select(runs, &CoverageRunName::scene, scene),
+                 &CoverageRunName::condition,
+                 condition));
   for (const std::string& scene : scenes)
-    if (const Runs pool = select(runs, scene, "");
+    if (const Runs pool = select(runs, &CoverageRunName::scene, scene);
         namesOf(pool, &CoverageRunName::condition).size() > 1)
       add(scene + ", all conditions", pool);
   for (const std::string& condition : conditions)
-    if (const Runs pool = select(runs, "", condition);
+    if (const Runs pool = select(runs, &CoverageRunName::condition, condition);
         conditions.size() > 1 && namesOf(pool, &CoverageRunName::scene).size() > 1)
       add("all scenes, " + condition, pool);
   if (scenes.size() * conditions.size() > 1)
@@ -191,15 +192,9 @@ tableOf(const Runs& runs, const Columns& columns)
 std::vector<TextTable>
 coverageTables(const Runs& runs)
 {
-  const auto isOfRecording = [](const CoverageRun& run) {
-    return run.score.hasLimit();
-  };
   Runs simulated, recorded;
-  std::partition_copy(runs.begin(),
-                      runs.end(),
-                      std::back_inserter(recorded),
-                      std::back_inserter(simulated),
-                      isOfRecording);
+  for (const CoverageRun& run : runs)
+    (run.score.hasLimit() ? recorded : simulated).push_back(run);
   std::vector<TextTable> tables;
   if (!simulated.empty())
     tables.push_back(tableOf(simulated, simulatedColumns()));
