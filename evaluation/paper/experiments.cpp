@@ -25,9 +25,10 @@ public:
                  const std::string& name,
                  const std::string& title,
                  const std::vector<std::string>& columns)
-  : medians(title, columns)
-  , study_(study)
+  : study_(study)
   , name_(name)
+  , title_(title)
+  , columns_(columns)
   , file_(study.path(name + ".csv"))
   {}
 
@@ -64,14 +65,17 @@ public:
   finish(int num_starts = 0) const
   {
     recordExperiment(study_, name_, keys_, num_starts);
-    medians.print(std::cout);
+    std::cout << title_ << '\n';
+    medianTable(columns_, numbers).print(std::cout);
   }
 
-  MedianTable medians;
+  /** Of all runs, for the medians. */
+  std::vector<GroupedNumbers> numbers;
 
 private:
   const PaperStudy& study_;
-  std::string name_;
+  std::string name_, title_;
+  std::vector<std::string> columns_;
   RunFile<Run> file_;
   std::vector<PairKey> keys_;
   int num_made_ = 0;
@@ -169,9 +173,9 @@ studyVariant(const PaperStudy& study,
             name,
             curveDivergences(partOf(chains, plan.part(value)), compared.baseline)};
       });
-      runs.medians.add(problem.pair.name + ", " + variant.name + ", " +
-                           std::to_string(value),
-                       {point.divergences.begin(), point.divergences.end()});
+      runs.numbers.push_back(
+          {problem.pair.name + ", " + variant.name + ", " + std::to_string(value),
+           {point.divergences.begin(), point.divergences.end()}});
     }
   }
   study.report(problem.pair.name + ": " + plan.name + ", " + variant.name);
@@ -258,7 +262,7 @@ distributionExperiment(const PaperStudy& study)
         const Vector6d& kl = run.score.coordinate_kl;
         std::vector<double> numbers(kl.begin(), kl.end());
         numbers.insert(numbers.end(), {run.score.kl, run.nees / 6.0});
-        runs.medians.add(pair.name + ", " + method.name, numbers);
+        runs.numbers.emplace_back(pair.name + ", " + method.name, numbers);
       }
       runs.reportMade(pair.name + ": " + method.name);
     }
@@ -304,7 +308,7 @@ runtimeExperiment(const PaperStudy& study)
                                   num_threads};
           const RuntimeRun& run =
               runs.find(name, [&] { return runtimeRunOf(problem, name); });
-          runs.medians.add(group, {run.wall_seconds, run.cpu_seconds});
+          runs.numbers.push_back({group, {run.wall_seconds, run.cpu_seconds}});
         }
       study.report("runtime: " + group);
     }
@@ -326,8 +330,9 @@ accuracyExperiment(const PaperStudy& study)
         const PaperRunName name{key, pair.name, method.name, study.options.seed, i};
         const AccuracyRun& run = runs.find(
             name, [&] { return accuracyRunOf(study, problem, method, name); });
-        runs.medians.add(pair.name + ", " + method.name,
-                         {1000.0 * run.translation_error, 1000.0 * run.rotation_error});
+        runs.numbers.push_back(
+            {pair.name + ", " + method.name,
+             {1000.0 * run.translation_error, 1000.0 * run.rotation_error}});
       }
       runs.reportMade("accuracy: " + pair.name + ", " + method.name);
     }

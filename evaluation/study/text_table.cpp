@@ -49,39 +49,33 @@ numberText(double value, int num_decimals)
              : format("%.1e", value);
 }
 
-void
-MedianTable::add(const std::string& group, const std::vector<double>& numbers)
-{
-  auto found = std::find_if(groups_.begin(), groups_.end(), [&group](const Group& g) {
-    return g.name == group;
-  });
-  if (found == groups_.end())
-    found =
-        groups_.insert(found, {group, 0, decltype(Group::numbers)(columns_.size())});
-  ++found->num_runs;
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (!std::isnan(numbers[i]))
-      found->numbers[i].push_back(numbers[i]);
-}
-
-void
-MedianTable::print(std::ostream& stream) const
+TextTable
+medianTable(const std::vector<std::string>& columns,
+            const std::vector<GroupedNumbers>& runs)
 {
   constexpr int num_digits = 4;
-  std::vector<std::string> header = {"medians of the runs of", "runs"};
-  header.insert(header.end(), columns_.begin(), columns_.end());
+  std::vector<std::string> header = {"medians of the runs of", "runs"}, groups;
+  header.insert(header.end(), columns.begin(), columns.end());
   TextTable table(header);
-  for (const Group& group : groups_) {
-    std::vector<std::string> cells = {group.name, std::to_string(group.num_runs)};
-    for (const std::vector<double>& numbers : group.numbers) {
-      cells.push_back(numbers.empty() ? "-" : io::textOf(median(numbers), num_digits));
-      if (numbers.size() < group.num_runs && !numbers.empty())
-        cells.back() += " (of " + std::to_string(numbers.size()) + ')';
+  for (const auto& [name, numbers] : runs)
+    if (std::find(groups.begin(), groups.end(), name) == groups.end())
+      groups.push_back(name);
+  for (const std::string& group : groups) {
+    const auto num_runs = std::count_if(
+        runs.begin(), runs.end(), [&](const auto& run) { return run.first == group; });
+    std::vector<std::string> cells = {group, std::to_string(num_runs)};
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      std::vector<double> known;
+      for (const auto& [name, numbers] : runs)
+        if (name == group && !std::isnan(numbers[k]))
+          known.push_back(numbers[k]);
+      cells.push_back(known.empty() ? "-" : io::textOf(median(known), num_digits));
+      if (!known.empty() && known.size() < std::size_t(num_runs))
+        cells.back() += " (of " + std::to_string(known.size()) + ')';
     }
     table.add(cells);
   }
-  stream << title_ << '\n';
-  table.print(stream);
+  return table;
 }
 
 } // namespace bayesian_icp::evaluate

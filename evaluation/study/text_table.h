@@ -62,35 +62,14 @@ private:
   std::vector<std::vector<std::string>> rows_;
 };
 
-/** \brief Medians of the numbers of runs, a line for each group of runs. */
-class MedianTable {
-public:
-  MedianTable(std::string title, std::vector<std::string> columns)
-  : title_(std::move(title))
-  , columns_(std::move(columns))
-  {}
+/** \brief The group that a run belongs to, and its numbers, one for each column. */
+using GroupedNumbers = std::pair<std::string, std::vector<double>>;
 
-  /** \brief A run of this group. NaN is left out of a median, which then tells of how
-   * many numbers it is.
-   * \param[in] numbers one for each column */
-  void
-  add(const std::string& group, const std::vector<double>& numbers);
-
-  /** \brief Groups are in the order of their first runs. */
-  void
-  print(std::ostream& stream) const;
-
-private:
-  struct Group {
-    std::string name;
-    std::size_t num_runs = 0;
-    /** Of each column. */
-    std::vector<std::vector<double>> numbers;
-  };
-
-  std::string title_;
-  std::vector<std::string> columns_;
-  std::vector<Group> groups_;
-};
+/** \brief Medians of the numbers of runs, a line for each group in the order of their
+ * first runs. NaN is left out of a median, which then tells of how many numbers it is.
+ */
+TextTable
+medianTable(const std::vector<std::string>& columns,
+            const std::vector<GroupedNumbers>& runs);
 
 } // namespace bayesian_icp::evaluate

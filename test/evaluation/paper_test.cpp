@@ -298,17 +298,16 @@ TEST(DrawCurves, DivergencesAreClosedForms)
 
 TEST(MedianTable, LeavesOutWhatIsUnknownAndKeepsTheOrder)
 {
-  MedianTable table("errors", {"[mm]", "[mrad]"});
-  table.add("b", {3.0, infinity});
-  table.add("a", {0.25, std::nan("")});
-  table.add("b", {1.0, 2.0});
-  table.add("b", {12345.678, 4.0});
-  table.add("c", {1.0, 2.0});
-  table.add("c", {3.0, std::nan("")});
   std::ostringstream text;
-  table.print(text);
+  medianTable({"[mm]", "[mrad]"},
+              {{"b", {3.0, infinity}},
+               {"a", {0.25, std::nan("")}},
+               {"b", {1.0, 2.0}},
+               {"b", {12345.678, 4.0}},
+               {"c", {1.0, 2.0}},
+               {"c", {3.0, std::nan("")}}})
+      .print(text);
   EXPECT_EQ(text.str(),
-            "errors\n"
             "  medians of the runs of  runs  [mm]    [mrad]\n"
             "  b                          3     3         4\n"
             "  a                          1  0.25         -\n"
