@@ -64,8 +64,8 @@ textOf(const ordered_json& value)
   return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-} // namespace
-
+/** Differs if something differs that decides the result of a track: a line with another
+ * one is not of this track. */
 std::string
 settingsIdOf(const TrackRequest& request)
 {
@@ -82,6 +82,8 @@ settingsIdOf(const TrackRequest& request)
                             BAYESIAN_ICP_VERSION};
   return io::textOfHash(io::hashOf(textOf(all)));
 }
+
+} // namespace
 
 std::string
 trackLine(const TrackRequest& request, const Track& track)

@@ -9,11 +9,6 @@
 
 namespace bayesian_icp::app {
 
-/** \brief Differs if something differs that decides the result of a track: a line with
- * another one is not of this track. */
-std::string
-settingsIdOf(const TrackRequest& request);
-
 /** \brief The line of the last step of \p track, without a line break. It has all that
  * Track::take() needs, to the last bit. */
 std::string

@@ -66,8 +66,8 @@ toTheta(const Problem& problem, GoldStandard& gold)
       chain.row(i) = problem.energy().toTheta(chain.row(i).transpose()).transpose();
 }
 
-} // namespace
-
+/** What a gold standard depends on, in one number: points, likelihood, prior, options
+ * of its runs. The number of threads and of seconds are left out. */
 std::uint64_t
 goldKey(const Problem& problem, const GoldOptions& options)
 {
@@ -91,6 +91,8 @@ goldKey(const Problem& problem, const GoldOptions& options)
     hash.add(number);
   return hash.value();
 }
+
+} // namespace
 
 GoldStandard
 cachedGold(const Problem& problem,

@@ -11,11 +11,6 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief What a gold standard depends on, in one number: points, likelihood, prior,
- * options of its runs. The number of threads and of seconds are left out. */
-std::uint64_t
-goldKey(const Problem& problem, const GoldOptions& options);
-
 /** \brief Read the gold standard of \p problem from \p folder, or make it and write it
  * there. One that had not converged is made again if more time is allowed now. Its
  * draws are poses theta, not canonical (angles within half a turn).
@@ -27,8 +22,9 @@ cachedGold(const Problem& problem,
            const std::string& folder,
            const std::function<void(const std::string&)>& report);
 
-/** \brief What tells rows of this gold standard from rows of others: goldKey(), and the
- * draws themselves of one that has not converged, which may become another one. */
+/** \brief What tells rows of this gold standard from rows of others: a hash of what it
+ * depends on, and the draws themselves of one that has not converged, which may become
+ * another one. */
 std::string
 rowKey(const Problem& problem, const GoldOptions& options, const GoldStandard& gold);
 

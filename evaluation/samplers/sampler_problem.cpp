@@ -58,7 +58,9 @@ Problem::name() const
 Vector6d
 Problem::startSpread() const
 {
-  if (!cell_.isTight())
+  // With a smaller sigma the posterior is much narrower than the prior.
+  constexpr double least_wide_sigma = 0.1; // [m]
+  if (cell_.sigma >= least_wide_sigma)
     return PriorOptions().variance.cwiseSqrt();
   Vector6d spread;
   spread << 0.05, 0.05, 0.05, 0.1, 0.1, 0.1;

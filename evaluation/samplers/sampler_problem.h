@@ -18,13 +18,6 @@ struct Cell {
   /** sigma [m] and N of LikelihoodScale. */
   double sigma;
   double effective_points;
-
-  /** \brief Whether the posterior is much narrower than the prior. */
-  bool
-  isTight() const
-  {
-    return sigma < 0.1;
-  }
 };
 
 /** \brief Two scans, the source thinned. */
