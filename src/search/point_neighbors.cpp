@@ -1,5 +1,7 @@
 #include "search/point_neighbors.h"
 
+#include "search/bucket_sort.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,9 +21,8 @@ constexpr float no_limit = std::numeric_limits<float>::max();
 /** Radius of the ball that is searched first, in that of the last one. */
 constexpr float usual_growth = 1.15f;
 
-/** Sort the \p count nearest of the keys to the front: into buckets of equal width in
- * the squared distance, over which points of a surface are spread evenly, and then
- * those. */
+/** Sort the \p count nearest of the keys to the front. Points of a
+ * surface are spread evenly over the squared distance. */
 void
 sortNearest(const std::vector<std::uint64_t>& keys,
             std::size_t count,
@@ -31,38 +32,12 @@ sortNearest(const std::vector<std::uint64_t>& keys,
   float furthest = 0.f;
   for (const auto key : keys)
     furthest = std::max(furthest, squaredDistanceOf(key));
-  const auto num_buckets = keys.size();
-  const float scale =
-      furthest > 0.f ? static_cast<float>(num_buckets - 1) / furthest : 0.f;
+  const float scale = 1.f / furthest;
   const bool is_scaled = std::isfinite(scale);
-  const auto bucketOf = [&](std::uint64_t key) {
-    return is_scaled
-               ? std::min(static_cast<std::size_t>(squaredDistanceOf(key) * scale),
-                          num_buckets - 1)
-               : std::size_t(0);
+  const auto placeOf = [&](std::uint64_t key) {
+    return is_scaled ? std::min(squaredDistanceOf(key) * scale, 1.f) : 0.f;
   };
-  buckets.assign(num_buckets, 0);
-  for (const auto key : keys)
-    ++buckets[bucketOf(key)];
-  std::uint32_t sum = 0;
-  for (auto& bucket : buckets) { // where it ends ...
-    sum += bucket;
-    bucket = sum;
-  }
-  sorted.resize(keys.size());
-  for (const auto key : keys)
-    sorted[--buckets[bucketOf(key)]] = key; // ... and, in the end, begins
-  const auto begin = sorted.begin();
-  for (std::size_t bucket = 0; bucket < num_buckets; ++bucket) {
-    const std::size_t first = buckets[bucket];
-    if (first >= count)
-      break;
-    const std::size_t last =
-        bucket + 1 < num_buckets ? buckets[bucket + 1] : sorted.size();
-    if (last - first > 1)
-      std::sort(begin + static_cast<std::ptrdiff_t>(first),
-                begin + static_cast<std::ptrdiff_t>(last));
-  }
+  sortInBuckets(keys, count, placeOf, sorted, buckets);
 }
 
 } // namespace
