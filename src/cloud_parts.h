@@ -4,9 +4,11 @@
 #pragma once
 
 #include "calibrated/surface/prepared_surface.h"
+#include "calibrated/surface/relative_size.h"
 
 #include <bayesian_icp/kd_tree.h>
 
+#include <array>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -37,13 +39,15 @@ struct CloudParts {
   explicit CloudParts(Eigen::Matrix3Xd cloud_points) : points(std::move(cloud_points))
   {}
 
-  /** \param[in] num_threads 0: as OpenMP would */
+  /** The surface to which \p other is registered.
+   * \param[in] num_threads 0: as OpenMP would */
   const PreparedSurface&
-  surface(int num_threads)
+  surfaceFor(const CloudParts& other, int num_threads)
   {
-    return surface_.get([&] {
+    const int num_doublings = numDoublings(points, other.points);
+    return surfaces_[static_cast<std::size_t>(num_doublings)].get([&] {
       return std::make_unique<const PreparedSurface>(
-          prepareSurface(points, num_threads));
+          prepareSurface(points, num_threads, num_doublings));
     });
   }
 
@@ -59,7 +63,8 @@ struct CloudParts {
   const Eigen::Matrix3Xd points;
 
 private:
-  Lazy<PreparedSurface> surface_;
+  /** By the number of doublings of their patches. */
+  std::array<Lazy<PreparedSurface>, max_doublings + 1> surfaces_;
   Lazy<KdTree> tree_;
 };
 

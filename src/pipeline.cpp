@@ -184,15 +184,16 @@ estimatePosterior(const PreparedCloud& source,
 {
   const int num_threads = options.chains.num_threads;
   if (options.preset == Preset::Calibrated) {
-    const auto surfaceOf = [num_threads](const PreparedCloud& cloud) {
-      return [&cloud, num_threads]() -> const PreparedSurface& {
-        return cloud.parts().surface(num_threads);
+    const auto surfaceOf = [num_threads](const PreparedCloud& cloud,
+                                         const PreparedCloud& other) {
+      return [&cloud, &other, num_threads]() -> const PreparedSurface& {
+        return cloud.parts().surfaceFor(other.parts(), num_threads);
       };
     };
     return estimateCalibratedPosterior(source.points(),
                                        target.points(),
-                                       surfaceOf(source),
-                                       surfaceOf(target),
+                                       surfaceOf(source, target),
+                                       surfaceOf(target, source),
                                        initial_pose,
                                        options,
                                        progress);

@@ -20,7 +20,7 @@ void
 PreparedCloud::prepare(Preset preset, int num_threads) const
 {
   if (preset == Preset::Calibrated)
-    parts_->surface(num_threads);
+    parts_->surfaceFor(*parts_, num_threads);
   else
     parts_->tree(num_threads);
 }

@@ -47,15 +47,19 @@ notesOf(const DataReport& report)
 /** A case, ready to be estimated. */
 struct Registration {
   explicit Registration(const CoverageCase& problem)
-  : source(prepareSurface(problem.source, 1))
-  , target(prepareSurface(problem.target, 1))
+  : source(
+        prepareSurface(problem.source, 1, numDoublings(problem.source, problem.target)))
+  , target(
+        prepareSurface(problem.target, 1, numDoublings(problem.target, problem.source)))
+  , prior(priorOf(problem))
   , scorer(scorerOf(problem.source,
                     source,
                     problem.target,
                     target,
                     CalibratedOptions().max_source_points,
-                    problem.seed))
-  , prior(priorOf(problem))
+                    problem.seed,
+                    1,
+                    reachOf(problem.source, source.columns, prior)))
   {}
 
   CalibratedEstimate
@@ -69,8 +73,8 @@ struct Registration {
   }
 
   PreparedSurface source, target;
-  SurfaceScorer scorer;
   Prior prior;
+  SurfaceScorer scorer;
 };
 
 } // namespace

@@ -134,14 +134,15 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                    "the target lies in a plane, and the source does not: there is no "
                    "surface to compare its points with");
   // 2: what the points of both clouds say.
+  const Prior prior = priorOf(options, initial_pose, source_points);
   const SurfaceScorer scorer = scorerOf(source_points,
                                         source,
                                         target_points,
                                         target,
                                         options.calibrated.max_source_points,
                                         options.chains.seed,
-                                        options.chains.num_threads);
-  const Prior prior = priorOf(options, initial_pose, source_points);
+                                        options.chains.num_threads,
+                                        reachOf(source_points, source.columns, prior));
   PosteriorEstimate result = estimateAndDraw(
       scorer, prior, heldInPlane(prior, source.model, target.model), options, progress);
   if (result.summary.num_draws > 0)

@@ -463,7 +463,8 @@ scorerOf(const Matrix3Xd& source_points,
          const PreparedSurface& target,
          Index max_points,
          std::uint64_t seed,
-         int num_threads)
+         int num_threads,
+         const Reach& reach)
 {
   const bool are_both_compared =
       source.complaint.empty() &&
@@ -474,8 +475,11 @@ scorerOf(const Matrix3Xd& source_points,
       of_source =
           evenPoints(source_points, source.columns, target.model, max_points, seed);
     else if (are_both_compared)
-      of_target =
-          evenPoints(target_points, target.columns, source.model, max_points, seed);
+      of_target = evenPoints(target_points,
+                             columnsWithin(reach, target_points, target.columns),
+                             source.model,
+                             max_points,
+                             seed);
   });
   SurfaceScorer scorer(of_source, target.model, num_threads);
   if (source.model.planeNormal() && !target.model.planeNormal())

@@ -6,6 +6,7 @@
 
 #include "calibrated/score/surface_score.h"
 #include "calibrated/surface/prepared_surface.h"
+#include "calibrated/surface/relative_size.h"
 #include "geometry/twist.h"
 
 #include <cstdint>
@@ -112,7 +113,8 @@ evenPoints(const Eigen::Matrix3Xd& points,
  * \param[in] max_points maximum number of points of each cloud
  * \param[in] seed of their order
  * \param[in] num_threads of the choice and of the scorer; 0: as OpenMP would. No result
- *            depends on it. */
+ *            depends on it.
+ * \param[in] reach of the source: target points beyond it are not compared */
 SurfaceScorer
 scorerOf(const Eigen::Matrix3Xd& source_points,
          const PreparedSurface& source,
@@ -120,7 +122,8 @@ scorerOf(const Eigen::Matrix3Xd& source_points,
          const PreparedSurface& target,
          Eigen::Index max_points,
          std::uint64_t seed,
-         int num_threads = 1);
+         int num_threads = 1,
+         const Reach& reach = Reach());
 
 /** \brief Find the mode from two starts (the prior's mean, and the result of
  * point-to-point ICP from there) and estimate the posterior covariance.

@@ -218,6 +218,77 @@ TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
   }
 }
 
+/** Random points of a floor of rooms, 5 x 5 m each, behind walls of 0.15 m, or of the
+ * part of it that can be seen from within one room.
+ * \param[in] num_rooms on each side */
+Eigen::Matrix3Xd
+rooms(Random& random, int num_rooms, bool is_seen_from_within, Eigen::Index num_points)
+{
+  constexpr double size = 5.0, height = 2.5, half_wall = 0.075, sigma = 0.01;
+  const double extent = num_rooms * size;
+  const int num_faces = is_seen_from_within ? 4 : 4 * (num_rooms + 1);
+  const double area_of_floor = extent * extent, area_of_face = extent * height;
+  Eigen::Matrix3Xd points(3, num_points);
+  for (auto point : points.colwise()) {
+    const double place =
+        random.uniform() * (area_of_floor + num_faces * area_of_face) - area_of_floor;
+    const double along = extent * random.uniform();
+    if (place < 0.0) {
+      point << extent * random.uniform(), along, 0.0;
+    }
+    else {
+      const int face = static_cast<int>(place / area_of_face);
+      // Alternately in front of a wall and behind it.
+      const int wall = is_seen_from_within ? face / 2 : face / 4;
+      const int side = is_seen_from_within ? 1 - 2 * wall : (face % 4 < 2 ? 1 : -1);
+      point << wall * size + side * half_wall, along, height * random.uniform();
+      if (face % 2 == 1)
+        std::swap(point.x(), point.y());
+    }
+    for (double& coordinate : point)
+      coordinate += sigma * random.normal();
+  }
+  return points;
+}
+
+TEST(Calibrated, AScanIsKnownInALargeMapAsInAMapOfItsRoom)
+{
+  // Points of the building are 0.16 m apart, as far as the faces of a wall.
+  constexpr int num_rooms = 6;
+  Random random(95, 0);
+  const Eigen::Matrix3Xd scan = rooms(random, 1, true, 4000);
+  const Eigen::Matrix3Xd building = rooms(random, num_rooms, false, 120000);
+  const Eigen::Vector3d corner(10.0, 15.0, 0.0);
+  std::vector<Eigen::Index> near;
+  for (Eigen::Index i = 0; i < building.cols(); ++i) {
+    const Eigen::Vector3d point = building.col(i) - corner;
+    if (point.head<2>().minCoeff() > -0.5 && point.head<2>().maxCoeff() < 5.5)
+      near.push_back(i);
+  }
+  Vector6d guess;
+  guess << corner + Eigen::Vector3d(0.1, -0.05, 0.08), 0.01, -0.02, 0.03;
+  Vector6d truth;
+  truth << corner, 0.0, 0.0, 0.0;
+  const auto summaryIn = [&](const Eigen::Matrix3Xd& map) {
+    return estimatePosterior(scan, map, guess, calibratedOptions()).summary;
+  };
+  const Summary in_building = summaryIn(building);
+  const Summary in_room = summaryIn(building(Eigen::all, near));
+  ASSERT_EQ(in_building.status, Status::Ok) << in_building.message;
+  EXPECT_LT(test::squaredErrorOf(in_building, truth), test::chi_square_9999);
+  EXPECT_LT(test::squaredErrorOf(in_room, truth), test::chi_square_9999);
+  const auto sizeOf = [](const Summary& summary) {
+    return std::pow(summary.covariance(CovarianceConvention::R3xSO3).determinant(),
+                    1.0 / 12.0);
+  };
+  // The points that are compared differ, and some 40 clusters of them tell J: five
+  // standard errors of the root mean square of six deviations.
+  EXPECT_NEAR(
+      sizeOf(in_building) / sizeOf(in_room), 1.0, 5.0 / std::sqrt(2.0 * 40.0 * 6.0));
+  // A tenth of the noise, which patches behind walls would not allow.
+  EXPECT_LT(sizeOf(in_building), 0.001);
+}
+
 TEST(Calibrated, PointsBesideTheSurfaceMakeItDoubtful)
 {
   // Three quarters of the source's surface are where the target was not seen.

@@ -532,21 +532,23 @@ sheetOf(Random& random, double size, double z)
   return points;
 }
 
-/** A board above a ground, which it does not touch. */
+/** A board above a ground, which it does not touch. Noise is added to heights. */
 Matrix3Xd
-exactBoard(double thickness)
+boardOf(double thickness, double noise)
 {
   Random random(81, 0);
   Matrix3Xd points(3, 8000 * 6);
   points << sheetOf(random, 2.0, 0.0), sheetOf(random, 1.0, 0.5),
       sheetOf(random, 1.0, 0.5 + thickness);
+  for (Index i = 0; i < points.cols(); ++i)
+    points(2, i) += noise * random.normal();
   return points;
 }
 
 /** Share of the patches of the board, away from its rim, that lie in one of its faces.
- */
+ * \param[in] tolerance of a patch's height [m] */
 double
-shareInFaces(const SurfaceModel& model, double thickness)
+shareInFaces(const SurfaceModel& model, double thickness, double tolerance)
 {
   int num_inside = 0, num_in_faces = 0;
   for (const SurfacePatch& patch : model.patches()) {
@@ -558,8 +560,8 @@ shareInFaces(const SurfaceModel& model, double thickness)
     const Projection projection = projectionOf(model, patch);
     const double height = projection.point.z() - 0.5;
     num_in_faces +=
-        patch.isUsable() && std::abs(projection.normal.z()) > 0.999 &&
-        std::min(std::abs(height), std::abs(height - thickness)) < 1e-3 * thickness;
+        patch.isUsable() && std::abs(projection.normal.z()) > 0.99 &&
+        std::min(std::abs(height), std::abs(height - thickness)) < tolerance;
   }
   return double(num_in_faces) / num_inside;
 }
@@ -568,13 +570,48 @@ TEST(SurfaceModel, BothSidesOfAnExactBoardAreApart)
 {
   // A neighbourhood of 18 points has a radius of 27 mm, and one of 45 has 42 mm.
   constexpr double thickness = 0.035;
-  Matrix3Xd points = exactBoard(thickness);
-  EXPECT_GT(shareInFaces(SurfaceModel(points), thickness), 0.9);
-  // Neighbourhoods of noisy points have to be larger.
-  Random random(82, 0);
+  EXPECT_GT(
+      shareInFaces(SurfaceModel(boardOf(thickness, 0.0)), thickness, 1e-3 * thickness),
+      0.9);
+}
+
+TEST(SurfaceModel, BothSidesOfANoisyBoardAreApart)
+{
+  constexpr double noise = 0.002;
+  // A quadric of 30 points has a standard error of 2 / sqrt(30) times their noise.
+  constexpr double tolerance = 2.0 * noise;
+  // A neighbourhood of 45 points has a radius of 42 mm if both faces are in it.
+  for (const double thickness : {0.02, 0.035, 0.05}) {
+    const SurfaceModel model(boardOf(thickness, noise));
+    EXPECT_GT(shareInFaces(model, thickness, tolerance), 0.95) << thickness;
+    EXPECT_NEAR(model.medianSigma(), noise, 0.1 * noise) << thickness;
+  }
+  // A board that is hardly thicker than the noise is one sheet, halfway between its
+  // faces.
+  constexpr double thin = 4.0 * noise;
+  EXPECT_LT(shareInFaces(SurfaceModel(boardOf(thin, noise)), thin, 0.5 * noise), 0.1);
+}
+
+TEST(SurfaceModel, PointsBelowAnEdgeAreNoLayer)
+{
+  // A step of 20 mm. Its two levels are beside each other, and not one behind the
+  // other.
+  constexpr double height = 0.02, noise = 0.002;
+  Random random(84, 0);
+  Matrix3Xd points = sheetOf(random, 1.0, 0.0);
   for (Index i = 0; i < points.cols(); ++i)
-    points(2, i) += 0.002 * random.normal();
-  EXPECT_LT(shareInFaces(SurfaceModel(points), thickness), 0.1);
+    points(2, i) += (points(0, i) > 0.5 ? height : 0.0) + noise * random.normal();
+  int num_sharp = 0, num_at_edge = 0;
+  const SurfaceModel model(points, withoutTakeover());
+  for (const SurfacePatch& patch : model.patches()) {
+    const double x = patch.centre.x() + model.origin().x();
+    if (std::abs(x - 0.5) > 0.005)
+      continue;
+    ++num_at_edge;
+    num_sharp += patch.kind == PatchKind::Plane && patch.sigma < 2.0 * noise;
+  }
+  ASSERT_GT(num_at_edge, 40);
+  EXPECT_LT(num_sharp, 0.2 * num_at_edge);
 }
 
 TEST(SurfaceModel, TheLevelsOfAQuantisedSensorAreNotExact)

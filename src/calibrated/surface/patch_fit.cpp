@@ -1,11 +1,14 @@
 #include "calibrated/surface/patch_fit.h"
 
+#include "search/bucket_sort.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace bayesian_icp {
@@ -41,6 +44,11 @@ constexpr double negligible_misfit = 1e-3;
  * points whose noise brings them nearer to its centre, and surfaces would look flatter
  * than they are. */
 constexpr double ball_to_neighborhood = 1.5;
+
+/** Layers are looked for in a ball with a smaller radius, in units of the points'
+ * standard deviation across the surface. In wider ones they are too near each other to
+ * matter. */
+constexpr double max_radius_of_layers = 16.0;
 
 /** Smallest number of points of a plane, and its largest thickness as a fraction of its
  * radius. */
@@ -140,13 +148,24 @@ aspectOf(const PointRows& local)
  * It is 2 if the points scatter, and near 0 if they follow a curve, however it bends.
  * \param[in] local in the principal frame */
 double
-successionOf(const PointRows& local, std::vector<std::pair<double, double>>& ordered)
+successionOf(const PointRows& local, PatchFitWorkspace& workspace)
 {
-  ordered.resize(static_cast<std::size_t>(local.rows()));
-  for (std::size_t i = 0; i < ordered.size(); ++i)
-    ordered[i] = {local(static_cast<Eigen::Index>(i), 0),
-                  local(static_cast<Eigen::Index>(i), 1)};
-  std::sort(ordered.begin(), ordered.end());
+  auto& places = workspace.places;
+  places.resize(static_cast<std::size_t>(local.rows()));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = {local(static_cast<Eigen::Index>(i), 0),
+                 local(static_cast<Eigen::Index>(i), 1)};
+  const double low = local.col(0).minCoeff();
+  const double scale = 1.0 / (local.col(0).maxCoeff() - low);
+  const auto& ordered = workspace.ordered_places;
+  sortInBuckets(
+      places,
+      places.size(),
+      [&](const auto& place) {
+        return std::isfinite(scale) ? std::min((place.first - low) * scale, 1.0) : 0.0;
+      },
+      workspace.ordered_places,
+      workspace.buckets);
   double sum = 0.0;
   for (std::size_t i = 1; i < ordered.size(); ++i) {
     const double step = ordered[i].second - ordered[i - 1].second;
@@ -412,22 +431,19 @@ fitPlane(const PointRows& local, double thickness, double aspect, SurfacePatch& 
 void
 doubtCurve(const PointRows& local, PatchFitWorkspace& workspace, SurfacePatch& patch)
 {
-  patch.follows_curve = successionOf(local, workspace.places) < min_succession;
+  patch.follows_curve = successionOf(local, workspace) < min_succession;
   if (patch.follows_curve)
     patch.sigma = std::hypot(patch.sigma, curve_slope_error * patch.radius);
 }
 
-/** The \p count points around \p point that are nearest to it in the plane of the
- * surface, relative to it, into workspace.neighbors. */
+/** The \p count points nearest to \p point, relative to it, into workspace.ball. */
 void
-gatherNeighbors(const PointNeighbors& cloud,
-                const Vector3f& point,
-                const Vector3d* plane_normal,
-                int count,
-                PatchFitWorkspace& workspace)
+gatherBall(const PointNeighbors& cloud,
+           const Vector3f& point,
+           double count,
+           PatchFitWorkspace& workspace)
 {
-  cloud.find(
-      point, static_cast<std::size_t>(ball_to_neighborhood * count), workspace.nearest);
+  cloud.find(point, static_cast<std::size_t>(count), workspace.nearest);
   const auto& indices = workspace.nearest.indices;
   PointRows& ball = workspace.ball;
   ball.resize(static_cast<Eigen::Index>(indices.size()), 3);
@@ -435,7 +451,35 @@ gatherNeighbors(const PointNeighbors& cloud,
     ball.row(i) = (cloud.points().col(indices[static_cast<std::size_t>(i)]) - point)
                       .cast<double>()
                       .transpose();
-  const Matrix3d axes = principalFrame(ball, plane_normal).axes;
+}
+
+/** The \p count points around \p point that are nearest to it in the plane of the
+ * surface, relative to it, into workspace.neighbors. If there are two layers, they are
+ * in that of \p point. */
+void
+gatherNeighbors(const PointNeighbors& cloud,
+                const Vector3f& point,
+                const Vector3d* plane_normal,
+                int count,
+                PatchFitWorkspace& workspace)
+{
+  const double wanted = ball_to_neighborhood * count;
+  gatherBall(cloud, point, wanted, workspace);
+  PointRows& ball = workspace.ball;
+  const PrincipalFrame frame = principalFrame(ball, plane_normal);
+  Matrix3d axes = frame.axes;
+  const double radius = std::sqrt(double(workspace.nearest.squared_distances.back()));
+  const std::optional<Layer> layer = radius < max_radius_of_layers * frame.thickness
+                                         ? ownLayer(ball, axes)
+                                         : std::nullopt;
+  if (layer) {
+    const auto num_both = static_cast<double>(ball.rows());
+    keepLayer(*layer, ball);
+    const double share = static_cast<double>(ball.rows()) / num_both;
+    gatherBall(cloud, point, wanted / share, workspace);
+    keepLayer(*layer, ball);
+    axes = principalFrame(ball, plane_normal).axes;
+  }
   const Eigen::ArrayXd distances = ball.lazyProduct(axes.col(0)).array().square() +
                                    ball.lazyProduct(axes.col(1)).array().square();
   auto& ordered = workspace.ordered;

@@ -3,24 +3,24 @@
  */
 #pragma once
 
+#include "calibrated/surface/layers.h"
 #include "calibrated/surface/surface_model.h"
 #include "search/point_neighbors.h"
 
 #include <bayesian_icp/pose.h>
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
 namespace bayesian_icp {
 
-/** \brief One point per row, so that loops over points are vectorised. */
-using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-
 /** \brief Buffers of one thread. */
 struct PatchFitWorkspace {
   NeighborList nearest;
   std::vector<double> ordered;
-  std::vector<std::pair<double, double>> places;
+  std::vector<std::pair<double, double>> places, ordered_places;
+  std::vector<std::uint32_t> buckets;
   PointRows ball, neighbors;
 };
 

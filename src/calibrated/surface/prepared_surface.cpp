@@ -83,7 +83,7 @@ usedColumns(const Matrix3Xd& points,
 } // namespace
 
 PreparedSurface
-prepareSurface(const Matrix3Xd& points, int num_threads)
+prepareSurface(const Matrix3Xd& points, int num_threads, int num_doublings)
 {
   const std::vector<Index> finite = finiteColumns(points);
   if (finite.size() < std::size_t(min_calibrated_points))
@@ -92,7 +92,8 @@ prepareSurface(const Matrix3Xd& points, int num_threads)
                               " finite points, but preset calibrated needs " +
                               std::to_string(min_calibrated_points),
                           finite);
-  const SurfaceModelOptions options;
+  SurfaceModelOptions options;
+  options.max_patches <<= num_doublings;
   std::vector<Index> columns = usedColumns(points, finite, options);
   PreparedSurface surface = {
       SurfaceModel(points, columns, options, num_threads), {}, {}, std::move(columns)};

@@ -28,8 +28,9 @@ struct PreparedSurface {
  * clouds often repeat points, and the zero spacing and noise of repeated points would
  * be wrong.
  * \param[in] points 3 x n, target frame [m]
- * \param[in] num_threads 0: as OpenMP would */
+ * \param[in] num_threads 0: as OpenMP would
+ * \param[in] num_doublings of the number of patches; see numDoublings() */
 PreparedSurface
-prepareSurface(const Eigen::Matrix3Xd& points, int num_threads);
+prepareSurface(const Eigen::Matrix3Xd& points, int num_threads, int num_doublings = 0);
 
 } // namespace bayesian_icp

@@ -1,0 +1,36 @@
+/** \file
+ * \brief Layers: parallel sheets of points, like the two faces of a wall.
+ */
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+
+namespace bayesian_icp {
+
+/** \brief One point per row, so that loops over points are vectorised. */
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/** \brief The layer of the origin, next to another one. */
+struct Layer {
+  /** Across the layers; its component along the smallest principal axis is 1. */
+  Eigen::Vector3d axis;
+  /** Place halfway between the layers along the axis. */
+  double threshold;
+};
+
+/** \brief The layer of the origin, if the points around it are in two layers, one
+ * behind the other. Layers that are less than six standard deviations of the points'
+ * distances apart are one.
+ *
+ * \param[in] points relative to one of them
+ * \param[in] axes columns: principal axes of the points, widest first */
+std::optional<Layer>
+ownLayer(const PointRows& points, const Eigen::Matrix3d& axes);
+
+/** \brief Keep the points that are in a layer. */
+void
+keepLayer(const Layer& layer, PointRows& points);
+
+} // namespace bayesian_icp
