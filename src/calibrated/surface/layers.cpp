@@ -14,9 +14,11 @@ using Eigen::Vector3d;
 namespace {
 
 /** Largest share of the variance across the layers that they leave unexplained: that of
- * layers 8.7 standard deviations apart. At 6 standard deviations (0.1), a few rings of
- * a LiDAR in a tunnel look like layers. */
-constexpr double max_unexplained = 0.05;
+ * layers six standard deviations apart. */
+constexpr double max_unexplained = 0.1;
+/** Smallest distance of the layers, in units of the points' root mean square in the
+ * plane. A few rings of a LiDAR in a tunnel look like layers that are nearer. */
+constexpr double min_distance = 0.4;
 /** Largest offset of the layers' centroids in the plane, in units of the points' root
  * mean square there. Points to both sides of an edge are further apart. */
 constexpr double max_offset = 0.5;
@@ -70,10 +72,11 @@ ownLayer(const PointRows& points, const Matrix3d& axes)
     if (explained < promising)
       return std::nullopt;
   }
-  const Vector3d offset =
-      step - layer.axis * (layer.axis.dot(step) / layer.axis.squaredNorm());
+  const Vector3d across =
+      layer.axis * (layer.axis.dot(step) / layer.axis.squaredNorm());
   if (!(explained > 1.0 - max_unexplained && layer.axis.head<2>().norm() < max_slope &&
-        offset.squaredNorm() < max_offset * max_offset * spread))
+        across.squaredNorm() > min_distance * min_distance * spread &&
+        (step - across).squaredNorm() < max_offset * max_offset * spread))
     return std::nullopt;
   layer.threshold += mean.dot(layer.axis);
   layer.axis = axes * layer.axis;

@@ -21,7 +21,7 @@ struct Layer {
 };
 
 /** \brief The layer of the origin, if the points around it are in two layers, one
- * behind the other. Layers that are less than 8.7 standard deviations of the points'
+ * behind the other. Layers that are less than six standard deviations of the points'
  * distances apart are one.
  *
  * \param[in] points relative to one of them
