@@ -16,9 +16,10 @@ namespace {
 /** Largest share of the variance across the layers that they leave unexplained: that of
  * layers six standard deviations apart. */
 constexpr double max_unexplained = 0.1;
-/** Smallest distance of the layers, in units of the points' root mean square in the
- * plane. A few rings of a LiDAR in a tunnel look like layers that are nearer. */
-constexpr double min_distance = 0.4;
+/** Layers whose distance is below near, in units of the points' root mean square in the
+ * plane, must be 8.7 standard deviations apart. A few rings of a LiDAR in a tunnel look
+ * like such layers that are six apart. */
+constexpr double near = 0.4, max_unexplained_near = 0.05;
 /** Largest offset of the layers' centroids in the plane, in units of the points' root
  * mean square there. Points to both sides of an edge are further apart. */
 constexpr double max_offset = 0.5;
@@ -74,8 +75,9 @@ ownLayer(const PointRows& points, const Matrix3d& axes)
   }
   const Vector3d across =
       layer.axis * (layer.axis.dot(step) / layer.axis.squaredNorm());
-  if (!(explained > 1.0 - max_unexplained && layer.axis.head<2>().norm() < max_slope &&
-        across.squaredNorm() > min_distance * min_distance * spread &&
+  const bool are_near = across.squaredNorm() < near * near * spread;
+  if (!(explained > 1.0 - (are_near ? max_unexplained_near : max_unexplained) &&
+        layer.axis.head<2>().norm() < max_slope &&
         (step - across).squaredNorm() < max_offset * max_offset * spread))
     return std::nullopt;
   layer.threshold += mean.dot(layer.axis);

@@ -21,8 +21,8 @@ struct Layer {
 };
 
 /** \brief The layer of the origin, if the points around it are in two layers, one
- * behind the other. Layers that are less than six standard deviations of the points'
- * distances apart are one.
+ * behind the other. Layers are one if they are less than six standard deviations of the
+ * points' distances apart; of wide layers, less than 8.7.
  *
  * \param[in] points relative to one of them
  * \param[in] axes columns: principal axes of the points, widest first */
