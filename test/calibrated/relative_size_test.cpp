@@ -66,6 +66,9 @@ TEST(RelativeSize, PointsThatAreNotFiniteDoNotCount)
   for (Index i = 0; i < map.cols(); i += 7)
     map(2, i) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(numDoublings(map, scan), 3);
+  // Nor does a stray point.
+  map.col(3) << 1e7, -1e7, 1e7;
+  EXPECT_EQ(numDoublings(map, wavyGround(10.0, 20000)), 3);
   scan.setConstant(std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(numDoublings(map, scan), 0);
   EXPECT_EQ(numDoublings(scan, map), 0);

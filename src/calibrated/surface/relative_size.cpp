@@ -1,5 +1,6 @@
 #include "calibrated/surface/relative_size.h"
 
+#include "calibrated/surface/even_choice.h"
 #include "calibrated/surface/surface_model.h"
 #include "geometry/twist.h"
 
@@ -47,10 +48,15 @@ numCubes(const Eigen::Matrix3Xf& points, double cube)
 {
   constexpr int num_bits = 21;
   constexpr std::int64_t num_places = std::int64_t(1) << num_bits;
+  // Points that are further away share the outermost cubes.
+  constexpr double furthest = num_places / 2 - 1;
   std::unordered_set<std::int64_t> cubes;
   for (const auto& point : points.colwise()) {
-    const Eigen::Array<std::int64_t, 3, 1> place =
-        (point.cast<double>().array() / cube).floor().cast<std::int64_t>();
+    const Eigen::Array<std::int64_t, 3, 1> place = (point.cast<double>().array() / cube)
+                                                       .floor()
+                                                       .max(-furthest)
+                                                       .min(furthest)
+                                                       .cast<std::int64_t>();
     cubes.insert((place[0] * num_places + place[1]) * num_places + place[2]);
   }
   return cubes.size();
@@ -68,7 +74,7 @@ numDoublings(const Matrix3Xd& cloud, const Matrix3Xd& other)
     return relativeTo(centroidOf(points, columns), points, columns);
   };
   const Eigen::Matrix3Xf small = centred(other, of_other);
-  const double cube = cube_to_spread * std::sqrt(small.colwise().squaredNorm().mean());
+  const double cube = cube_to_spread * spreadOf(small);
   if (!(cube > 0.0 && std::isfinite(cube)))
     return 0;
   const double ratio = static_cast<double>(numCubes(centred(cloud, of_cloud), cube)) /
