@@ -265,7 +265,8 @@ TYPED_TEST(BothRegistrations, AnEmptyListOfIndicesMeansTheWholeCloud)
 
 TYPED_TEST(BothRegistrations, IndicesOutsideTheirCloudAreAnInvalidInput)
 {
-  const auto& [source, target] = this->scans;
+  const auto& source = this->scans.source;
+  const auto& target = this->scans.target;
   const auto expectRefused = [&](const Cloud::Ptr& cloud, TypeParam& icp) {
     this->output = aligned(icp, cloud, target);
     EXPECT_FALSE(icp.hasConverged());

@@ -164,7 +164,8 @@ cubeOfSheet(const Eigen::Matrix3Xf& points, Index count)
 {
   const double cube =
       cube_of_sheet * spreadOf(points) / std::sqrt(static_cast<double>(count));
-  return std::max(static_cast<float>(cube), std::numeric_limits<float>::min());
+  using Limits = std::numeric_limits<float>;
+  return static_cast<float>(std::clamp<double>(cube, Limits::min(), Limits::max()));
 }
 
 /** Cubes that hold points, in the order of their first points. */

@@ -91,10 +91,14 @@ relativeTo(const Vector3d& origin,
            const Matrix3Xd& points,
            const std::vector<Index>& columns)
 {
+  // Differences of these are finite, too.
+  constexpr double furthest = 0.25 * double(std::numeric_limits<float>::max());
   Matrix3Xf relative(3, static_cast<Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i)
-    relative.col(static_cast<Index>(i)) =
-        (points.col(columns[i]) - origin).cast<float>();
+    relative.col(static_cast<Index>(i)) = (points.col(columns[i]) - origin)
+                                              .cwiseMax(-furthest)
+                                              .cwiseMin(furthest)
+                                              .cast<float>();
   return relative;
 }
 

@@ -128,7 +128,8 @@ struct SurfaceModelOptions {
 Eigen::Vector3d
 centroidOf(const Eigen::Matrix3Xd& points, const std::vector<Eigen::Index>& columns);
 
-/** \brief \p columns of \p points, relative to \p origin [m]. */
+/** \brief \p columns of \p points, relative to \p origin [m], as far as single
+ * precision reaches. */
 Eigen::Matrix3Xf
 relativeTo(const Eigen::Vector3d& origin,
            const Eigen::Matrix3Xd& points,
