@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -88,6 +89,53 @@ onStairs(Random& random)
     return {6.0 * step_run * along, across < 0.0 ? -0.5 : 0.5, across};
   default:
     return {6.0 * step_run, across, step_rise * (5.0 + 4.0 * along)};
+  }
+}
+
+struct FacePoint {
+  Eigen::Vector3d point, normal;
+};
+
+/** All faces of five boards that make a box of 0.4 x 0.3 x 0.18 m without a lid. */
+FacePoint
+onOpenBox(Random& random)
+{
+  constexpr double thickness = 0.01;
+  struct Board {
+    Eigen::Vector3d low, high;
+  };
+  const std::array<Board, 5> boards = {
+      {{{-0.2, -0.15, -thickness}, {0.2, 0.15, 0.0}},
+       {{-0.2, -0.15, 0.0}, {0.2, -0.15 + thickness, 0.17}},
+       {{-0.2, 0.15 - thickness, 0.0}, {0.2, 0.15, 0.17}},
+       {{-0.2, -0.15, 0.0}, {-0.2 + thickness, 0.15, 0.17}},
+       {{0.2 - thickness, -0.15, 0.0}, {0.2, 0.15, 0.17}}}};
+  for (;;) {
+    const Board& board = boards[random.index(boards.size())];
+    const Eigen::Vector3d size = board.high - board.low;
+    const auto axis = static_cast<Eigen::Index>(random.index(3));
+    // Each face is as likely as it is large.
+    if (random.uniform() > size.prod() / size[axis] / 0.12)
+      continue;
+    FacePoint result;
+    for (Eigen::Index k = 0; k < 3; ++k)
+      result.point[k] = board.low[k] + random.uniform() * size[k];
+    const bool is_high = random.index(2) == 1;
+    result.point[axis] = is_high ? board.high[axis] : board.low[axis];
+    result.normal = (is_high ? 1.0 : -1.0) * Eigen::Vector3d::Unit(axis);
+    return result;
+  }
+}
+
+/** The faces that look to the sensor. */
+Eigen::Vector3d
+onVisibleOpenBox(Random& random)
+{
+  const Eigen::Vector3d sensor(0.8, 0.6, 0.7);
+  for (;;) {
+    const FacePoint on = onOpenBox(random);
+    if (on.normal.dot(sensor - on.point) > 0.0)
+      return on.point;
   }
 }
 
@@ -283,6 +331,24 @@ TEST(CalibratedModes, AFirstEstimateThatWentAstrayHidesNone)
             test::chi_square_999);
 }
 
+TEST(CalibratedModes, AHopFindsABoxWhoseBoardsLieOnTheirOtherFaces)
+{
+  Clouds clouds = cloudsOf(onVisibleOpenBox, 0.03);
+  clouds.target =
+      sampled([](Random& random) { return onOpenBox(random).point; }, 20000, 3);
+  const test::Problem problem = problemOf(clouds, 0.06);
+  for (const Eigen::Vector3d& slip :
+       {Eigen::Vector3d(-0.01, 0.0, 0.0), Eigen::Vector3d(-0.01, -0.01, 0.0)}) {
+    const Eigen::Isometry3d slipped = Eigen::Translation3d(slip) * clouds.truth;
+    const CalibratedEstimate first = problem.estimate({}, &slipped);
+    ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
+    ASSERT_FALSE(mayHaveSeveralModes(problem.scorer, problem.prior, first));
+    const ModeSearch search = findModes(problem.scorer, problem.prior, first);
+    EXPECT_LT(squaredErrorOf(search.modes.front().estimate, clouds.truth),
+              test::chi_square_999);
+  }
+}
+
 TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
 {
   const Clouds clouds = cloudsOf(onStairs, 0.3);
@@ -342,6 +408,36 @@ TEST_F(ModeWeights, RegionsThatMeetNoTargetCountAsFarAsTheyAreMany)
   EXPECT_NEAR(weightOf(4.0), 0.0, 1e-9);
   EXPECT_GT(weightOf(8.0), 0.0);
   EXPECT_NEAR(weightOf(16.0) / weightOf(8.0), 3.0, 1e-9);
+}
+
+TEST_F(ModeWeights, PointsOfAModelThatAScanCannotMeetAreNoEvidence)
+{
+  // Half of the points are the scan's. In one of the modes, 200 of the others miss.
+  const Eigen::Index num_points = estimate_.scores.residuals.size();
+  const int half = static_cast<int>(num_points / 2), num_missing = 200;
+  const auto weightOf = [&](double fitting_part_of_model) {
+    std::vector<CalibratedMode> modes(2, {estimate_, 0.0});
+    for (auto& mode : modes) {
+      auto& scores = mode.estimate.scores;
+      scores.residuals.setZero();
+      std::fill(scores.has_patch.begin(), scores.has_patch.end(), true);
+      scores.num_source_points = half;
+      scores.num_active_of_source = half / 2;
+      scores.num_active =
+          half / 2 + static_cast<int>(std::lround(fitting_part_of_model * half / 2));
+    }
+    modes[1].estimate.cost += 1e-9;
+    auto& scores = modes[1].estimate.scores;
+    std::fill(scores.has_patch.end() - num_missing, scores.has_patch.end(), false);
+    scores.off_continuation.tail(num_missing).setOnes();
+    weighModes(problem_.prior, 0.0, modes);
+    return modes[0].log_weight - modes[1].log_weight;
+  };
+  const double of_scans = weightOf(1.0);
+  EXPECT_GT(of_scans, 10.0);
+  EXPECT_NEAR(weightOf(0.75), 0.5 * of_scans, 0.01 * of_scans);
+  EXPECT_EQ(weightOf(0.5), 0.0);
+  EXPECT_EQ(weightOf(0.1), 0.0);
 }
 
 TEST_F(ModeWeights, OverlapOnASurfaceThatGoesOnIsNoEvidence)

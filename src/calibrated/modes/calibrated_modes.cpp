@@ -2,6 +2,7 @@
 
 #include "calibrated/draws/product_coordinates.h"
 #include "calibrated/modes/mode_weights.h"
+#include "calibrated/modes/parallel_faces.h"
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/surface/even_choice.h"
 #include "geometry/principal_axes.h"
@@ -353,12 +354,24 @@ findModes(const SurfaceScorer& scorer,
   const SurfaceScorer subset = scorer.ofFirst(options.num_points);
   const Index num_points = subset.sourcePoints().cols();
   const RobustFit first_end = asItIs(subset, prior, first.mode);
-  const std::vector<RobustFit> ends =
-      endsOfStarts(subset, prior, wideCoordinates(scorer, prior), first_end, options);
   ModeSearch search;
   search.num_queries += num_points * first_end.num_evaluations;
+  std::vector<RobustFit> ends;
+  if (mayHaveSeveralModes(scorer, prior, first))
+    ends =
+        endsOfStarts(subset, prior, wideCoordinates(scorer, prior), first_end, options);
   for (const RobustFit& end : ends)
     search.num_queries += num_points * end.num_evaluations;
+  const bool is_first = ends.empty() || costsLess(first_end, ends.front());
+  const std::vector<RobustFit> on_faces =
+      endsOnParallelFaces(scorer,
+                          prior,
+                          options.num_points,
+                          is_first ? first_end : ends.front(),
+                          options.estimate.num_threads,
+                          search.num_queries);
+  ends.insert(ends.end(), on_faces.begin(), on_faces.end());
+  std::stable_sort(ends.begin(), ends.end(), costsLess);
   const double best_cost =
       ends.empty() ? first_end.cost : std::min(first_end.cost, ends.front().cost);
   std::vector<ProductCoordinates> known;
@@ -404,9 +417,8 @@ calibratedModes(const SurfaceScorer& scorer,
                 const ModeSearchOptions& options)
 {
   const CalibratedEstimate first = estimateCalibrated(scorer, prior, options.estimate);
-  std::vector<CalibratedMode> modes = {{first, 0.0}};
-  if (mayHaveSeveralModes(scorer, prior, first))
-    modes = significantModes(findModes(scorer, prior, first, options).modes);
+  std::vector<CalibratedMode> modes =
+      significantModes(findModes(scorer, prior, first, options).modes);
   CalibratedEstimate& heaviest = modes.front().estimate;
   if (!isWide(scorer, prior) && doesPriorHold(heaviest))
     heaviest.better_fit = betterFitOf(scorer, prior, heaviest, options);

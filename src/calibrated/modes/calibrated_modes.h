@@ -1,6 +1,6 @@
 /** \file
- * \brief Search for further modes of the calibrated posterior where the prior is wide
- * or the first mode fits badly.
+ * \brief Search for further modes of the calibrated posterior: where the prior is wide,
+ * where the first mode fits badly, and on parallel faces.
  */
 #pragma once
 
@@ -44,8 +44,10 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
 
 /** \brief Search for modes other than \p first, and drop \p first if another pose fits
  * clearly better. Poses that differ by a motion that only the prior holds are one mode.
- * The search takes at most about 150 000 queries, twice as many with hops, plus one
- * estimate for each mode. */
+ * If mayHaveSeveralModes(), starts are followed, which takes at most about 150 000
+ * queries, and twice as many with hops. Hops onto parallel faces are always tried. They
+ * take some 5000 queries if there are no such faces, and at most about 250 000
+ * otherwise. Each mode that is found takes one estimate. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
           const HeldPrior& prior,
@@ -58,9 +60,9 @@ findModes(const SurfaceScorer& scorer,
 std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes);
 
-/** \brief The first estimate or, if mayHaveSeveralModes(), the significantModes() of
- * the search; heaviest first. In a narrow prior that holds a motion, a better fit
- * outside of it is looked for (CalibratedEstimate::better_fit of the heaviest). */
+/** \brief The significantModes() of the search from the first estimate, heaviest first.
+ * In a narrow prior that holds a motion, a better fit outside of it is looked for
+ * (CalibratedEstimate::better_fit of the heaviest). */
 std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,
                 const HeldPrior& prior,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -70,6 +71,35 @@ energiesOf(const SurfaceScores& scores, double tau, bool continued)
   return energies;
 }
 
+/** How far the points of a cloud count: not at all if less than half as many of them
+ * fit as of the other cloud, fully if as many fit. A map or a CAD model has points that
+ * the scan cannot meet, and a wrong mode may hide more of them. */
+struct CloudFactors {
+  double source = 1.0, target = 1.0;
+};
+
+CloudFactors
+cloudFactors(const std::vector<CalibratedMode>& modes)
+{
+  double source = 0.0, target = 0.0;
+  for (const auto& mode : modes) {
+    const SurfaceScores& scores = mode.estimate.scores;
+    const auto shareOf = [](int num_active, Index num_points) {
+      return num_active / std::max(1.0, static_cast<double>(num_points));
+    };
+    source = std::max(source,
+                      shareOf(scores.num_active_of_source, scores.num_source_points));
+    target = std::max(target,
+                      shareOf(scores.num_active - scores.num_active_of_source,
+                              scores.residuals.size() - scores.num_source_points));
+  }
+  const double most = std::max({source, target, std::numeric_limits<double>::min()});
+  const auto factorOf = [most](double share) {
+    return std::clamp(2.0 * share / most - 1.0, 0.0, 1.0);
+  };
+  return {factorOf(source), factorOf(target)};
+}
+
 /** The part of an energy that is above its own noise. */
 double
 heededPart(double energy, double variance)
@@ -130,10 +160,15 @@ weighModes(const HeldPrior& prior,
   const double tau = least_cost->estimate.residual_scale;
   const double kappa = least_cost->estimate.kappa_inf;
   double weight = 0.0;
+  const CloudFactors factors = cloudFactors(modes);
   std::vector<VectorXd> energies;
   for (const auto& mode : modes) {
+    const SurfaceScores& scores = mode.estimate.scores;
     weight += energyWeight(mode.estimate) / static_cast<double>(modes.size());
-    energies.push_back(energiesOf(mode.estimate.scores, tau, region_of_cloud == 0.0));
+    VectorXd of_points = energiesOf(scores, tau, region_of_cloud == 0.0);
+    of_points.head(scores.num_source_points) *= factors.source;
+    of_points.tail(of_points.size() - scores.num_source_points) *= factors.target;
+    energies.push_back(std::move(of_points));
   }
   const auto best = static_cast<std::size_t>(
       std::min_element(energies.begin(),

@@ -1,0 +1,250 @@
+#include "calibrated/modes/parallel_faces.h"
+
+#include "threads/for_each_piece.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace bayesian_icp {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+namespace {
+
+/** Longest hop, in standard deviations of the prior and as a fraction of the diagonal
+ * of the source's bounding box. */
+constexpr double max_deviations = 3.0, max_part_of_extent = 0.25;
+/** Shortest hop, in units of the noise. Nearer faces are one. */
+constexpr double min_length_to_noise = 6.0;
+/** Smallest cosine of the angle between the normals of parallel faces. */
+constexpr double min_cosine = 0.97;
+
+/** Ways are the same if they differ by less than this fraction of their length. */
+constexpr double max_difference = 0.15;
+/** A way counts if it is that of this share of the points that meet the target. Few
+ * points are on the thin side of a body, and may alone tell where it is along it. */
+constexpr Index num_points_looked_at = 1000;
+constexpr double min_share_of_points = 0.01;
+/** Number of ways that are compared with all others to find the commonest. */
+constexpr std::size_t max_ways_tried = 250;
+/** At most so many kinds of ways are found at a pose, and followed from it. */
+constexpr std::size_t max_ways_found = 8, max_ways_followed = 16;
+
+constexpr int max_rounds = 4, max_fit_steps = 10;
+constexpr double max_relative_cost = 1.2;
+
+bool
+areSame(const Vector3d& a, const Vector3d& b)
+{
+  return (a - b).norm() < max_difference * b.norm();
+}
+
+double
+maxLength(const SurfaceScorer& scorer, const HeldPrior& prior)
+{
+  const Eigen::Matrix3Xd& points = scorer.sourcePoints();
+  const double extent =
+      (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+  return std::min(max_deviations * std::sqrt(prior.variance().head<3>().maxCoeff()),
+                  max_part_of_extent * extent);
+}
+
+/** Finds ways from points on the surface to parallel faces. */
+class FaceFinder {
+public:
+  FaceFinder(const SurfaceScorer& scorer, double max_length)
+  : scorer_(scorer)
+  , min_length_(min_length_to_noise * scorer.noise())
+  , max_length_(max_length)
+  {}
+
+  /** The commonest ways from the places of the source's points, along the normals of
+   * their patches, target frame [m]. */
+  std::vector<Vector3d>
+  find(const Isometry3d& T_target_source)
+  {
+    PatchHints hints;
+    SurfaceScores scores;
+    scorer_.evaluate(T_target_source,
+                     T_target_source * scorer_.centroid(),
+                     std::numeric_limits<double>::infinity(),
+                     hints,
+                     scores);
+    num_queries_ += scorer_.sourcePoints().cols();
+    std::vector<Vector3d> ways;
+    int num_points = 0;
+    for (Index i = 0; i < scorer_.sourcePoints().cols(); ++i) {
+      const auto point = static_cast<std::size_t>(i);
+      if (!scores.has_patch[point])
+        continue;
+      ++num_points;
+      const Vector3d place =
+          T_target_source * scorer_.sourcePoints().col(i) - scorer_.model().origin();
+      const Vector3d normal = scorer_.patchOf(i, hints[point]).axes.col(2);
+      addWay(place, normal, hints[point], ways);
+      addWay(place, -normal, hints[point], ways);
+    }
+    return commonest(std::move(ways), min_share_of_points * num_points);
+  }
+
+  long
+  numQueries() const
+  {
+    return num_queries_;
+  }
+
+private:
+  /** Add the way from \p place to the first parallel patch along \p normal. */
+  void
+  addWay(const Vector3d& place,
+         const Vector3d& normal,
+         std::uint32_t hint,
+         std::vector<Vector3d>& ways)
+  {
+    const SurfaceModel& model = scorer_.model();
+    const auto gate = static_cast<float>(max_length_ * max_length_);
+    // No patch is nearer than the nearest one, so steps of its distance miss none.
+    for (double length = min_length_; length < max_length_;) {
+      const Vector3d here = place + length * normal;
+      const KdTree::Neighbor nearest =
+          model.tree().nearest(here.cast<float>(), gate, hint);
+      ++num_queries_;
+      if (nearest.index == KdTree::none)
+        return;
+      hint = nearest.index;
+      const SurfacePatch& patch = model.patches()[hint];
+      const Vector3d offset = patch.origin - place;
+      const double along = offset.dot(normal);
+      const double aside = (offset - along * normal).norm();
+      if (patch.isUsable() && along > min_length_ && along < max_length_ &&
+          aside < SurfaceScorer::max_in_plane * patch.radius &&
+          std::abs(patch.axes.col(2).dot(normal)) > min_cosine) {
+        ways.push_back(along * normal);
+        return;
+      }
+      length += std::max(min_length_, std::sqrt(double(nearest.squared_distance)));
+    }
+  }
+
+  /** At most max_ways_found that are at least \p min_count times the same, each the
+   * mean of its kind; the commonest first. */
+  static std::vector<Vector3d>
+  commonest(std::vector<Vector3d> ways, double min_count)
+  {
+    std::vector<Vector3d> common;
+    while (!ways.empty() && common.size() < max_ways_found) {
+      Index most = 0;
+      Vector3d sum = Vector3d::Zero();
+      const std::size_t num_tried = std::min(ways.size(), max_ways_tried);
+      for (std::size_t i = 0; i < num_tried; ++i) {
+        const Vector3d& way = ways[i];
+        Index count = 0;
+        Vector3d sum_of_same = Vector3d::Zero();
+        for (const Vector3d& other : ways)
+          if (areSame(other, way)) {
+            sum_of_same += other;
+            ++count;
+          }
+        if (count > most) {
+          most = count;
+          sum = sum_of_same;
+        }
+      }
+      if (static_cast<double>(most) < min_count)
+        break;
+      const Vector3d mean = sum / static_cast<double>(most);
+      common.push_back(mean);
+      // Those at the edge of this kind are not another one.
+      ways.erase(std::remove_if(ways.begin(),
+                                ways.end(),
+                                [&](const Vector3d& way) {
+                                  return (way - mean).norm() <
+                                         2.0 * max_difference * mean.norm();
+                                }),
+                 ways.end());
+    }
+    return common;
+  }
+
+  const SurfaceScorer& scorer_;
+  double min_length_, max_length_;
+  long num_queries_ = 0;
+};
+
+/** Add \p found and the opposite ways to \p ways, unless they are known or there are
+ * enough. */
+void
+addToKnown(const std::vector<Vector3d>& found, std::vector<Vector3d>& ways)
+{
+  for (const Vector3d& way : found)
+    for (const Vector3d& either : {way, Vector3d(-way)})
+      if (ways.size() < max_ways_followed &&
+          std::none_of(ways.begin(), ways.end(), [&](const Vector3d& known) {
+            return areSame(known, either);
+          }))
+        ways.push_back(either);
+}
+
+std::vector<RobustFit>
+followHops(const SurfaceScorer& scorer,
+           const HeldPrior& prior,
+           const Isometry3d& from,
+           const std::vector<Vector3d>& ways,
+           int num_threads)
+{
+  RobustFitOptions fit;
+  fit.max_steps = max_fit_steps;
+  fit.tolerance = 0.1 * scorer.noise();
+  std::vector<RobustFit> ends(ways.size());
+  const auto num_ways = static_cast<std::ptrdiff_t>(ways.size());
+  forEachPiece(num_ways, num_threads, [&](std::ptrdiff_t i) {
+    const auto way = static_cast<std::size_t>(i);
+    ends[way] = fitRobustly(scorer, prior, Eigen::Translation3d(ways[way]) * from, fit);
+  });
+  return ends;
+}
+
+} // namespace
+
+std::vector<RobustFit>
+endsOnParallelFaces(const SurfaceScorer& scorer,
+                    const HeldPrior& prior,
+                    Index num_points,
+                    const RobustFit& from,
+                    int num_threads,
+                    long& num_queries)
+{
+  const SurfaceScorer subset = scorer.ofFirst(num_points),
+                      looked_at = scorer.ofFirst(num_points_looked_at);
+  FaceFinder finder(looked_at, maxLength(scorer, prior));
+  std::vector<RobustFit> ends;
+  std::vector<Vector3d> ways;
+  RobustFit best = from;
+  bool is_better = true;
+  for (int round = 0; round < max_rounds && is_better; ++round) {
+    addToKnown(finder.find(best.pose), ways);
+    is_better = false;
+    for (RobustFit& end : followHops(subset, prior, best.pose, ways, num_threads)) {
+      num_queries += subset.numPoints() * end.num_evaluations;
+      ends.push_back(std::move(end));
+      if (ends.back().cost < best.cost) {
+        best = ends.back();
+        is_better = true;
+      }
+    }
+  }
+  num_queries += finder.numQueries();
+  ends.erase(std::remove_if(ends.begin(),
+                            ends.end(),
+                            [&](const RobustFit& end) {
+                              return end.cost > max_relative_cost * best.cost;
+                            }),
+             ends.end());
+  return ends;
+}
+
+} // namespace bayesian_icp

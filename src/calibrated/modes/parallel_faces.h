@@ -1,0 +1,33 @@
+/** \file
+ * \brief Search for better fits where the source may lie on the wrong one of two
+ * parallel faces.
+ */
+#pragma once
+
+#include "calibrated/modes/robust_mode.h"
+
+#include <vector>
+
+namespace bayesian_icp {
+
+/** \brief Follow hops from \p from to parallel faces: translations that put points of
+ * the source from the faces that they meet onto the next parallel one, such as the
+ * other side of a wall, or the next board of a shelf. Hops are repeated from the best
+ * end. They are at most three standard deviations of the prior long, and at most a
+ * quarter of the source's extent.
+ *
+ * \param[in] scorer parallel faces are looked for where its first source points are
+ * \param[in] num_points number of source points that fits compare
+ * \param[in] from a fit of these points
+ * \param[in] num_threads 0: as OpenMP would
+ * \param[in,out] num_queries is increased by the number of nearest-neighbour queries
+ * \return ends that cost at most a fifth more than the best of them and \p from */
+std::vector<RobustFit>
+endsOnParallelFaces(const SurfaceScorer& scorer,
+                    const HeldPrior& prior,
+                    Eigen::Index num_points,
+                    const RobustFit& from,
+                    int num_threads,
+                    long& num_queries);
+
+} // namespace bayesian_icp
