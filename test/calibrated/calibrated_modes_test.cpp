@@ -415,16 +415,17 @@ TEST_F(ModeWeights, PointsOfAModelThatAScanCannotMeetAreNoEvidence)
   // Half of the points are the scan's. In one of the modes, 200 of the others miss.
   const Eigen::Index num_points = estimate_.scores.residuals.size();
   const int half = static_cast<int>(num_points / 2), num_missing = 200;
-  const auto weightOf = [&](double fitting_part_of_model) {
+  const auto weightOf = [&](double fitting_part_of_scan, double fitting_part_of_model) {
     std::vector<CalibratedMode> modes(2, {estimate_, 0.0});
     for (auto& mode : modes) {
       auto& scores = mode.estimate.scores;
       scores.residuals.setZero();
       std::fill(scores.has_patch.begin(), scores.has_patch.end(), true);
       scores.num_source_points = half;
-      scores.num_active_of_source = half / 2;
-      scores.num_active =
-          half / 2 + static_cast<int>(std::lround(fitting_part_of_model * half / 2));
+      scores.num_active_of_source =
+          static_cast<int>(std::lround(fitting_part_of_scan * half));
+      scores.num_active = scores.num_active_of_source +
+                          static_cast<int>(std::lround(fitting_part_of_model * half));
     }
     modes[1].estimate.cost += 1e-9;
     auto& scores = modes[1].estimate.scores;
@@ -433,11 +434,13 @@ TEST_F(ModeWeights, PointsOfAModelThatAScanCannotMeetAreNoEvidence)
     weighModes(problem_.prior, 0.0, modes);
     return modes[0].log_weight - modes[1].log_weight;
   };
-  const double of_scans = weightOf(1.0);
+  const double of_scans = weightOf(0.95, 0.95);
   EXPECT_GT(of_scans, 10.0);
-  EXPECT_NEAR(weightOf(0.75), 0.5 * of_scans, 0.01 * of_scans);
-  EXPECT_EQ(weightOf(0.5), 0.0);
-  EXPECT_EQ(weightOf(0.1), 0.0);
+  EXPECT_NEAR(weightOf(0.96, 0.72), 0.5 * of_scans, 0.01 * of_scans);
+  EXPECT_EQ(weightOf(0.95, 0.45), 0.0);
+  EXPECT_EQ(weightOf(0.95, 0.1), 0.0);
+  // Half of the scan meets nothing, so it is not part of the model.
+  EXPECT_EQ(weightOf(0.5, 0.1), of_scans);
 }
 
 TEST_F(ModeWeights, OverlapOnASurfaceThatGoesOnIsNoEvidence)

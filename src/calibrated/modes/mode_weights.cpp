@@ -71,11 +71,16 @@ energiesOf(const SurfaceScores& scores, double tau, bool continued)
   return energies;
 }
 
-/** How far the points of a cloud count: not at all if less than half as many of them
- * fit as of the other cloud, fully if as many fit. A map or a CAD model has points that
- * the scan cannot meet, and a wrong mode may hide more of them. */
+/** A cloud is part of the other one if at least the second share of its points fits,
+ * and surely not below the first. */
+constexpr double no_part = 0.65, part = 0.85;
+
+/** How far the points of each cloud count. A map or a CAD model has points that the
+ * scan cannot meet, and a wrong mode may hide more of them. So if one cloud is part of
+ * the other, the other one's points do not count if less than half as many of them fit.
+ */
 struct CloudFactors {
-  double source = 1.0, target = 1.0;
+  double source, target;
 };
 
 CloudFactors
@@ -93,11 +98,12 @@ cloudFactors(const std::vector<CalibratedMode>& modes)
                       shareOf(scores.num_active - scores.num_active_of_source,
                               scores.residuals.size() - scores.num_source_points));
   }
-  const double most = std::max({source, target, std::numeric_limits<double>::min()});
-  const auto factorOf = [most](double share) {
-    return std::clamp(2.0 * share / most - 1.0, 0.0, 1.0);
+  const auto factorOf = [](double share, double other) {
+    const double is_part = std::clamp((other - no_part) / (part - no_part), 0.0, 1.0);
+    const double ratio = share / std::max(other, std::numeric_limits<double>::min());
+    return 1.0 - is_part * (1.0 - std::clamp(2.0 * ratio - 1.0, 0.0, 1.0));
   };
-  return {factorOf(source), factorOf(target)};
+  return {factorOf(source, target), factorOf(target, source)};
 }
 
 /** The part of an energy that is above its own noise. */
