@@ -6,6 +6,7 @@
 #include "batch/ranks.h"
 #include "io/cloud_file.h"
 #include "io/command_line.h"
+#include "io/folders.h"
 #include "io/interrupt.h"
 #include "io/numbers.h"
 #include "io/program.h"
@@ -278,6 +279,8 @@ runTool(int argc, char** argv, const Ranks& ranks)
   io::silencePcl();
   const auto pairs = readManifest(
       request.manifest_file, request.settings, request.use_suggested_prior);
+  if (!request.output_folder.empty())
+    io::makeFolder(request.output_folder);
   io::catchInterrupt();
   const int exit_code = request.results_file.empty()
                             ? runToStandardOutput(request, ranks, pairs)

@@ -167,6 +167,8 @@ readManifest(const std::string& file,
   const json manifest = io::readJson(file, max_manifest_size);
   if (!manifest.is_array())
     throw io::FileError(file, "is not a JSON list of pairs");
+  if (manifest.empty())
+    throw io::FileError(file, "has no pairs");
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   std::vector<BatchPair> pairs;
   std::set<std::string> names;

@@ -192,6 +192,7 @@ class BatchRefused(BatchTest):
             ("[", "broken JSON"),
             ('[{"name": "a", "source": "s.pcd", "source": "t.pcd"}]', "'source' twice"),
             ("{}", "not a JSON list"),
+            ([], "has no pairs"),
             ("[1]", "pair 1: is '1', but must be an object"),
             ([{**good, "name": "../up"}], "pair 1", "folder"),
             ([{**good, "name": ""}], "pair 1", "must be a string that is not empty"),
@@ -208,6 +209,13 @@ class BatchRefused(BatchTest):
                 manifest = self.file("manifest.json", text)
                 self.assert_refused(3, run_batch(manifest), manifest, *parts)
         self.assert_refused(3, run_batch(self.folder / "none"), "no such file")
+
+    def test_an_output_folder_that_cannot_be_made(self):
+        """Before any pair is registered."""
+        good = {"name": "a", "source": "s.pcd", "target": "t.pcd"}
+        manifest = self.file("manifest.json", json.dumps([good]))
+        in_file = manifest / "files"
+        self.assert_refused(3, run_batch(manifest, "-o", in_file), in_file, "cannot be made")
 
     def test_usage(self):
         manifest = self.seeds(1)
