@@ -75,13 +75,6 @@ constexpr double max_aside = 0.15;
 /** Smallest share of the posterior of a mode that is kept. */
 constexpr double min_share = 0.02;
 
-/** Diagonal of the bounding box. */
-double
-extentOf(const Eigen::Matrix3Xd& points)
-{
-  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
-}
-
 std::array<bool, 6>
 wideCoordinates(const SurfaceScorer& scorer, const HeldPrior& prior)
 {
@@ -365,8 +358,8 @@ findModes(const SurfaceScorer& scorer,
   const bool is_first = ends.empty() || costsLess(first_end, ends.front());
   const std::vector<RobustFit> on_faces =
       endsOnParallelFaces(scorer,
+                          subset,
                           prior,
-                          options.num_points,
                           is_first ? first_end : ends.front(),
                           options.estimate.num_threads,
                           search.num_queries);

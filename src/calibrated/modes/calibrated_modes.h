@@ -45,9 +45,9 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
 /** \brief Search for modes other than \p first, and drop \p first if another pose fits
  * clearly better. Poses that differ by a motion that only the prior holds are one mode.
  * If mayHaveSeveralModes(), starts are followed, which takes at most about 150 000
- * queries, and twice as many with hops. Hops onto parallel faces are always tried. They
- * take some 5000 queries if there are no such faces, and at most about 250 000
- * otherwise. Each mode that is found takes one estimate. */
+ * queries, and twice as many with hops. Hops onto parallel faces are always tried. To
+ * look for faces takes some 4000 to 20 000 queries, and to follow hops at most about
+ * 200 000. Each mode that is found takes one estimate. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
           const HeldPrior& prior,

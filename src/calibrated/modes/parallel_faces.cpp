@@ -1,11 +1,13 @@
 #include "calibrated/modes/parallel_faces.h"
 
+#include "calibrated/surface/even_choice.h"
 #include "threads/for_each_piece.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -25,9 +27,10 @@ constexpr double min_cosine = 0.97;
 
 /** Ways are the same if they differ by less than this fraction of their length. */
 constexpr double max_difference = 0.15;
+/** Number of source points from which ways are looked for. */
+constexpr Index num_points_looked_at = 1000;
 /** A way counts if it is that of this share of the points that meet the target. Few
  * points are on the thin side of a body, and may alone tell where it is along it. */
-constexpr Index num_points_looked_at = 1000;
 constexpr double min_share_of_points = 0.01;
 /** Number of ways that are compared with all others to find the commonest. */
 constexpr std::size_t max_ways_tried = 250;
@@ -46,11 +49,8 @@ areSame(const Vector3d& a, const Vector3d& b)
 double
 maxLength(const SurfaceScorer& scorer, const HeldPrior& prior)
 {
-  const Eigen::Matrix3Xd& points = scorer.sourcePoints();
-  const double extent =
-      (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
   return std::min(max_deviations * std::sqrt(prior.variance().head<3>().maxCoeff()),
-                  max_part_of_extent * extent);
+                  max_part_of_extent * extentOf(scorer.sourcePoints()));
 }
 
 /** Finds ways from points on the surface to parallel faces. */
@@ -212,14 +212,13 @@ followHops(const SurfaceScorer& scorer,
 
 std::vector<RobustFit>
 endsOnParallelFaces(const SurfaceScorer& scorer,
+                    const SurfaceScorer& subset,
                     const HeldPrior& prior,
-                    Index num_points,
                     const RobustFit& from,
                     int num_threads,
                     long& num_queries)
 {
-  const SurfaceScorer subset = scorer.ofFirst(num_points),
-                      looked_at = scorer.ofFirst(num_points_looked_at);
+  const SurfaceScorer looked_at = scorer.ofFirst(num_points_looked_at);
   FaceFinder finder(looked_at, maxLength(scorer, prior));
   std::vector<RobustFit> ends;
   std::vector<Vector3d> ways;

@@ -17,15 +17,15 @@ namespace bayesian_icp {
  * quarter of the source's extent.
  *
  * \param[in] scorer parallel faces are looked for where its first source points are
- * \param[in] num_points number of source points that fits compare
- * \param[in] from a fit of these points
+ * \param[in] subset of its points, which fits compare
+ * \param[in] from a fit of the subset
  * \param[in] num_threads 0: as OpenMP would
  * \param[in,out] num_queries is increased by the number of nearest-neighbour queries
  * \return ends that cost at most a fifth more than the best of them and \p from */
 std::vector<RobustFit>
 endsOnParallelFaces(const SurfaceScorer& scorer,
+                    const SurfaceScorer& subset,
                     const HeldPrior& prior,
-                    Eigen::Index num_points,
                     const RobustFit& from,
                     int num_threads,
                     long& num_queries);

@@ -280,6 +280,12 @@ spreadOf(const Eigen::Matrix3Xf& points)
   return std::sqrt(sum / static_cast<double>(points.cols()));
 }
 
+double
+extentOf(const Eigen::Matrix3Xd& points)
+{
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
 void
 shuffle(std::vector<Index>& columns, Random& random)
 {

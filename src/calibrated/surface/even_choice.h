@@ -16,6 +16,11 @@ namespace bayesian_icp {
 double
 spreadOf(const Eigen::Matrix3Xf& points);
 
+/** \brief Diagonal of the bounding box [m].
+ * \param[in] points 3 x n, at least one */
+double
+extentOf(const Eigen::Matrix3Xd& points);
+
 /** \brief Put columns into a random order. */
 void
 shuffle(std::vector<Eigen::Index>& columns, Random& random);
