@@ -154,6 +154,7 @@ dataJson(const DataReport& report)
       {"degrees_of_freedom", report.degrees_of_freedom},
       {"correlation_factor", report.correlation_factor},
       {"active_fraction", report.active_fraction},
+      {"active_fraction_of_target", report.active_fraction_of_target},
       {"basin_distance_in_standard_deviations", report.basin_distance},
       {"other_start_cost_ratio", report.other_cost_ratio},
       {"prior_probability", report.prior_probability},

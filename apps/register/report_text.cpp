@@ -115,7 +115,9 @@ dataText(const DataReport& report)
          " independent ones, correlation factor " +
          io::fixedTextOf(report.correlation_factor, 2) +
          "\nSupport: " + io::fixedTextOf(percent * report.active_fraction, 0) +
-         " % of the source points lie on the target's surface\nFlags:   " +
+         " % of the source points lie on the target's surface, " +
+         io::fixedTextOf(percent * report.active_fraction_of_target, 0) +
+         " % of the target's on the source's\nFlags:   " +
          (flags.empty() ? "none" : flags) + '\n';
 }
 

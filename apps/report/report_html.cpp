@@ -190,7 +190,9 @@ dataSummary(const DataReport& data)
          io::fixedTextOf(data.effective_patches, 0) +
          " independent patches of surface hold the pose. " +
          io::fixedTextOf(percent * data.active_fraction, 0) +
-         " % of the source points lie on the target's surface.";
+         " % of the source points lie on the target's surface, and " +
+         io::fixedTextOf(percent * data.active_fraction_of_target, 0) +
+         " % of the target's on the source's.";
 }
 
 Section

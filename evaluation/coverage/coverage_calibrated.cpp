@@ -37,6 +37,7 @@ notesOf(const DataReport& report)
   return notes + "prior_only=" + std::to_string(numPriorOnly(report)) +
          numberNote("basin_distance", report.basin_distance) +
          numberNote("active", report.active_fraction) +
+         numberNote("active_of_target", report.active_fraction_of_target) +
          numberNote("other_cost_ratio", report.other_cost_ratio) +
          numberNote("patches", report.effective_patches) +
          numberNote("residual_scale", report.residual_scale) +

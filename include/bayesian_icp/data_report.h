@@ -70,7 +70,8 @@ struct DataFlags {
   /** The two starts ended more than max_basin_distance apart, and the worse end costs
    * no more than max_other_cost_ratio times the better one. Either may be right. */
   bool wrong_basin = false;
-  /** Less than min_active_fraction of the source points lie on the target's surface. */
+  /** Less than min_active_fraction of the points of either cloud lie on the surface of
+   * the other one. */
   bool low_support = false;
   /** Fewer than min_effective_patches independent patches determine the pose, or fewer
    * than 28 if residual_scale is above 3. Do not rely on the width of the posterior. */
@@ -110,6 +111,10 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   double effective_patches = std::numeric_limits<double>::quiet_NaN();
   /** Share of the source points that lie on the target's surface, in [0, 1]. */
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
+  /** Share of the target points that lie on the source's surface, in [0, 1]; 0 if the
+   * source has no usable surface. Points further away than the prior allows do not
+   * count. */
+  double active_fraction_of_target = std::numeric_limits<double>::quiet_NaN();
   /** kappa_inf: factor by which correlation between neighbouring points inflates the
    * covariance of the score. */
   double correlation_factor = std::numeric_limits<double>::quiet_NaN();

@@ -385,6 +385,7 @@ isFarFromMean(const CalibratedEstimate& e)
  * falsely, and the other motions are wrong there. \return whether it has moved */
 bool
 moveToMean(const SurfaceScorer& scorer,
+           const SurfaceScorer& leading,
            const HeldPrior& prior,
            const EstimateOptions& options,
            bool last,
@@ -392,11 +393,11 @@ moveToMean(const SurfaceScorer& scorer,
 {
   const double tolerance = mode_tolerance * scorer.noise();
   const RobustFit mode =
-      fitOnAllPoints(scorer,
+      fitOnAllPoints(leading,
                      prior,
                      movedBy(e.mean, e.centre, e.mode),
                      last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
-  e.num_queries += scorer.numPoints() * mode.num_evaluations;
+  e.num_queries += leading.numPoints() * mode.num_evaluations;
   if (!isMeanWithinReach(e) &&
       !(contactsOf(mode.residuals).misfit <
         max_misfit_after_far_move * contactsOf(cappedResiduals(e.scores)).misfit))
@@ -495,16 +496,18 @@ CalibratedEstimate
 estimateCalibrated(const SurfaceScorer& scorer,
                    const HeldPrior& prior,
                    const EstimateOptions& options,
-                   const Isometry3d* start)
+                   const Isometry3d* start,
+                   const SurfaceScorer* leading)
 {
+  const SurfaceScorer& lead = leading ? *leading : scorer;
   // Numbers are those of the sections of docs/calibration.md. 3: the mode.
-  Ends ends = followStarts(scorer, prior, options, start);
-  followEnds(scorer.ofFirst(options.num_curvature_points), prior, ends);
-  const RobustFit mode = fitOnAllPoints(scorer, prior, ends.best.pose);
+  Ends ends = followStarts(lead, prior, options, start);
+  followEnds(lead.ofFirst(options.num_curvature_points), prior, ends);
+  const RobustFit mode = fitOnAllPoints(lead, prior, ends.best.pose);
   CalibratedEstimate e = estimateAt(scorer, prior, options, mode);
-  e.num_queries += ends.num_queries + scorer.numPoints() * mode.num_evaluations;
+  e.num_queries += ends.num_queries + lead.numPoints() * mode.num_evaluations;
   for (int move = 0; move < max_moves && isFarFromMean(e); ++move)
-    if (!moveToMean(scorer, prior, options, move + 1 == max_moves, e))
+    if (!moveToMean(scorer, lead, prior, options, move + 1 == max_moves, e))
       break;
   e.other_end = twistBetween(ends.best.pose, ends.other.pose, e.centre);
   e.other_cost_ratio = relativeCost(ends.other, ends.best);

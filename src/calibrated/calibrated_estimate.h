@@ -130,12 +130,15 @@ scorerOf(const Eigen::Matrix3Xd& source_points,
  * \param[in] scorer of both clouds
  * \param[in] prior whose mean is the first start
  * \param[in] options numbers of points and rounds
- * \param[in] start single start in place of the two; may be null */
+ * \param[in] start single start in place of the two; may be null
+ * \param[in] leading those of the points that determine the mode; null: all of them,
+ *            after the source's have led there */
 CalibratedEstimate
 estimateCalibrated(const SurfaceScorer& scorer,
                    const HeldPrior& prior,
                    const EstimateOptions& options = EstimateOptions(),
-                   const Eigen::Isometry3d* start = nullptr);
+                   const Eigen::Isometry3d* start = nullptr,
+                   const SurfaceScorer* leading = nullptr);
 
 /** \brief Give an estimate another prior. Covariance and mean follow, and the mode
  * stays. */

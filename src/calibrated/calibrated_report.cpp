@@ -187,8 +187,9 @@ dataReportOf(const CalibratedEstimate& estimate, double noise)
   report.noise_scale = estimate.residual_scale * noise;
   report.effective_patches =
       num_smallest_clusters * std::max(1.0, estimate.kappa_48) / estimate.kappa_inf;
-  report.active_fraction = static_cast<double>(estimate.scores.num_active_of_source) /
-                           static_cast<double>(estimate.scores.num_source_points);
+  const ActiveShares active = activeSharesOf(estimate.scores);
+  report.active_fraction = active.source;
+  report.active_fraction_of_target = active.target;
   report.correlation_factor = estimate.kappa_inf;
   report.degrees_of_freedom = estimate.degrees_of_freedom;
   report.other_cost_ratio = estimate.other_cost_ratio;

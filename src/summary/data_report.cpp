@@ -130,7 +130,9 @@ flagsOf(const DataReport& report)
   DataFlags flags;
   flags.wrong_basin = !(report.basin_distance <= max_basin_distance ||
                         report.other_cost_ratio > max_other_cost_ratio);
-  flags.low_support = !(report.active_fraction >= min_active_fraction);
+  flags.low_support =
+      !(std::max(report.active_fraction, report.active_fraction_of_target) >=
+        min_active_fraction);
   flags.few_patches = !(report.effective_patches >= leastPatches(report));
   flags.misfit = !(report.residual_scale >= min_residual_scale &&
                    report.residual_scale <= largestScale(report));
@@ -174,9 +176,10 @@ describeFlags(const DataReport& report)
                   max_other_cost_ratio));
   if (report.flags.low_support)
     texts.push_back(formatted(
-        "only %.0f %% of the source points lie on the target's surface (at least "
-        "%.0f %%)",
+        "only %.0f %% of the source points lie on the target's surface, and %.0f %% of "
+        "the target's on the source's (at least %.0f %% of either)",
         100.0 * report.active_fraction,
+        100.0 * report.active_fraction_of_target,
         100.0 * min_active_fraction));
   if (report.flags.few_patches)
     texts.push_back(formatted(

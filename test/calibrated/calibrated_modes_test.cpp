@@ -349,6 +349,26 @@ TEST(CalibratedModes, AHopFindsABoxWhoseBoardsLieOnTheirOtherFaces)
   }
 }
 
+TEST(CalibratedModes, AScanLeadsWhereItsModelIsTheSource)
+{
+  // The faces of the model that the scan cannot see meet the wrong side of its boards.
+  Clouds clouds = cloudsOf(onVisibleOpenBox, 0.03);
+  clouds.source =
+      clouds.truth.inverse() *
+      sampled([](Random& random) { return onOpenBox(random).point; }, 20000, 3);
+  test::Problem problem = problemOf(clouds, 0.06);
+  const SurfaceModel of_source(clouds.source);
+  problem.scorer.addTargetPoints(clouds.target.leftCols(2000), of_source);
+  const Eigen::Isometry3d slipped =
+      Eigen::Translation3d(0.01, 0.01, 0.0) * clouds.truth;
+  const CalibratedEstimate first = problem.estimate({}, &slipped);
+  ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
+  const ModeSearch search = findModes(problem.scorer, problem.prior, first);
+  EXPECT_LT(squaredErrorOf(search.modes.front().estimate, clouds.truth),
+            test::chi_square_999);
+  EXPECT_EQ(significantModes(search.modes).size(), 1u);
+}
+
 TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
 {
   const Clouds clouds = cloudsOf(onStairs, 0.3);

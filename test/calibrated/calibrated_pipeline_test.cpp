@@ -289,26 +289,44 @@ TEST(Calibrated, AScanIsKnownInALargeMapAsInAMapOfItsRoom)
   EXPECT_LT(sizeOf(in_building), 0.001);
 }
 
-TEST(Calibrated, PointsBesideTheSurfaceMakeItDoubtful)
+/** A cloud and three more pieces of surface beside it. */
+Eigen::Matrix3Xd
+fourTimesAsWide(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& way)
 {
-  // Three quarters of the source's surface are where the target was not seen.
+  const Eigen::Index num_points = points.cols();
+  Eigen::Matrix3Xd wide(3, 4 * num_points);
+  wide.leftCols(num_points) = points;
+  const double steps[] = {3.0, -3.0, 6.0};
+  for (int k = 0; k < 3; ++k)
+    wide.middleCols((k + 1) * num_points, num_points) =
+        surface(94 + static_cast<std::uint64_t>(k), num_points).colwise() +
+        steps[k] * way;
+  return wide;
+}
+
+TEST(Calibrated, PointsBesideTheSurfaceOfBothCloudsMakeItDoubtful)
+{
+  // Three quarters of what each cloud shows are where the other one saw nothing.
   Scans scans;
-  const Eigen::Index num_points = scans.source.cols();
-  Eigen::Matrix3Xd source(3, 4 * num_points);
-  source.leftCols(num_points) = scans.source;
-  for (int k = 1; k < 4; ++k) {
-    source.middleCols(k * num_points, num_points) =
-        surface(93 + static_cast<std::uint64_t>(k), num_points);
-    source.row(0).segment(k * num_points, num_points).array() += 3.0 * k;
-  }
-  scans.source = source;
+  scans.source = fourTimesAsWide(scans.source, Eigen::Vector3d::UnitX());
+  scans.target = fourTimesAsWide(scans.target, Eigen::Vector3d::UnitY());
   const Summary summary = estimateFrom(scans).summary;
   EXPECT_EQ(summary.status, Status::Doubtful) << summary.message;
   EXPECT_TRUE(summary.data.flags.low_support);
   EXPECT_NE(summary.message.find("of the source points"), std::string::npos);
   EXPECT_TRUE(hasUsableMean(summary.status));
-  // The points cover all of the source's surface alike.
+  // The points cover all of the surfaces alike.
   EXPECT_NEAR(summary.data.active_fraction, 0.25, 0.04);
+}
+
+TEST(Calibrated, ATargetThatIsPartOfTheSourceIsEnough)
+{
+  Scans scans;
+  scans.source = fourTimesAsWide(scans.source, Eigen::Vector3d::UnitX());
+  const Summary summary = estimateFrom(scans).summary;
+  EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+  EXPECT_NEAR(summary.data.active_fraction, 0.25, 0.04);
+  EXPECT_GT(summary.data.active_fraction_of_target, 0.9);
 }
 
 /** No draws, and a status with a word in its message. */

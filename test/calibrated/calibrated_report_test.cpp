@@ -30,8 +30,10 @@ diagonalEstimate()
   CalibratedEstimate estimate;
   estimate.centre = body_centre;
   estimate.residual_scale = 1.5;
-  estimate.scores.num_active_of_source = 90;
+  estimate.scores.residuals.setZero(150);
   estimate.scores.num_source_points = 100;
+  estimate.scores.num_active_of_source = 90;
+  estimate.scores.num_active = 90 + 10;
   estimate.keep << 1.0, 0.9, 0.4, 0.0, 1.0, 0.5;
   const Vector6d relative_information(99.0, 24.0, 3.0, 0.0, 399.0, 8.0);
   estimate.prior.precision = Vector6d::Constant(4.0).asDiagonal();
@@ -56,6 +58,7 @@ TEST(Report, ClosedFormOfADiagonalEstimate)
   EXPECT_DOUBLE_EQ(report.residual_scale, 1.5);
   EXPECT_DOUBLE_EQ(report.noise_scale, 1.5 * target_noise);
   EXPECT_DOUBLE_EQ(report.active_fraction, 0.9);
+  EXPECT_DOUBLE_EQ(report.active_fraction_of_target, 0.2);
   EXPECT_DOUBLE_EQ(report.effective_patches, 48.0);
   EXPECT_DOUBLE_EQ(report.correlation_factor, 3.0);
   // Variance 1 / 400 m^2 of the posterior, and half the noise.
@@ -240,8 +243,16 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
                  e.other_end[0] = 1.0;
                  e.other_cost_ratio = max_other_cost_ratio + 0.01;
                }).any());
-  EXPECT_FALSE(flagsAfter([](E& e) { e.scores.num_active_of_source = 40; }).any());
-  EXPECT_TRUE(flagsAfter([](E& e) { e.scores.num_active_of_source = 39; }).low_support);
+  // Points of 100 of the source and 50 of the target.
+  const auto flagsWithActive = [](int of_source, int of_target) {
+    return flagsAfter([=](E& e) {
+      e.scores.num_active_of_source = of_source;
+      e.scores.num_active = of_source + of_target;
+    });
+  };
+  EXPECT_FALSE(flagsWithActive(40, 0).any());
+  EXPECT_FALSE(flagsWithActive(39, 20).any());
+  EXPECT_TRUE(flagsWithActive(39, 19).low_support);
   EXPECT_FALSE(flagsAfter([](E& e) { e.kappa_inf = 5.75; }).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.kappa_inf = 5.77; }).few_patches);
   // The prior alone holds one direction, which a disagreement may hide ...

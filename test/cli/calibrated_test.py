@@ -39,6 +39,7 @@ class DataSection(ToolTest):
         "effective_patches",
         "correlation_factor",
         "active_fraction",
+        "active_fraction_of_target",
         "basin_distance_in_standard_deviations",
         "other_start_cost_ratio",
         "degrees_of_freedom",

@@ -81,6 +81,7 @@ goodReport()
   report.is_available = true;
   report.basin_distance = 0.1;
   report.active_fraction = 0.9;
+  report.active_fraction_of_target = 0.8;
   report.effective_patches = 80.0;
   report.residual_scale = 1.0;
   report.correlation_factor = 1.2;
@@ -100,6 +101,7 @@ TEST(DescribeFlags, NameNumberAndThreshold)
   report.other_cost_ratio = 1.02;
   report.basin_distance = 5.25;
   report.active_fraction = 0.09;
+  report.active_fraction_of_target = 0.2;
   report.effective_patches = 12.0;
   report.residual_scale = 12.6;
   report.correlation_factor = 14.0;

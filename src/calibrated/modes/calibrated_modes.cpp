@@ -63,6 +63,10 @@ constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 1
  */
 constexpr double astray_margin = 0.2;
 
+/** The target's points lead if they cost less than this times what the source's cost.
+ */
+constexpr double max_cost_to_lead = 0.7;
+
 /** A prior so many times as wide does not keep the fit from a place where the clouds
  * meet. */
 constexpr double widening = 10.0;
@@ -174,7 +178,7 @@ hopsFrom(const Isometry3d& pose,
     starts.push_back(Eigen::Translation3d(-slide) * pose);
   }
   const Eigen::Translation3d centroid(scorer.centroid());
-  const Eigen::Matrix3Xd arms = scorer.sourcePoints().colwise() - scorer.centroid();
+  const Eigen::Matrix3Xd arms = scorer.ledBy(pose).colwise() - scorer.centroid();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(arms *
                                                                  arms.transpose());
   for (int k = 0; k < 3; ++k)
@@ -245,7 +249,7 @@ followStarts(const SurfaceScorer& subset,
   const double noise = subset.noise();
   const double radius = radiusOf(displacementMetric(subset, Isometry3d::Identity()));
   const auto num_icp_points =
-      static_cast<Index>(icp_part * static_cast<double>(subset.sourcePoints().cols()));
+      static_cast<Index>(icp_part * static_cast<double>(subset.numPoints()));
   const SurfaceScorer icp_points = subset.ofFirst(num_icp_points);
   RobustFitOptions fit;
   fit.start_scale =
@@ -328,6 +332,111 @@ betterFitOf(const SurfaceScorer& scorer,
   return there.deviation.dot(there.precision * there.deviation);
 }
 
+/** Where the search ends that follows some points. */
+struct CloudEnds {
+  SurfaceScorer subset;
+  /** At the mode of the first estimate, and where starts and hops end, least cost
+   * first.
+   */
+  RobustFit first;
+  std::vector<RobustFit> others;
+
+  double
+  leastCost() const
+  {
+    return others.empty() ? first.cost : std::min(first.cost, others.front().cost);
+  }
+};
+
+/** \param[in] leading its first points are followed */
+CloudEnds
+endsOfCloud(const SurfaceScorer& leading,
+            const SurfaceScorer& scorer,
+            const HeldPrior& prior,
+            const CalibratedEstimate& first,
+            const ModeSearchOptions& options,
+            long& num_queries)
+{
+  const SurfaceScorer subset = leading.ofFirst(options.num_points);
+  CloudEnds ends = {subset, asItIs(subset, prior, first.mode), {}};
+  std::vector<RobustFit>& others = ends.others;
+  num_queries += subset.numPoints() * ends.first.num_evaluations;
+  if (mayHaveSeveralModes(scorer, prior, first))
+    others = endsOfStarts(
+        subset, prior, wideCoordinates(scorer, prior), ends.first, options);
+  for (const RobustFit& end : others)
+    num_queries += subset.numPoints() * end.num_evaluations;
+  const bool is_first = others.empty() || costsLess(ends.first, others.front());
+  const std::vector<RobustFit> on_faces =
+      endsOnParallelFaces(leading,
+                          subset,
+                          prior,
+                          is_first ? ends.first : others.front(),
+                          options.estimate.num_threads,
+                          num_queries);
+  others.insert(others.end(), on_faces.begin(), on_faces.end());
+  std::stable_sort(others.begin(), others.end(), costsLess);
+  return ends;
+}
+
+/** Add an estimate of the mode at each of the ends, unless it is known.
+ * \param[in] leading as in estimateCalibrated() */
+void
+addModes(const SurfaceScorer& scorer,
+         const SurfaceScorer* leading,
+         const HeldPrior& prior,
+         const CloudEnds& ends,
+         const ModeSearchOptions& options,
+         ModeSearch& search)
+{
+  const double max_cost = (1.0 + cost_margin) * ends.leastCost();
+  std::vector<ProductCoordinates> known;
+  for (const CalibratedMode& mode : search.modes)
+    known.emplace_back(mode.estimate);
+  for (const RobustFit& end : ends.others) {
+    if (end.cost > max_cost || static_cast<int>(known.size()) >= options.max_modes)
+      break;
+    if (isKnown(end.pose, known, min_squared_distance))
+      continue;
+    const CalibratedEstimate estimate =
+        estimateCalibrated(scorer, prior, options.estimate, &end.pose, leading);
+    search.num_queries += estimate.num_queries;
+    if (isKnown(estimate.mode, known, min_squared_distance_of_modes) ||
+        std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
+          return areConnected(ends.subset, prior, mode.estimate, estimate, max_cost);
+        }))
+      continue;
+    known.emplace_back(estimate);
+    search.modes.push_back({estimate, 0.0});
+  }
+}
+
+/** Add the modes to which the target's points lead, if they fit far better than the
+ * source's. Those of a scan do if the source is a model of all of the body, or if it
+ * was seen from more sides.
+ * \param[in] least_cost what the source's points cost where they fit best
+ * \return whether they do */
+bool
+addModesOfTarget(const SurfaceScorer& scorer,
+                 const HeldPrior& prior,
+                 const CalibratedEstimate& first,
+                 double least_cost,
+                 const ModeSearchOptions& options,
+                 ModeSearch& search)
+{
+  const SurfaceScorer target = scorer.ofTarget();
+  if (first.cost < doubtful_cost || target.numPoints() == 0)
+    return false;
+  CloudEnds ends =
+      endsOfCloud(target, scorer, prior, first, options, search.num_queries);
+  if (ends.leastCost() > max_cost_to_lead * least_cost)
+    return false;
+  ends.others.push_back(ends.first);
+  std::stable_sort(ends.others.begin(), ends.others.end(), costsLess);
+  addModes(scorer, &target, prior, ends, options, search);
+  return true;
+}
+
 } // namespace
 
 bool
@@ -344,51 +453,14 @@ findModes(const SurfaceScorer& scorer,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options)
 {
-  const SurfaceScorer subset = scorer.ofFirst(options.num_points);
-  const Index num_points = subset.sourcePoints().cols();
-  const RobustFit first_end = asItIs(subset, prior, first.mode);
   ModeSearch search;
-  search.num_queries += num_points * first_end.num_evaluations;
-  std::vector<RobustFit> ends;
-  if (mayHaveSeveralModes(scorer, prior, first))
-    ends =
-        endsOfStarts(subset, prior, wideCoordinates(scorer, prior), first_end, options);
-  for (const RobustFit& end : ends)
-    search.num_queries += num_points * end.num_evaluations;
-  const bool is_first = ends.empty() || costsLess(first_end, ends.front());
-  const std::vector<RobustFit> on_faces =
-      endsOnParallelFaces(scorer,
-                          subset,
-                          prior,
-                          is_first ? first_end : ends.front(),
-                          options.estimate.num_threads,
-                          search.num_queries);
-  ends.insert(ends.end(), on_faces.begin(), on_faces.end());
-  std::stable_sort(ends.begin(), ends.end(), costsLess);
-  const double best_cost =
-      ends.empty() ? first_end.cost : std::min(first_end.cost, ends.front().cost);
-  std::vector<ProductCoordinates> known;
-  if (ends.empty() || !isClearlyWorse(first_end, ends.front(), astray_margin)) {
-    search.modes.push_back({first, 0.0});
-    known.emplace_back(first);
-  }
-  for (const RobustFit& end : ends) {
-    if (end.cost > (1.0 + cost_margin) * best_cost ||
-        static_cast<int>(known.size()) >= options.max_modes)
-      break;
-    if (isKnown(end.pose, known, min_squared_distance))
-      continue;
-    const CalibratedEstimate estimate =
-        estimateCalibrated(scorer, prior, options.estimate, &end.pose);
-    search.num_queries += estimate.num_queries;
-    if (isKnown(estimate.mode, known, min_squared_distance_of_modes) ||
-        std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
-          return areConnected(
-              subset, prior, mode.estimate, estimate, (1.0 + cost_margin) * best_cost);
-        }))
-      continue;
-    known.emplace_back(estimate);
-    search.modes.push_back({estimate, 0.0});
+  const CloudEnds ends =
+      endsOfCloud(scorer, scorer, prior, first, options, search.num_queries);
+  if (!addModesOfTarget(scorer, prior, first, ends.leastCost(), options, search)) {
+    if (ends.others.empty() ||
+        !isClearlyWorse(ends.first, ends.others.front(), astray_margin))
+      search.modes.push_back({first, 0.0});
+    addModes(scorer, nullptr, prior, ends, options, search);
   }
   weighModes(prior, mayBeLost(prior) ? region_of_cloud : 0.0, search.modes);
   return search;

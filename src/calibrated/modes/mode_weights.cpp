@@ -88,15 +88,9 @@ cloudFactors(const std::vector<CalibratedMode>& modes)
 {
   double source = 0.0, target = 0.0;
   for (const auto& mode : modes) {
-    const SurfaceScores& scores = mode.estimate.scores;
-    const auto shareOf = [](int num_active, Index num_points) {
-      return num_active / std::max(1.0, static_cast<double>(num_points));
-    };
-    source = std::max(source,
-                      shareOf(scores.num_active_of_source, scores.num_source_points));
-    target = std::max(target,
-                      shareOf(scores.num_active - scores.num_active_of_source,
-                              scores.residuals.size() - scores.num_source_points));
+    const ActiveShares active = activeSharesOf(mode.estimate.scores);
+    source = std::max(source, active.source);
+    target = std::max(target, active.target);
   }
   const auto factorOf = [](double share, double other) {
     const double is_part = std::clamp((other - no_part) / (part - no_part), 0.0, 1.0);

@@ -47,10 +47,12 @@ areSame(const Vector3d& a, const Vector3d& b)
 }
 
 double
-maxLength(const SurfaceScorer& scorer, const HeldPrior& prior)
+maxLength(const SurfaceScorer& scorer,
+          const HeldPrior& prior,
+          const Isometry3d& T_target_source)
 {
   return std::min(max_deviations * std::sqrt(prior.variance().head<3>().maxCoeff()),
-                  max_part_of_extent * extentOf(scorer.sourcePoints()));
+                  max_part_of_extent * extentOf(scorer.ledBy(T_target_source)));
 }
 
 /** Finds ways from points on the surface to parallel faces. */
@@ -74,20 +76,24 @@ public:
                      std::numeric_limits<double>::infinity(),
                      hints,
                      scores);
-    num_queries_ += scorer_.sourcePoints().cols();
+    num_queries_ += scorer_.numPoints();
     std::vector<Vector3d> ways;
     int num_points = 0;
-    for (Index i = 0; i < scorer_.sourcePoints().cols(); ++i) {
+    for (Index i = 0; i < scorer_.numPoints(); ++i) {
       const auto point = static_cast<std::size_t>(i);
       if (!scores.has_patch[point])
         continue;
       ++num_points;
-      const Vector3d place =
-          T_target_source * scorer_.sourcePoints().col(i) - scorer_.model().origin();
-      const Vector3d normal = scorer_.patchOf(i, hints[point]).axes.col(2);
-      addWay(place, normal, hints[point], ways);
-      addWay(place, -normal, hints[point], ways);
+      const Vector3d place = scorer_.placeOf(i, T_target_source);
+      const SurfaceModel& model = scorer_.modelOf(i);
+      const Vector3d normal = model.patches()[hints[point]].axes.col(2);
+      addWay(model, place, normal, hints[point], ways);
+      addWay(model, place, -normal, hints[point], ways);
     }
+    // Where the points are the target's, the source moves to meet them.
+    if (scorer_.sourcePoints().cols() == 0)
+      for (Vector3d& way : ways)
+        way = -(T_target_source.linear() * way).eval();
     return commonest(std::move(ways), min_share_of_points * num_points);
   }
 
@@ -100,12 +106,12 @@ public:
 private:
   /** Add the way from \p place to the first parallel patch along \p normal. */
   void
-  addWay(const Vector3d& place,
+  addWay(const SurfaceModel& model,
+         const Vector3d& place,
          const Vector3d& normal,
          std::uint32_t hint,
          std::vector<Vector3d>& ways)
   {
-    const SurfaceModel& model = scorer_.model();
     const auto gate = static_cast<float>(max_length_ * max_length_);
     // No patch is nearer than the nearest one, so steps of its distance miss none.
     for (double length = min_length_; length < max_length_;) {
@@ -219,7 +225,7 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
                     long& num_queries)
 {
   const SurfaceScorer looked_at = scorer.ofFirst(num_points_looked_at);
-  FaceFinder finder(looked_at, maxLength(scorer, prior));
+  FaceFinder finder(looked_at, maxLength(scorer, prior, from.pose));
   std::vector<RobustFit> ends;
   std::vector<Vector3d> ways;
   RobustFit best = from;

@@ -84,7 +84,8 @@ Matrix6d
 displacementMetric(const SurfaceScorer& scorer, const Isometry3d& T_target_source)
 {
   const Eigen::Matrix3Xd arms =
-      T_target_source.linear() * (scorer.sourcePoints().colwise() - scorer.centroid());
+      T_target_source.linear() *
+      (scorer.ledBy(T_target_source).colwise() - scorer.centroid());
   const Eigen::Matrix3d moment =
       arms * arms.transpose() / static_cast<double>(arms.cols());
   Matrix6d metric = Matrix6d::Identity();
@@ -160,17 +161,17 @@ fitPointToPoint(const SurfaceScorer& scorer,
                 const HeldPrior& prior,
                 const Isometry3d& start)
 {
-  const SurfaceModel& model = scorer.model();
-  const Eigen::Matrix3Xd& source = scorer.sourcePoints();
+  const Index num_source = scorer.sourcePoints().cols();
   RobustFit fit;
   fit.pose = start;
-  PatchHints hints(static_cast<std::size_t>(source.cols()), KdTree::none);
+  PatchHints hints(static_cast<std::size_t>(scorer.numPoints()), KdTree::none);
   for (int step = 0; step < max_point_steps; ++step) {
     const Vector3d centre = fit.pose * scorer.centroid();
     const TwistPrior pull = twistPrior(prior, fit.pose, centre);
     Vector6d gradient = pull.gradient;
-    for (Index i = 0; i < source.cols(); ++i) {
-      const Vector3d point = fit.pose * source.col(i) - model.origin();
+    for (Index i = 0; i < scorer.numPoints(); ++i) {
+      const SurfaceModel& model = scorer.modelOf(i);
+      const Vector3d point = scorer.placeOf(i, fit.pose);
       auto& hint = hints[static_cast<std::size_t>(i)];
       hint = model.tree()
                  .nearest(
@@ -178,13 +179,17 @@ fitPointToPoint(const SurfaceScorer& scorer,
                  .index;
       if (hint == KdTree::none)
         continue;
-      const Vector3d residual = point - model.tree().points().col(hint).cast<double>();
-      const Vector3d arm = point + model.origin() - centre;
+      const Vector3d met = model.tree().points().col(hint).cast<double>();
+      // What moves is the point, or else the surface that it meets.
+      const Vector3d residual =
+          i < num_source ? Vector3d(point - met) : fit.pose.linear() * (met - point);
+      const Vector3d arm = i < num_source ? Vector3d(point + model.origin() - centre)
+                                          : fit.pose * (met + model.origin()) - centre;
       gradient.head<3>() += point_weight * residual;
       gradient.tail<3>() += point_weight * arm.cross(residual);
     }
     ++fit.num_evaluations;
-    const Matrix6d matrix = point_weight * static_cast<double>(source.cols()) *
+    const Matrix6d matrix = point_weight * static_cast<double>(scorer.numPoints()) *
                                 displacementMetric(scorer, fit.pose) +
                             pull.precision;
     Vector6d xi = -matrix.ldlt().solve(gradient);

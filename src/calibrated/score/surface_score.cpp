@@ -189,6 +189,17 @@ private:
   Isometry3d T_source_model_target_ = Isometry3d::Identity();
 };
 
+ActiveShares
+activeSharesOf(const SurfaceScores& scores)
+{
+  const auto shareOf = [](int num_active, Eigen::Index num_points) {
+    return num_active / std::max(1.0, static_cast<double>(num_points));
+  };
+  return {shareOf(scores.num_active_of_source, scores.num_source_points),
+          shareOf(scores.num_active - scores.num_active_of_source,
+                  scores.residuals.size() - scores.num_source_points)};
+}
+
 double
 tukeyWeight(double z)
 {
@@ -218,8 +229,10 @@ residualScale(const SurfaceScores& scores)
 Eigen::VectorXd
 cappedResiduals(const SurfaceScores& scores)
 {
+  const Eigen::Index num_points =
+      scores.num_source_points > 0 ? scores.num_source_points : scores.residuals.size();
   Eigen::VectorXd capped =
-      scores.residuals.head(scores.num_source_points).cwiseAbs().cwiseMin(residual_cap);
+      scores.residuals.head(num_points).cwiseAbs().cwiseMin(residual_cap);
   for (Eigen::Index i = 0; i < capped.size(); ++i)
     if (!scores.has_patch[static_cast<std::size_t>(i)])
       capped[i] = std::numeric_limits<double>::quiet_NaN();
@@ -278,28 +291,45 @@ SurfaceScorer::setSourceNoise(const SurfaceModel& source_model)
   min_source_sigma_ = leastSigma(source_model, model_);
 }
 
+SurfaceScorer::SurfaceScorer(const SurfaceScorer& all,
+                             const Eigen::Matrix3Xd& source_points,
+                             const Eigen::Matrix3Xd& target_points)
+: source_points_(source_points)
+, centroid_(all.centroid_)
+, model_(all.model_)
+, num_threads_(all.num_threads_)
+, target_points_(target_points)
+, source_model_(all.source_model_)
+, min_sigma_(all.min_sigma_)
+, min_source_sigma_(all.min_source_sigma_)
+, ray_plane_(all.ray_plane_)
+{}
+
 SurfaceScorer
 SurfaceScorer::ofFirst(Eigen::Index num_points) const
 {
-  SurfaceScorer first(
+  const Eigen::Index num_of_target =
+      source_points_.cols() > 0 ? 0 : std::min(num_points, target_points_.cols());
+  return SurfaceScorer(
+      *this,
       source_points_.leftCols(std::min(num_points, source_points_.cols())),
-      model_,
-      num_threads_);
-  first.centroid_ = centroid_;
-  first.ray_plane_ = ray_plane_;
-  first.min_sigma_ = min_sigma_;
-  first.min_source_sigma_ = min_source_sigma_;
-  return first;
+      target_points_.leftCols(num_of_target));
+}
+
+SurfaceScorer
+SurfaceScorer::ofTarget() const
+{
+  return SurfaceScorer(*this, Eigen::Matrix3Xd(3, 0), target_points_);
 }
 
 SurfaceScorer
 SurfaceScorer::ofFirstOfBoth(Eigen::Index num_points) const
 {
   const Eigen::Index num_of_target = std::min(num_points / 2, target_points_.cols());
-  SurfaceScorer first = ofFirst(num_points - num_of_target);
-  if (num_of_target > 0)
-    first.addTargetPoints(target_points_.leftCols(num_of_target), *source_model_);
-  return first;
+  return SurfaceScorer(*this,
+                       source_points_.leftCols(
+                           std::min(num_points - num_of_target, source_points_.cols())),
+                       target_points_.leftCols(num_of_target));
 }
 
 Eigen::Matrix3Xd

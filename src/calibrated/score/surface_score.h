@@ -45,11 +45,20 @@ struct SurfaceScores {
   Vector6d total;
   /** Sum of the Gauss-Newton informations. */
   Matrix6d information;
-  int num_active;
+  int num_active = 0;
   /** Number of active source points, and of all source points. */
   int num_active_of_source = 0;
   Eigen::Index num_source_points = 0;
 };
+
+/** \brief Shares of the active points of each cloud, in [0, 1]; 0 if no points of it
+ * are compared. */
+struct ActiveShares {
+  double source, target;
+};
+
+ActiveShares
+activeSharesOf(const SurfaceScores& scores);
 
 /** \brief Tukey's weight (1 - z^2)^2, zero beyond |z| = 1. z is the residual divided by
  * SurfaceScorer::tukey_constant and the scale. */
@@ -66,7 +75,8 @@ tukeyEnergy(double z);
 double
 residualScale(const SurfaceScores& scores);
 
-/** \brief min(|u|, 5) of each source point; NaN if it has no usable patch. */
+/** \brief min(|u|, 5) of each source point, or of each target point if there are no
+ * others; NaN if it has no usable patch. */
 Eigen::VectorXd
 cappedResiduals(const SurfaceScores& scores);
 
@@ -81,13 +91,13 @@ struct Contacts {
 Contacts
 contactsOf(const Eigen::VectorXd& capped_residuals);
 
-/** \brief Mean of min(|u|, 5) over the source points. A point without a usable patch
- * counts 5. */
+/** \brief Mean of min(|u|, 5) over the points of cappedResiduals(). A point without a
+ * usable patch counts 5. */
 double
 meanCappedResidual(const SurfaceScores& scores);
 
-/** \brief Like meanCappedResidual(), but a source point on the continuation of the
- * target's surface may count less than 5, down to the mean of the points with a patch.
+/** \brief Like meanCappedResidual(), but a point on the continuation of the other
+ * cloud's surface may count less than 5, down to the mean of the points with a patch.
  */
 double
 costOf(const SurfaceScores& scores);
@@ -138,9 +148,14 @@ public:
   }
 
   /** \brief A scorer of the first \p num_points source points, or of all if there are
-   * fewer. It keeps the centroid of all points, so that twists are the same. */
+   * fewer. It keeps the centroid of all points, so that twists are the same. Of a
+   * scorer without source points, it has the first target points. */
   SurfaceScorer
   ofFirst(Eigen::Index num_points) const;
+
+  /** \brief A scorer of the target points alone. Twists are the same. */
+  SurfaceScorer
+  ofTarget() const;
 
   /** \brief A scorer of the first points of both clouds, half of them from each. */
   SurfaceScorer
@@ -186,14 +201,39 @@ public:
   Eigen::Matrix3Xd
   pointsAt(const Eigen::Isometry3d& T_target_source) const;
 
+  /** \brief The source's points, or the target's if there are no others, in the
+   * source's frame [m]. */
+  Eigen::Matrix3Xd
+  ledBy(const Eigen::Isometry3d& T_target_source) const
+  {
+    return source_points_.cols() > 0 ? source_points_ : pointsAt(T_target_source);
+  }
+
   /** \brief A patch of the surface that a point is compared with.
    * \param[in] point in the order of SurfaceScores
    * \param[in] patch index from the hint of the point */
   const SurfacePatch&
   patchOf(Eigen::Index point, std::uint32_t patch) const
   {
-    const SurfaceModel& model = point < source_points_.cols() ? model_ : *source_model_;
-    return model.patches()[patch];
+    return modelOf(point).patches()[patch];
+  }
+
+  /** \brief The surface that a point is compared with. */
+  const SurfaceModel&
+  modelOf(Eigen::Index point) const
+  {
+    return point < source_points_.cols() ? model_ : *source_model_;
+  }
+
+  /** \brief Where a point is in the frame of modelOf() at a pose [m]. */
+  Eigen::Vector3d
+  placeOf(Eigen::Index point, const Eigen::Isometry3d& T_target_source) const
+  {
+    const Eigen::Index num_source = source_points_.cols();
+    return point < num_source
+               ? T_target_source * source_points_.col(point) - model_.origin()
+               : T_target_source.inverse() * target_points_.col(point - num_source) -
+                     source_model_->origin();
   }
 
   const Eigen::Matrix3Xd&
@@ -226,6 +266,11 @@ public:
 
 private:
   class Placement;
+
+  /** A scorer that has other points, and all else in common. */
+  SurfaceScorer(const SurfaceScorer& all,
+                const Eigen::Matrix3Xd& source_points,
+                const Eigen::Matrix3Xd& target_points);
 
   Eigen::Matrix3Xd source_points_;
   Eigen::Vector3d centroid_;
