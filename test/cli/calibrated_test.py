@@ -82,20 +82,25 @@ class DataSection(ToolTest):
         self.assertIsNone(document["data"])
 
     def test_flags_are_doubt(self):
-        """Three quarters of the source are where the target was not seen."""
-        _, target = scans("mug")
-        _, points = cloud_files.read_pcd(scans("mug")[0])
-        source = [cloud_files.numbers(point, *"xyz") for point in points]
-        elsewhere = [(x + far, y, z) for x, y, z in source for far in (1, 2, 3)]
-        file = self.file("source.pcd", cloud_files.pcd_bytes(source[::2] + elsewhere))
-        result = run(file, target, *CALIBRATED, "--json")
+        """More than three quarters of each cloud are where the other one was not seen."""
+        source, target = (
+            [cloud_files.numbers(point, *"xyz") for point in cloud_files.read_pcd(name)[1]]
+            for name in scans("mug")
+        )
+        mugs = [(x + far, y, z) for x, y, z in source for far in (1, 2, 3)]
+        board = [(0.005 * i, 1 + 0.005 * j, 0) for i in range(70) for j in range(70)]
+        files = [
+            self.file("source.pcd", cloud_files.pcd_bytes(source[::2] + mugs)),
+            self.file("target.pcd", cloud_files.pcd_bytes(target + board)),
+        ]
+        result = run(*files, *CALIBRATED, "--json")
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"^pcl_bayesian_icp: doubtful: .*, but only \d+ % of .*\n$")
         document = strict_json(result.stdout)
         self.assertEqual(document["status"]["name"], "doubtful")
         self.assertTrue(document["data"]["flags"]["low_support"])
         self.assertEqual(len(document["data"]["flag_messages"]), 1)
-        table = run(file, target, *CALIBRATED).stdout
+        table = run(*files, *CALIBRATED).stdout
         self.assertIn("Flags:   low support\n", table)
 
 

@@ -67,6 +67,11 @@ constexpr double astray_margin = 0.2;
  */
 constexpr double max_cost_to_lead = 0.7;
 
+/** An end is ignored if its squared distance from the prior's mean is above this, in
+ * standard deviations, and further than that of the first estimate. Where little of the
+ * clouds overlaps, a wrong place may fit better than the right one. */
+constexpr double max_squared_deviations = 36.0;
+
 /** A prior so many times as wide does not keep the fit from a place where the clouds
  * meet. */
 constexpr double widening = 10.0;
@@ -300,6 +305,16 @@ endsOfStarts(const SurfaceScorer& subset,
   return ends;
 }
 
+/** Squared distance of a pose from the prior's mean, in standard deviations. */
+double
+squaredDeviations(const SurfaceScorer& scorer,
+                  const HeldPrior& prior,
+                  const Isometry3d& pose)
+{
+  const TwistPrior there = twistPrior(prior, pose, pose * scorer.centroid());
+  return there.deviation.dot(there.precision * there.deviation);
+}
+
 /** Whether the prior has more to say about some direction than the clouds. */
 bool
 doesPriorHold(const CalibratedEstimate& e)
@@ -327,18 +342,15 @@ betterFitOf(const SurfaceScorer& scorer,
   const auto best = std::min_element(ends.begin(), ends.end(), costsLess);
   if (!isClearlyWorse(asItIs(subset, prior, estimate.mode), *best, astray_margin))
     return 0.0;
-  const TwistPrior there =
-      twistPrior(prior, best->pose, best->pose * subset.centroid());
-  return there.deviation.dot(there.precision * there.deviation);
+  return squaredDeviations(subset, prior, best->pose);
 }
 
 /** Where the search ends that follows some points. */
 struct CloudEnds {
   SurfaceScorer subset;
-  /** At the mode of the first estimate, and where starts and hops end, least cost
-   * first.
-   */
+  /** At the mode of the first estimate. */
   RobustFit first;
+  /** Where starts and hops end, least cost first. */
   std::vector<RobustFit> others;
 
   double
@@ -375,6 +387,15 @@ endsOfCloud(const SurfaceScorer& leading,
                           options.estimate.num_threads,
                           num_queries);
   others.insert(others.end(), on_faces.begin(), on_faces.end());
+  const double max_squared = std::max(
+      max_squared_deviations, squaredDeviations(scorer, prior, ends.first.pose));
+  others.erase(std::remove_if(others.begin(),
+                              others.end(),
+                              [&](const RobustFit& end) {
+                                return squaredDeviations(scorer, prior, end.pose) >
+                                       max_squared;
+                              }),
+               others.end());
   std::stable_sort(others.begin(), others.end(), costsLess);
   return ends;
 }

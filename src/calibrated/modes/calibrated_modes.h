@@ -17,7 +17,7 @@ struct ModeSearchOptions {
    * rotation's deviation is above 0.5 rad, hops from the best end follow: slides and
    * half turns. */
   int num_starts = 16;
-  /** Number of source points on which starts are followed. */
+  /** Number of points of one cloud on which starts are followed. */
   int num_points = 300;
   int max_modes = 8;
   std::uint64_t seed = 1;
@@ -47,7 +47,9 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
  * If mayHaveSeveralModes(), starts are followed, which takes at most about 150 000
  * queries, and twice as many with hops. Hops onto parallel faces are always tried. To
  * look for faces takes some 4000 to 20 000 queries, and to follow hops at most about
- * 200 000. Each mode that is found takes one estimate. */
+ * 200 000. If many points of the source do not fit at \p first, all this is repeated
+ * with points of the target, which lead if they fit far better: a scan leads where the
+ * source is its model. Each mode that is found takes one estimate. */
 ModeSearch
 findModes(const SurfaceScorer& scorer,
           const HeldPrior& prior,
