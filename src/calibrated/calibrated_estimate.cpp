@@ -380,6 +380,16 @@ isFarFromMean(const CalibratedEstimate& e)
           contactsOf(cappedResiduals(e.scores)).share < max_overlap_before_far_move);
 }
 
+/** Mean misfit of the points that have a patch at a pose. */
+double
+misfitAt(const SurfaceScorer& scorer, const Isometry3d& pose)
+{
+  PatchHints hints;
+  SurfaceScores scores;
+  scorer.evaluate(pose, pose * scorer.centroid(), 1.0, hints, scores);
+  return contactsOf(cappedResiduals(scores)).misfit;
+}
+
 /** Move the estimate to the mode nearest to the mean. In the \p last move the free
  * directions stay at the mean, because the fit slides back along a motion that is held
  * falsely, and the other motions are wrong there. \return whether it has moved */
@@ -398,9 +408,8 @@ moveToMean(const SurfaceScorer& scorer,
                      movedBy(e.mean, e.centre, e.mode),
                      last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
   e.num_queries += leading.numPoints() * mode.num_evaluations;
-  if (!isMeanWithinReach(e) &&
-      !(contactsOf(mode.residuals).misfit <
-        max_misfit_after_far_move * contactsOf(cappedResiduals(e.scores)).misfit))
+  if (!isMeanWithinReach(e) && !(contactsOf(mode.residuals).misfit <
+                                 max_misfit_after_far_move * misfitAt(leading, e.mode)))
     return false;
   CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
   next.num_queries += e.num_queries;

@@ -183,7 +183,8 @@ hopsFrom(const Isometry3d& pose,
     starts.push_back(Eigen::Translation3d(-slide) * pose);
   }
   const Eigen::Translation3d centroid(scorer.centroid());
-  const Eigen::Matrix3Xd arms = scorer.ledBy(pose).colwise() - scorer.centroid();
+  const Eigen::Matrix3Xd arms =
+      scorer.leadingPoints(pose).colwise() - scorer.centroid();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(arms *
                                                                  arms.transpose());
   for (int k = 0; k < 3; ++k)

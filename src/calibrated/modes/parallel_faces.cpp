@@ -52,7 +52,7 @@ maxLength(const SurfaceScorer& scorer,
           const Isometry3d& T_target_source)
 {
   return std::min(max_deviations * std::sqrt(prior.variance().head<3>().maxCoeff()),
-                  max_part_of_extent * extentOf(scorer.ledBy(T_target_source)));
+                  max_part_of_extent * extentOf(scorer.leadingPoints(T_target_source)));
 }
 
 /** Finds ways from points on the surface to parallel faces. */

@@ -85,7 +85,7 @@ displacementMetric(const SurfaceScorer& scorer, const Isometry3d& T_target_sourc
 {
   const Eigen::Matrix3Xd arms =
       T_target_source.linear() *
-      (scorer.ledBy(T_target_source).colwise() - scorer.centroid());
+      (scorer.leadingPoints(T_target_source).colwise() - scorer.centroid());
   const Eigen::Matrix3d moment =
       arms * arms.transpose() / static_cast<double>(arms.cols());
   Matrix6d metric = Matrix6d::Identity();

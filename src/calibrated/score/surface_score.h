@@ -204,7 +204,7 @@ public:
   /** \brief The source's points, or the target's if there are no others, in the
    * source's frame [m]. */
   Eigen::Matrix3Xd
-  ledBy(const Eigen::Isometry3d& T_target_source) const
+  leadingPoints(const Eigen::Isometry3d& T_target_source) const
   {
     return source_points_.cols() > 0 ? source_points_ : pointsAt(T_target_source);
   }
