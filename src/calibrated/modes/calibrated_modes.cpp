@@ -446,9 +446,10 @@ addModesOfTarget(const SurfaceScorer& scorer,
                  const ModeSearchOptions& options,
                  ModeSearch& search)
 {
-  const SurfaceScorer target = scorer.ofTarget();
-  if (first.cost < doubtful_cost || target.numPoints() == 0)
+  const bool is_target_compared = scorer.numPoints() > scorer.sourcePoints().cols();
+  if (first.cost < doubtful_cost || !is_target_compared)
     return false;
+  const SurfaceScorer target = scorer.ofTarget();
   CloudEnds ends =
       endsOfCloud(target, scorer, prior, first, options, search.num_queries);
   if (ends.leastCost() > max_cost_to_lead * least_cost)
