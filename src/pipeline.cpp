@@ -8,8 +8,6 @@
 #include <bayesian_icp/tree_search.h>
 
 #include <algorithm>
-#include <cmath>
-#include <memory>
 #include <numeric>
 
 namespace bayesian_icp {

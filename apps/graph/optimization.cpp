@@ -17,7 +17,6 @@
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <new>

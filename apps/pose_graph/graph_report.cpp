@@ -5,7 +5,6 @@
 #include "report/path_charts.h"
 #include "report/section.h"
 
-#include <algorithm>
 #include <array>
 
 namespace bayesian_icp::app {

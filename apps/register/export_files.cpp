@@ -5,7 +5,6 @@
 #include "io/time_stamps.h"
 
 #include <algorithm>
-#include <ostream>
 #include <stdexcept>
 
 namespace bayesian_icp::app {

@@ -10,7 +10,6 @@
 #include <pcl/point_types.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 namespace bayesian_icp::app {

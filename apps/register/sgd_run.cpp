@@ -15,7 +15,6 @@
 #include <bayesian_icp/tree_search.h>
 
 #include <cmath>
-#include <iostream>
 #include <optional>
 
 namespace bayesian_icp::app {

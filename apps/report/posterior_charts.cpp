@@ -4,7 +4,6 @@
 #include <bayesian_icp/diagnostics.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace bayesian_icp::app {

@@ -8,7 +8,6 @@
 #include "viewer/window.h"
 
 #include <string>
-#include <vector>
 
 namespace bayesian_icp::viewer {
 

@@ -1,5 +1,7 @@
 #include "baselines/iterative_closest_point.h"
 
+#include "search/squared_gate.h"
+
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -15,18 +17,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double min_pairs = 3.0;
-
-/** The float gate that lets the same squared distances pass as this distance does. */
-float
-squaredGate(double max_distance)
-{
-  const double square = max_distance * max_distance;
-  constexpr float max_float = std::numeric_limits<float>::max();
-  if (!(square < static_cast<double>(max_float)))
-    return std::isnan(square) ? -1.f : max_float;
-  const auto gate = static_cast<float>(square);
-  return static_cast<double>(gate) > square ? std::nextafter(gate, -1.f) : gate;
-}
 
 /** The mean, or the origin where points that no search in single precision finds have
  * drawn it out of the range of a float. */

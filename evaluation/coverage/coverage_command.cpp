@@ -24,7 +24,6 @@
 #include <numeric>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace bayesian_icp::evaluate {

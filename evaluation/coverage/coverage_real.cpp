@@ -15,7 +15,6 @@
 namespace bayesian_icp::evaluate {
 
 using Eigen::Isometry3d;
-using Eigen::Vector3d;
 
 namespace {
 

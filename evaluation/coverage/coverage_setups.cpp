@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include <stdexcept>
-#include <utility>
 
 namespace bayesian_icp::evaluate {
 

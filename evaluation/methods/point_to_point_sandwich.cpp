@@ -9,7 +9,6 @@
 namespace bayesian_icp::evaluate {
 
 using Eigen::Index;
-using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 namespace {

@@ -2,6 +2,7 @@
 
 #include "coverage/coverage_score.h"
 #include "geometry/twist.h"
+#include "io/picture_numbers.h"
 #include "study/draw_statistics.h"
 
 #include <algorithm>
@@ -40,7 +41,7 @@ addBaselineScores(const PoseMatrix& draws,
   const Vector6d scale = priorSd().cwiseInverse();
   const PoseMatrix outcomes = unwrapAbout(
       baseline.mean,
-      baseline.ends(spreadIndices(baseline.ends.rows(), max_outcomes), Eigen::all));
+      baseline.ends(io::evenlySpaced(baseline.ends.rows(), max_outcomes), Eigen::all));
   run.energy_score =
       energyScore(draws * scale.asDiagonal(), outcomes * scale.asDiagonal());
 }

@@ -3,6 +3,7 @@
 #include "geometry/twist.h"
 #include "io/coordinates.h"
 #include "io/output_folder.h"
+#include "io/picture_numbers.h"
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
 #include "study/run_file.h"
@@ -56,7 +57,8 @@ writeRows(const std::string& name, const Rows& rows, std::ostream& stream)
 Eigen::MatrixX3d
 someOf(const Eigen::Matrix3Xd& cloud)
 {
-  return cloud(Eigen::all, spreadIndices(cloud.cols(), num_drawn_points)).transpose();
+  return cloud(Eigen::all, io::evenlySpaced(cloud.cols(), num_drawn_points))
+      .transpose();
 }
 
 void

@@ -5,7 +5,6 @@
 
 #include "samplers/sampler_problem.h"
 
-#include <cstdint>
 #include <functional>
 #include <string>
 

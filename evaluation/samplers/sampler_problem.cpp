@@ -1,6 +1,7 @@
 #include "samplers/sampler_problem.h"
 
 #include "io/cloud_file.h"
+#include "io/picture_numbers.h"
 #include "study/draw_statistics.h"
 
 #include <limits>
@@ -29,7 +30,7 @@ readScene(const std::string& folder, const std::string& name, std::size_t max_po
   const std::string path = folder + "/" + name + "/";
   const Eigen::Matrix3Xf source = io::readFinitePoints(path + "source.pcd");
   const auto thinned =
-      spreadIndices(source.cols(), static_cast<Eigen::Index>(max_points));
+      io::evenlySpaced(source.cols(), static_cast<Eigen::Index>(max_points));
   return {name,
           source(Eigen::all, thinned).cast<double>(),
           KdTree(io::readFinitePoints(path + "target.pcd"))};

@@ -1,5 +1,6 @@
 #include "samplers/score.h"
 
+#include "io/picture_numbers.h"
 #include "study/draw_statistics.h"
 #include "summary/estimates.h"
 
@@ -55,7 +56,7 @@ scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
   const PoseMatrix draws = unwrapAbout(centre, pooled_draws);
   const Moments p = momentsOf(reference), q = momentsOf(draws);
   score.kl = gaussianKl(p, q);
-  const auto compared = spreadIndices(reference.rows(), num_compared_draws);
+  const auto compared = io::evenlySpaced(reference.rows(), num_compared_draws);
   for (int k = 0; k < 6; ++k) {
     const Eigen::VectorXd a = reference(compared, k), b = draws.col(k);
     score.coordinate_kl[k] = gaussianKl(p, q, k);

@@ -1,6 +1,7 @@
 #include "study/draw_statistics.h"
 
 #include "algebra/decompositions.h"
+#include "io/picture_numbers.h"
 #include "sampler/t_mixture.h"
 
 #include <algorithm>
@@ -64,16 +65,6 @@ unwrapAbout(const Vector6d& centre, const PoseMatrix& draws)
     for (int k = 3; k < 6; ++k)
       unwrapped(row, k) = centre[k] + wrapAngle(draws(row, k) - centre[k]);
   return unwrapped;
-}
-
-std::vector<Eigen::Index>
-spreadIndices(Eigen::Index all, Eigen::Index size)
-{
-  std::vector<Eigen::Index> indices(static_cast<std::size_t>(std::min(all, size)));
-  for (std::size_t i = 0; i < indices.size(); ++i)
-    indices[i] =
-        static_cast<Eigen::Index>(i) * all / static_cast<Eigen::Index>(indices.size());
-  return indices;
 }
 
 std::optional<Matrix6d>
@@ -142,7 +133,7 @@ energyScore(const PoseMatrix& draws, const PoseMatrix& outcomes)
   for (Eigen::Index i = 0; i < outcomes.rows(); ++i)
     to_outcomes += (draws.rowwise() - outcomes.row(i)).rowwise().norm().mean();
   const PoseMatrix paired =
-      draws(spreadIndices(draws.rows(), num_paired_draws), Eigen::all);
+      draws(io::evenlySpaced(draws.rows(), num_paired_draws), Eigen::all);
   const Eigen::Index num_paired = paired.rows();
   double sum = 0.0;
   for (Eigen::Index i = 0; i < num_paired; ++i)

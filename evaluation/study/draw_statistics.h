@@ -24,11 +24,6 @@ momentsOf(const PoseMatrix& draws);
 PoseMatrix
 unwrapAbout(const Vector6d& centre, const PoseMatrix& draws);
 
-/** \brief Indices of at most \p size of \p all things, evenly spread from the first on.
- */
-std::vector<Eigen::Index>
-spreadIndices(Eigen::Index all, Eigen::Index size);
-
 /** \brief L with covariance = L L^T, lower triangular; empty if there is none. */
 std::optional<Matrix6d>
 factorOf(const Matrix6d& covariance);

@@ -1,6 +1,5 @@
 #include "exact/pose_energy.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 

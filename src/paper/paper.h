@@ -12,7 +12,6 @@
 #include <bayesian_icp/prior.h>
 
 #include <functional>
-#include <vector>
 
 namespace bayesian_icp {
 

@@ -3,7 +3,6 @@
 
 #include <bayesian_icp/stochastic_gradient_icp.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace bayesian_icp {

@@ -10,13 +10,11 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <utility>
 
 namespace bayesian_icp {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
-using Eigen::Vector3d;
 
 namespace {
 

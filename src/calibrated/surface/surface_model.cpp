@@ -7,7 +7,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <limits>
