@@ -223,8 +223,10 @@ bool
 areTooFewDraws(const Summary& summary, const WorstDiagnostics& worst)
 {
   const auto num_draws = static_cast<double>(summary.num_draws);
+  // So few draws of a chain have neither, however many chains there are.
+  constexpr double few_of_a_chain = 10.0;
   if (std::isnan(worst.rhat) || std::isnan(worst.ess))
-    return num_draws < min_ess;
+    return num_draws < min_ess || num_draws < few_of_a_chain * summary.num_chains;
   // Gelman and Rubin's (1992) limit, and the effective share of the draws with which
   // the default number passes.
   constexpr double short_rhat = 1.1;
@@ -262,8 +264,8 @@ messageOf(const Summary& summary, const ChainSet& set, const WorstDiagnostics& w
       return formatted(
           "%ld draws are too few to tell whether the chains mixed: every "
           "effective sample size has to be at least %.0f, take %d draws or "
-          "more; mean and covariance describe these draws, not reliably "
-          "the posterior",
+          "more, with several hundred of each chain; mean and covariance describe "
+          "these draws, not reliably the posterior",
           summary.num_draws,
           min_ess,
           ChainOptions().num_draws);
