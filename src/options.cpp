@@ -10,9 +10,9 @@ namespace bayesian_icp {
 namespace {
 
 /** In a scan, the sensor is the origin, and at most this multiple of the radius away
- * from the centroid. If it is further away, the cloud is an object that a sensor
- * sees. */
-constexpr double max_distance_of_sensor = 1.5;
+ * from the centroid: a wall that fills a field of view of 28 by 28 degrees. If it is
+ * further away, the cloud is an object that a sensor sees. */
+constexpr double max_distance_of_sensor = 5.0;
 
 /** Where finite points are. */
 struct PointSpread {
@@ -43,11 +43,14 @@ check(const PriorOptions& prior, Preset preset, Checker& checker)
                          "prior.variance[roll]",
                          "prior.variance[pitch]",
                          "prior.variance[yaw]"};
+  // Smaller ones drown in the rounding of sums with the precision of other directions.
+  constexpr double min_variance = 1e-24;
   for (int k = 0; k < 6; ++k) {
-    checker.require(prior.variance[k] > 0.0,
+    checker.require(prior.variance[k] >= min_variance,
                     names[k],
                     prior.variance[k],
-                    k < 3 ? "positive (m^2)" : "positive (rad^2)");
+                    k < 3 ? "positive, and at least 1e-24 (m^2)"
+                          : "positive, and at least 1e-24 (rad^2)");
     checker.require(!must_be_finite || std::isfinite(prior.variance[k]),
                     names[k],
                     prior.variance[k],
@@ -291,6 +294,11 @@ std::string
 Options::validate() const
 {
   Checker checker;
+  checker.require(preset == Preset::Paper || preset == Preset::Exact ||
+                      preset == Preset::Calibrated,
+                  "preset",
+                  static_cast<int>(preset),
+                  "one of Preset");
   check(prior, preset, checker);
   check(chains, checker);
   switch (preset) {

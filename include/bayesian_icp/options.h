@@ -350,7 +350,7 @@ struct Options {
 /** \brief Resolve the frame of the prior.
  *
  * Automatic is Origin for presets `paper` and `exact`. For `calibrated` it is Origin if
- * the source's centroid is no further from the origin than 1.5 times the points' root
+ * the source's centroid is no further from the origin than 5 times the points' root
  * mean square distance from the centroid: such a cloud is a scan, and the error of its
  * guess is a motion of the sensor. Otherwise the cloud is an object, and the frame is
  * SourceCentroid.

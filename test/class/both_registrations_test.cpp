@@ -328,6 +328,20 @@ TYPED_TEST(BothRegistrations, AFirstCloudThatIsRefusedIsAnInvalidInput)
   expectInvalidInput(icp);
 }
 
+TYPED_TEST(BothRegistrations, AMissingCloudIsAnInvalidInput)
+{
+  for (const bool has_source : {false, true}) {
+    TypeParam icp;
+    if (has_source)
+      icp.setInputSource(this->scans.source);
+    else
+      icp.setInputTarget(this->scans.target);
+    icp.align(this->output);
+    EXPECT_FALSE(icp.hasConverged());
+    expectInvalidInput(icp);
+  }
+}
+
 TYPED_TEST(BothRegistrations, ExceptionsOfTheCallbackPassThrough)
 {
   for (const int last : {2, 20}) { // in ICP, and among the draws

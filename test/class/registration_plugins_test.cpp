@@ -6,6 +6,10 @@
 #include <pcl/registration/correspondence_rejection_one_to_one.h>
 #include <pcl/registration/correspondence_rejection_surface_normal.h>
 #include <pcl/registration/transformation_estimation_2D.h>
+#include <pcl/registration/transformation_estimation_3point.h>
+#include <pcl/registration/transformation_estimation_point_to_plane.h>
+#include <pcl/registration/transformation_estimation_point_to_plane_lls.h>
+#include <pcl/registration/transformation_estimation_symmetric_point_to_plane_lls.h>
 
 #include <stdexcept>
 
@@ -385,6 +389,67 @@ TEST_F(PluginTest, TheMeanStaysWithinWhatAPlanarEstimationAllows)
   Planar().estimateRigidTransformation(*scans.source, at_mean, expected);
   EXPECT_GT((icp.getMeanTransformation() - expected).norm(), 1e-3f);
   EXPECT_LT((T - expected).norm(), 1e-5f);
+}
+
+TEST(Plugins, TheMeanIsTheFinalTransformationOfAPointToPlaneEstimation)
+{
+  using namespace registration;
+  using P = PointNormal;
+  Scans<P> scans; // without normals
+  const QuietConsole quiet;
+  const TransformationEstimation<P, P>::Ptr estimations[] = {
+      pcl::make_shared<TransformationEstimationPointToPlane<P, P>>(),
+      pcl::make_shared<TransformationEstimationPointToPlaneLLS<P, P>>(),
+      pcl::make_shared<TransformationEstimationSymmetricPointToPlaneLLS<P, P>>()};
+  for (const auto& estimation : estimations) {
+    BayesianIterativeClosestPoint<P, P> icp;
+    usePaper(icp);
+    icp.setTransformationEstimation(estimation);
+    icp.setUseMeanAsFinalTransformation(true);
+    aligned(icp, scans.source, scans.target);
+    const Eigen::Matrix4f mean = icp.getMeanTransformation();
+    EXPECT_GT((mean - Eigen::Matrix4f::Identity()).norm(), 1e-2f);
+    EXPECT_TRUE(icp.hasConverged());
+    EXPECT_LT((icp.getFinalTransformation() - mean).cwiseAbs().maxCoeff(), 1e-5f);
+  }
+}
+
+TEST_F(PluginTest, IcpRunsWhereTheEstimationKnowsNoMotionToTheMean)
+{
+  using ThreePoints = registration::TransformationEstimation3Point<PointXYZ, PointXYZ>;
+  const auto estimation = pcl::make_shared<ThreePoints>();
+  for (BayesianIcp* registration : {&icp, &plain})
+    registration->setTransformationEstimation(estimation);
+  icp.setUseMeanAsFinalTransformation(true);
+  const QuietConsole quiet;
+  align(icp);
+  align(plain);
+  EXPECT_EQ(icp.getFinalTransformation(), plain.getFinalTransformation());
+  EXPECT_EQ(icp.hasConverged(), plain.hasConverged());
+}
+
+TEST_F(PluginTest, PresetExactNeedsAGateWherePairsMayBeDropped)
+{
+  for (const bool is_reciprocal : {false, true}) {
+    BayesianIcp registration;
+    registration.setPreset(bayesian_icp::Preset::Exact);
+    registration.setNumberOfSamples(200);
+    if (is_reciprocal)
+      registration.setUseReciprocalCorrespondences(true);
+    else
+      registration.addCorrespondenceRejector(rejectorBeyond(0.05f));
+    {
+      const QuietConsole quiet;
+      align(registration);
+    }
+    EXPECT_EQ(registration.getSummary().status, bayesian_icp::Status::InvalidOptions);
+    EXPECT_NE(registration.getSummary().message.find("max_distance"),
+              std::string::npos);
+    EXPECT_TRUE(registration.hasConverged());
+    registration.setMaxCorrespondenceDistance(0.05);
+    align(registration);
+    EXPECT_EQ(registration.getSamples().rows(), 200);
+  }
 }
 
 /** Correspondences by the fast search and by PCL's own estimation at random poses. */

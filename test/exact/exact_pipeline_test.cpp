@@ -199,6 +199,8 @@ TEST(Exact, OptionsAreChecked)
   const auto expect = [&](const char* field, const std::function<void(Options&)>& set) {
     EXPECT_NE(complaintOf(set).find(field), std::string::npos) << field;
   };
+  expect("preset is 7", [](Options& o) { o.preset = static_cast<Preset>(7); });
+  expect("variance[y]", [](Options& o) { o.prior.variance[1] = 1e-25; });
   expect("kernel_width", [](Options& o) { o.exact.residual.kernel_width = 0.0; });
   expect("max_distance", [](Options& o) { o.exact.residual.max_distance = -1.0; });
   expect("max_source_points", [](Options& o) { o.exact.max_source_points = 0; });

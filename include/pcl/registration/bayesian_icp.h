@@ -42,10 +42,10 @@ namespace pcl {
  * Unlike pcl::IterativeClosestPoint of PCL 1.13, this class skips source points that
  * are not finite (or further out than 1e18 m) and keeps them in the output. The
  * estimate uses only the given indices (the output is the whole cloud, as in PCL; ICP
- * of PCL registers the whole cloud). A source or target that is empty or null, and
- * indices outside their cloud, give Status::InvalidInput. Exceptions of callbacks and
- * plug-ins, and std::bad_alloc, pass through align(): then hasConverged() is false and
- * the status NotRun. As in PCL, use one object from one thread at a time.
+ * of PCL registers the whole cloud). A source or target that is empty, null or not set,
+ * and indices outside their cloud, give Status::InvalidInput. Exceptions of callbacks
+ * and plug-ins, and std::bad_alloc, pass through align(): then hasConverged() is false
+ * and the status NotRun. As in PCL, use one object from one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration
@@ -251,8 +251,10 @@ public:
    *
    * ICP does not run then: there are no correspondences, and hasConverged() is true.
    * With any other status except Cancelled, ICP runs as without this setting. If the
-   * user has set a transformation estimation, the final transformation is what it makes
-   * of the mean. The posterior does not depend on this setting. */
+   * user has set a transformation estimation that knows some motions only, the final
+   * transformation is the nearest one to the mean that it knows. If it knows none,
+   * there is a warning and ICP runs. getConvergenceState() is that of ICP, which has
+   * not converged. The posterior does not depend on this setting. */
   void
   setUseMeanAsFinalTransformation(bool use_mean)
   {

@@ -197,6 +197,17 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
   double& gate =
       is_exact ? options.exact.residual.max_distance : options.paper.max_distance;
   gate = bayesian_icp_detail::smallerGate(gate, corr_dist_threshold_);
+  const bool may_drop_pairs =
+      use_reciprocal_correspondence_ || !correspondence_rejectors_.empty();
+  if (is_exact && may_drop_pairs && !std::isfinite(gate)) {
+    bayesian_icp::PosteriorEstimate refusal;
+    refusal.summary.status = bayesian_icp::Status::InvalidOptions;
+    refusal.summary.message =
+        "preset exact with rejectors or reciprocal pairs needs a finite "
+        "setMaxCorrespondenceDistance or exact.residual.max_distance: it is what a "
+        "point without a pair costs, and without a cost the best pose has no pairs";
+    return (refusal);
+  }
   if (const auto tree = targetTree())
     return (bayesian_icp::estimatePosterior(
         points, *tree, start, options, progress_callback_));

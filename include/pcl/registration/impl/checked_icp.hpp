@@ -6,6 +6,7 @@
 
 #include <pcl/common/io.h>
 #include <pcl/common/point_tests.h>
+#include <pcl/common/transforms.h>
 #include <pcl/registration/icp.h>
 #include <pcl/registration/impl/bayesian_icp_search.hpp>
 #include <pcl/registration/impl/seeded_kd_tree.hpp>
@@ -20,6 +21,7 @@
 #include <new>
 #include <numeric>
 #include <string>
+#include <type_traits>
 #include <typeinfo>
 #include <utility>
 #include <vector>
@@ -569,25 +571,43 @@ protected:
 
   /** The transformation next to \p to that the transformation estimation allows: a
    * user's own may know some motions only (2-D, translation), so it is asked for the
-   * one that brings \p source from \p from to \p to. */
+   * one that brings \p source from \p from to \p to, until it no longer moves, because
+   * its steps may be linearised. Normals do not matter, and may be unset: every point
+   * gets one along an axis. Not finite, with a warning, if it knows no motion. */
   Matrix4
   asEstimationAllows(const PointCloudSource& source,
                      const Matrix4& from,
-                     const Matrix4& to)
+                     const Matrix4& to) const
   {
     const auto& estimation = *transformation_estimation_;
     if (typeid(estimation) ==
         typeid(registration::
                    TransformationEstimationSVD<PointSource, PointTarget, Scalar>))
       return (to);
+    constexpr int max_steps = 20;
+    constexpr Scalar negligible = Scalar(1e-6);
     PointCloudSource there = source, here = source;
-    transformCloud(source, here, from);
-    transformCloud(source, there, to);
+    transformPointCloud(source, there, to);
     PointCloudTarget goal;
     copyPointCloud(there, goal);
-    Matrix4 motion = Matrix4::Identity();
-    estimation.estimateRigidTransformation(here, goal, motion);
-    return (motion * from);
+    setNormals(goal);
+    Matrix4 allowed = from;
+    for (int step = 0; step < max_steps; ++step) {
+      transformPointCloud(source, here, allowed);
+      setNormals(here);
+      Matrix4 motion = Matrix4::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+      estimation.estimateRigidTransformation(here, goal, motion);
+      allowed = (motion * allowed).eval();
+      if (!allowed.allFinite()) {
+        PCL_WARN("[pcl::%s::computeTransformation] The transformation estimation knows "
+                 "no motion to the pose that was found.\n",
+                 getClassName().c_str());
+        break;
+      }
+      if ((motion - Matrix4::Identity()).cwiseAbs().maxCoeff() < negligible)
+        break;
+    }
+    return (allowed);
   }
 
   /** The search tree of the target, unless the user installs another one. */
@@ -599,6 +619,22 @@ protected:
       pcl::make_shared<SeededEstimation<PointSource, PointTarget, Scalar>>();
 
 private:
+  template <typename PointT>
+  static std::enable_if_t<traits::has_normal<PointT>::value>
+  setNormals(PointCloud<PointT>& cloud)
+  {
+    Eigen::Index axis = 0;
+    for (PointT& point : cloud) {
+      point.getNormalVector3fMap() = Eigen::Vector3f::Unit(axis);
+      axis = (axis + 1) % 3;
+    }
+  }
+
+  template <typename PointT>
+  static std::enable_if_t<!traits::has_normal<PointT>::value>
+  setNormals(PointCloud<PointT>&)
+  {}
+
   /** Says why a plug-in is not taken.
    * \return \p is_refused */
   bool
@@ -618,13 +654,14 @@ private:
       return ("the source that was set last is empty or a null pointer");
     if (is_target_refused_)
       return ("the target that was set last is empty or a null pointer");
+    if (!input_ || !target_)
+      return (std::string("no ") + (input_ ? "target" : "source") + " has been set");
     // PCL adapts indices of its own to the source.
-    if (input_ && indices_ && !fake_indices_ && !areWithin(*indices_, input_->size()))
+    if (indices_ && !fake_indices_ && !areWithin(*indices_, input_->size()))
       return ("an index is outside the source of " + std::to_string(input_->size()) +
               " points");
     const IndicesConstPtr selected = correspondence_estimation_->getIndicesTarget();
-    if (target_ && selected && !force_no_recompute_ &&
-        !areWithin(*selected, target_->size()))
+    if (selected && !force_no_recompute_ && !areWithin(*selected, target_->size()))
       return ("an index is outside the target of " + std::to_string(target_->size()) +
               " points");
     return ("");

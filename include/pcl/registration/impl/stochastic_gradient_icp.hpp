@@ -75,9 +75,12 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
         });
     if (!is_in_range)
       result_.end = bayesian_icp::DescentEnd::Diverged;
-    if (nr_iterations_ > 0)
-      final_transformation_ =
+    if (nr_iterations_ > 0) {
+      const Matrix4 allowed =
           this->asEstimationAllows(*source, guess, final_transformation_);
+      if (allowed.allFinite())
+        final_transformation_ = allowed;
+    }
     findPairs(*search, *source);
   }
   publishEnd();
