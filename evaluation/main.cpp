@@ -3,6 +3,7 @@
  * sub-command each.
  */
 #include "commands.h"
+#include "io/errors.h"
 #include "io/program.h"
 
 #include <iomanip>
@@ -73,8 +74,8 @@ runTool(int argc, const char* const* argv)
   for (const SubCommand& command : subCommands())
     if (command.name == name)
       return command.run(argc - 1, argv + 1);
-  printHelp(std::cerr);
-  return io::BadUsage;
+  throw io::UsageError(name.empty() ? "a command is needed"
+                                    : "there is no command " + io::inQuotes(name));
 }
 
 } // namespace

@@ -77,13 +77,13 @@ cubeAt(double x)
 
 TEST(PriorFrame, IsTheSensorForScansAndTheCentroidForObjects)
 {
-  // The centroid's distance from the origin is 1.5 sqrt(3) = 2.598 m at x = 1.658 m.
+  // The centroid's distance from the origin is 5 sqrt(3) = 8.660 m at x = 8.426 m.
   Options options;
-  EXPECT_EQ(priorFrameOf(options, cubeAt(1.65)), PriorFrame::Origin);
-  EXPECT_EQ(priorFrameOf(options, cubeAt(1.67)), PriorFrame::SourceCentroid);
+  EXPECT_EQ(priorFrameOf(options, cubeAt(8.42)), PriorFrame::Origin);
+  EXPECT_EQ(priorFrameOf(options, cubeAt(8.43)), PriorFrame::SourceCentroid);
   EXPECT_EQ(priorFrameOf(options, cubeAt(-1e6)), PriorFrame::SourceCentroid);
   const Vector6d guess = Vector6d::Zero();
-  EXPECT_EQ(priorOf(options, guess, cubeAt(1.65)).referencePoint(),
+  EXPECT_EQ(priorOf(options, guess, cubeAt(8.42)).referencePoint(),
             Eigen::Vector3d::Zero());
   EXPECT_TRUE(priorOf(options, guess, cubeAt(50.0))
                   .referencePoint()

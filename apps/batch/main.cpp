@@ -9,6 +9,7 @@
 #include "io/folders.h"
 #include "io/interrupt.h"
 #include "io/numbers.h"
+#include "io/output_folder.h"
 #include "io/program.h"
 #include "register/settings_options.h"
 
@@ -279,8 +280,10 @@ runTool(int argc, char** argv, const Ranks& ranks)
   io::silencePcl();
   const auto pairs = readManifest(
       request.manifest_file, request.settings, request.use_suggested_prior);
-  if (!request.output_folder.empty())
+  if (!request.output_folder.empty()) {
     io::makeFolder(request.output_folder);
+    const io::OutputFolder probe(request.output_folder);
+  }
   io::catchInterrupt();
   const int exit_code = request.results_file.empty()
                             ? runToStandardOutput(request, ranks, pairs)

@@ -13,7 +13,6 @@
 #include "register/sgd_run.h"
 #include "report/report_html.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -144,9 +143,13 @@ report(const Request& request, const Run& run)
   else if (has_table)
     io::print(reportText(run));
   const bool is_exported = !prints_export || printExport(request, run);
-  // The table has the status already.
+  // The table has the status and the note already.
   if (run.result.summary.status != Status::Ok && !has_table)
     io::tell(statusText(run.result.summary));
+  const std::string note = icpNote(run);
+  const bool has_aligned = !request.output_folder.empty() && !request.is_quiet;
+  if (!note.empty() && has_aligned && !has_table)
+    io::tell("note: " + note);
   return is_exported;
 }
 

@@ -1,9 +1,12 @@
 #include "register/report_text.h"
 
+#include "io/cloud_file.h"
 #include "io/coordinates.h"
 #include "io/numbers.h"
 
 #include <bayesian_icp/pose.h>
+
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -178,6 +181,38 @@ icpText(const RegistrationResult& result)
 }
 
 std::string
+icpNote(const Run& run)
+{
+  // Squared Mahalanobis distance: chi-square with 6 degrees of freedom, 99.99 %.
+  constexpr double excluded = 27.9;
+  const RegistrationResult& result = run.result;
+  const Summary& summary = result.summary;
+  const bool is_reliable =
+      summary.status == Status::Ok || summary.status == Status::Doubtful;
+  if (!result.has_icp || result.is_final_the_mean || !is_reliable)
+    return "";
+  const Vector6d error = poseError(bayesian_icp::poseOf(result.icp_matrix),
+                                   summary.mean,
+                                   CovarianceConvention::RightSE3);
+  const bool is_excluded =
+      !(error.dot(
+            summary.covariance(CovarianceConvention::RightSE3).ldlt().solve(error)) <
+        excluded);
+  if (result.icp_has_converged && !is_excluded)
+    return "";
+  const Eigen::Matrix4d difference = result.icp_matrix - matrixOf(summary.mean);
+  const Eigen::Matrix4Xd points =
+      io::finitePoints(run.source).cast<double>().colwise().homogeneous();
+  const double distance =
+      (difference * points).norm() / std::sqrt(static_cast<double>(points.cols()));
+  return std::string("the final transformation is ICP's result, ") +
+         (result.icp_has_converged ? "which" : "which did not converge and") +
+         (is_excluded ? " the posterior excludes: it" : "") + " moves the points " +
+         io::textOf(millimetres * distance, 3) +
+         " mm away from the posterior mean (root mean square); --mean takes the mean";
+}
+
+std::string
 statusText(const Summary& summary)
 {
   std::string name = toString(summary.status);
@@ -250,6 +285,9 @@ reportText(const Run& run)
             dataText(summary.data);
   text += "\n" + wrapped("Status: " + statusText(summary)) +
           "ICP:    " + icpText(result) + '\n';
+  const std::string note = icpNote(run);
+  if (!note.empty())
+    text += wrapped("Note:   " + note);
   text += "\nMatrices row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
           "...\n";
   if (summary.num_draws > 0)

@@ -38,6 +38,12 @@ nameWithUnit(int coordinate, const std::string& unit_of_angles);
 std::string
 icpText(const RegistrationResult& result);
 
+/** \brief What there is to know before ICP's result is used: that ICP did not converge,
+ * or that the posterior excludes its pose. Empty if neither is so, if the final
+ * transformation is the posterior mean, or if there is no posterior to rely on. */
+std::string
+icpNote(const Run& run);
+
 /** \brief "not mixed: the chains ..." */
 std::string
 statusText(const Summary& summary);

@@ -66,7 +66,7 @@ visitPosterior(OptionsT& options, Visitor& visit)
   visit({"prior", "frame", "prior-frame", "NAME",
          "Point whose translation the prior describes. automatic is origin; with "
          "preset calibrated it is source-centroid if the centroid is further from the "
-         "origin than 1.5 times the root mean square distance of the points from the "
+         "origin than 5 times the root mean square distance of the points from the "
          "centroid."},
         options.prior.frame);
 }

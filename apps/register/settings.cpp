@@ -5,7 +5,6 @@
 #include "register/choices.h"
 #include "register/setting_fields.h"
 
-
 namespace bayesian_icp::app {
 
 namespace {

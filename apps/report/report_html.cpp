@@ -38,13 +38,15 @@ std::string
 verdictHtml(const Run& run)
 {
   const Verdict verdict = verdictOf(run.result.summary, run.settings.options.preset);
+  const std::string note = icpNote(run);
   return html::boxHtml(
              verdict.tone, verdict.heading, html::paragraphHtml(verdict.sentence)) +
          html::paragraphHtml(
              "The pose maps source points into the target frame; ± is one standard "
              "deviation. " +
              verdict.scale_note) +
-         html::paragraphHtml("Status: " + statusText(run.result.summary));
+         html::paragraphHtml("Status: " + statusText(run.result.summary)) +
+         html::paragraphHtml(note.empty() ? "" : "Note: " + note);
 }
 
 std::string

@@ -104,6 +104,8 @@ parseCommandLine(int argc, const char* const* argv)
   if (given.count("pose") == 0)
     throw io::UsageError("--pose is missing");
   io::takeOptions(given, options);
+  if (given.count("use") > 0 && fs::path(request.pose).extension() != ".json")
+    throw io::UsageError("--use: has no effect unless --pose is a posterior.json");
   return request;
 }
 

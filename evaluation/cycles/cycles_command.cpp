@@ -40,8 +40,9 @@ csvOf(const std::vector<ClosedCycle>& cycles)
   for (const std::string title :
        {"vertices", "length", "squared_error", "num_degrees", "probability"})
     header.add(title);
-  for (const std::string name : app::coordinate_names)
-    header.add("error_" + name);
+  for (int k = 0; k < 6; ++k)
+    header.add(std::string("error_") + app::coordinate_names[k] +
+               (app::isAngle(k) ? "_rad" : "_m"));
   std::string text = header.text() + '\n';
   for (const ClosedCycle& closed : cycles) {
     CsvRow row;
@@ -179,6 +180,10 @@ runCyclesCommand(int argc, const char* const* argv)
   const std::vector<std::string> files = io::optionTexts(*given, "graph");
   if (files.size() != 1)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
+  std::error_code ignored;
+  if (std::filesystem::equivalent(files[0], options.result.file, ignored))
+    throw io::UsageError("--output: " + io::inQuotes(options.result.file) +
+                         " is the graph");
   constexpr double rounding = 1e-6;
   if (!(options.shared.own() > rounding))
     throw io::UsageError("twice --scan-share and --common-share: together below 1");

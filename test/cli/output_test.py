@@ -10,7 +10,7 @@ import numpy as np
 
 import cloud_files
 import robot_formats
-from cli_tool import FAST, TOOL, ToolTest, run, strict_json
+from cli_tool import DATA, FAST, TOOL, ToolTest, run, strict_json
 
 NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
 
@@ -166,6 +166,18 @@ class AlignedCloud(ToolTest):
 
 
 class Printed(ToolTest):
+    def test_a_result_of_icp_that_the_posterior_excludes_is_told(self):
+        # Without pairs within 0.1 mm, ICP stays at the guess.
+        pair = [DATA / "mug" / f"{name}.pcd" for name in ("source", "target")]
+        words = "did not converge and the posterior excludes: it moves the points"
+        result = run(*pair, "-d", "0.0001")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn(words, " ".join(result.stdout.split()))
+        files = ["-d", "0.0001", "-o", self.folder / "output", "--no-report"]
+        self.assertIn(words, run(*pair, *files, "--json").stderr)
+        self.assertEqual(run(*pair, *files, "--quiet").stderr, "")
+        self.assertNotIn("Note:", run(*pair, "-d", "0.0001", "--mean").stdout)
+
     def test_table_has_units_status_and_matrices(self):
         pair = self.small_pair()
         text = run(*pair, *FAST).stdout

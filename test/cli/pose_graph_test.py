@@ -225,6 +225,7 @@ class PoseGraphEdges(PoseGraphTest):
             (2, [], "at least two scans"),
             (2, [source, "-o", "g"], "at least two scans"),
             (2, [source, target], "--output"),
+            (2, [source, target, "-o", source], "is one of the scans"),
             (2, [source, target, "-o", "g", "--loop", "0,2"], "--loop: '0,2'"),
             (2, [source, target, "-o", "g", "--loop", "1,1"], "--loop: '1,1'"),
             (2, [source, target, "-o", "g", "--loop", "0,1"], "--loop: '0,1' are neighbours"),

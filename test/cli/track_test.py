@@ -21,6 +21,7 @@ from trajectories import (
     rows_of_file,
 )
 
+UNITS_OF_ERRORS = [f"error_{c}" for c in ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")]
 EYES = ["0,-1.2,0.7", "0.05,-1.19,0.71", "0.1,-1.18,0.71", "0.15,-1.16,0.7", "0.2,-1.14,0.7"]
 
 
@@ -101,6 +102,16 @@ class TrackOfSimulatedScans(TrackTest):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         header, *rows = csv.read_text().splitlines()
         self.assertEqual(header.split(",")[:2], ["vertices", "length"])
+        self.assertEqual(header.split(",")[-6:], UNITS_OF_ERRORS)
+        # The graph and unknown commands are refused.
+        graph = self.track / "graph.g2o"
+        for words, reason in (
+            (("cycles", graph, "--output", graph), "graph.g2o' is the graph"),
+            (("foo",), "there is no command 'foo'"),
+        ):
+            refused = call(EVALUATE, *words)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn(reason, refused.stderr)
         # A cycle for each edge that the chain of scans does not need.
         self.assertEqual(len(rows), len(expected) - 4)
         self.assertRegex(result.stdout, r"(?m)^all +5 +6\.00 ")

@@ -183,6 +183,9 @@ class TransformRefusals(TransformTest):
         for words in ("nan,0,0,0,0,0", "0,0,0,0,0,inf"):
             self.assert_refused(2, transform(source, output, "--pose", words), "--pose: must be finite")
         self.assert_refused(2, transform(source, output, "--pose", WORDS, "--use=x"), "--use: 'x'")
+        self.assert_refused(
+            2, transform(source, output, "--pose", WORDS, "--use=mean"), "--use: has no effect"
+        )
         self.assert_refused(2, transform(source, output, "--poses", WORDS), "--poses")
         self.assertFalse(output.exists())
         for word in ("--help", "--version"):
