@@ -205,9 +205,9 @@ icpNote(const Run& run)
       io::finitePoints(run.source).cast<double>().colwise().homogeneous();
   const double distance =
       (difference * points).norm() / std::sqrt(static_cast<double>(points.cols()));
-  return std::string("the final transformation is ICP's result, ") +
-         (result.icp_has_converged ? "which" : "which did not converge and") +
-         (is_excluded ? " the posterior excludes: it" : "") + " moves the points " +
+  return std::string("the final transformation is ICP's result") +
+         (result.icp_has_converged ? "" : ", and ICP did not converge") +
+         (is_excluded ? "; the posterior excludes it" : "") + "; it moves the points " +
          io::textOf(millimetres * distance, 3) +
          " mm away from the posterior mean (root mean square); --mean takes the mean";
 }

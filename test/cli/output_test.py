@@ -169,7 +169,7 @@ class Printed(ToolTest):
     def test_a_result_of_icp_that_the_posterior_excludes_is_told(self):
         # Without pairs within 0.1 mm, ICP stays at the guess.
         pair = [DATA / "mug" / f"{name}.pcd" for name in ("source", "target")]
-        words = "did not converge and the posterior excludes: it moves the points"
+        words = "ICP did not converge; the posterior excludes it; it moves the points"
         result = run(*pair, "-d", "0.0001")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertIn(words, " ".join(result.stdout.split()))
