@@ -146,10 +146,11 @@ report(const Request& request, const Run& run)
   // The table has the status and the note already.
   if (run.result.summary.status != Status::Ok && !has_table)
     io::tell(statusText(run.result.summary));
-  const std::string note = icpNote(run);
-  const bool has_aligned = !request.output_folder.empty() && !request.is_quiet;
-  if (!note.empty() && has_aligned && !has_table)
-    io::tell("note: " + note);
+  if (!has_table && !request.is_quiet && !request.output_folder.empty()) {
+    const std::string note = icpNote(run);
+    if (!note.empty())
+      io::tell("note: " + note);
+  }
   return is_exported;
 }
 

@@ -172,16 +172,19 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
 {
   auto points = bayesian_icp_detail::pointMatrix(*source);
   bayesian_icp::Options options = options_;
+  const auto refused = [](const char* reason) {
+    bayesian_icp::PosteriorEstimate refusal;
+    refusal.summary.status = bayesian_icp::Status::InvalidOptions;
+    refusal.summary.message = reason;
+    return (refusal);
+  };
   if (options.preset == bayesian_icp::Preset::Calibrated) {
-    if (is_scale_stated_) {
-      bayesian_icp::PosteriorEstimate refusal;
-      refusal.summary.status = bayesian_icp::Status::InvalidOptions;
-      refusal.summary.message =
+    if (is_scale_stated_)
+      return (refused(
           "measurement_sigma and effective_points belong to presets paper and exact, "
           "but setMeasurementSigma or setEffectivePoints was called, and preset "
-          "calibrated finds its scale itself; setOptions(getOptions()) undoes the call";
-      return (refusal);
-    }
+          "calibrated finds its scale itself; setOptions(getOptions()) undoes the "
+          "call"));
     if (!hasPlainCorrespondences())
       PCL_WARN("[pcl::%s::computeTransformation] Rejectors, reciprocal pairs and "
                "searches of the user's own are for ICP alone with preset calibrated, "
@@ -199,15 +202,11 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
   gate = bayesian_icp_detail::smallerGate(gate, corr_dist_threshold_);
   const bool may_drop_pairs =
       use_reciprocal_correspondence_ || !correspondence_rejectors_.empty();
-  if (is_exact && may_drop_pairs && !std::isfinite(gate)) {
-    bayesian_icp::PosteriorEstimate refusal;
-    refusal.summary.status = bayesian_icp::Status::InvalidOptions;
-    refusal.summary.message =
+  if (is_exact && may_drop_pairs && !std::isfinite(gate))
+    return (refused(
         "preset exact with rejectors or reciprocal pairs needs a finite "
         "setMaxCorrespondenceDistance or exact.residual.max_distance: it is what a "
-        "point without a pair costs, and without a cost the best pose has no pairs";
-    return (refusal);
-  }
+        "point without a pair costs, and without a cost the best pose has no pairs"));
   if (const auto tree = targetTree())
     return (bayesian_icp::estimatePosterior(
         points, *tree, start, options, progress_callback_));

@@ -6,7 +6,6 @@
 
 #include <pcl/common/io.h>
 #include <pcl/common/point_tests.h>
-#include <pcl/common/transforms.h>
 #include <pcl/registration/icp.h>
 #include <pcl/registration/impl/bayesian_icp_search.hpp>
 #include <pcl/registration/impl/seeded_kd_tree.hpp>
@@ -577,7 +576,7 @@ protected:
   Matrix4
   asEstimationAllows(const PointCloudSource& source,
                      const Matrix4& from,
-                     const Matrix4& to) const
+                     const Matrix4& to)
   {
     const auto& estimation = *transformation_estimation_;
     if (typeid(estimation) ==
@@ -587,13 +586,13 @@ protected:
     constexpr int max_steps = 20;
     constexpr Scalar negligible = Scalar(1e-6);
     PointCloudSource there = source, here = source;
-    transformPointCloud(source, there, to);
+    transformCloud(source, there, to);
     PointCloudTarget goal;
     copyPointCloud(there, goal);
     setNormals(goal);
     Matrix4 allowed = from;
     for (int step = 0; step < max_steps; ++step) {
-      transformPointCloud(source, here, allowed);
+      transformCloud(source, here, allowed);
       setNormals(here);
       Matrix4 motion = Matrix4::Constant(std::numeric_limits<Scalar>::quiet_NaN());
       estimation.estimateRigidTransformation(here, goal, motion);
