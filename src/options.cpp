@@ -1,3 +1,4 @@
+#include "enumerator_names.h"
 #include "option_checker.h"
 
 #include <bayesian_icp/options.h>
@@ -187,82 +188,39 @@ check(const CalibratedOptions& calibrated, Checker& checker)
 const char*
 toString(Preset preset)
 {
-  switch (preset) {
-  case Preset::Paper:
-    return "paper";
-  case Preset::Exact:
-    return "exact";
-  case Preset::Calibrated:
-    return "calibrated";
-  }
-  return "unknown";
+  return nameOf(preset, {"paper", "exact", "calibrated"});
 }
 
 const char*
 toString(MiniBatchSampling sampling)
 {
-  return sampling == MiniBatchSampling::WithReplacement ? "with-replacement"
-                                                        : "shuffled-epochs";
+  return nameOf(sampling, {"with-replacement", "shuffled-epochs"});
 }
 
 const char*
 toString(Residual residual)
 {
-  switch (residual) {
-  case Residual::PointToPoint:
-    return "point-to-point";
-  case Residual::PointToPlane:
-    return "point-to-plane";
-  case Residual::DistributionToDistribution:
-    return "distribution-to-distribution";
-  }
-  return "unknown";
+  return nameOf(residual,
+                {"point-to-point", "point-to-plane", "distribution-to-distribution"});
 }
 
 const char*
 toString(CovarianceRegularization regularization)
 {
-  switch (regularization) {
-  case CovarianceRegularization::Plane:
-    return "plane";
-  case CovarianceRegularization::Frobenius:
-    return "frobenius";
-  case CovarianceRegularization::None:
-    return "none";
-  }
-  return "unknown";
+  return nameOf(regularization, {"plane", "frobenius", "none"});
 }
 
 const char*
 toString(RobustKernel kernel)
 {
-  switch (kernel) {
-  case RobustKernel::None:
-    return "none";
-  case RobustKernel::Huber:
-    return "huber";
-  case RobustKernel::Tukey:
-    return "tukey";
-  }
-  return "unknown";
+  return nameOf(kernel, {"none", "huber", "tukey"});
 }
 
 const char*
 toString(ExactSteps steps)
 {
-  switch (steps) {
-  case ExactSteps::Automatic:
-    return "automatic";
-  case ExactSteps::Langevin:
-    return "langevin";
-  case ExactSteps::Metropolis:
-    return "metropolis";
-  case ExactSteps::SteinGradient:
-    return "stein-gradient";
-  case ExactSteps::SteinNewton:
-    return "stein-newton";
-  }
-  return "unknown";
+  return nameOf(
+      steps, {"automatic", "langevin", "metropolis", "stein-gradient", "stein-newton"});
 }
 
 PriorFrame

@@ -339,7 +339,8 @@ const char*
 toString(RobustLoss loss)
 {
   static constexpr std::array<const char*, 3> names = {"none", "huber", "cauchy"};
-  return names[static_cast<std::size_t>(loss)];
+  const auto index = static_cast<std::size_t>(loss);
+  return index < names.size() ? names[index] : "unknown";
 }
 
 Vector6d

@@ -5,7 +5,6 @@
 
 #include "graph/closed_cycles.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -24,13 +23,6 @@ enum class RobustLoss {
 /** \brief Short name: "none", "huber", "cauchy". */
 const char*
 toString(RobustLoss loss);
-
-/** \brief All of them, for register/choices.h. */
-inline std::array<RobustLoss, 3>
-choicesOf(RobustLoss)
-{
-  return {RobustLoss::None, RobustLoss::Huber, RobustLoss::Cauchy};
-}
 
 /** \brief What came of an optimisation. */
 struct OptimizedPoses {

@@ -3,73 +3,20 @@
  */
 #pragma once
 
-#include <bayesian_icp/descent_optimizer.h>
-#include <bayesian_icp/options.h>
-
-#include <array>
 #include <string>
+#include <vector>
 
 namespace bayesian_icp::app {
 
-/** \brief All values of an enumeration; its toString() names them. */
-inline std::array<Preset, 3>
-choicesOf(Preset)
+/** \brief All values 0, 1, ... of an enumeration that its toString() names. */
+template <typename Choice>
+std::vector<Choice>
+choicesOf(Choice)
 {
-  return {Preset::Paper, Preset::Exact, Preset::Calibrated};
-}
-
-inline std::array<PriorFrame, 3>
-choicesOf(PriorFrame)
-{
-  return {PriorFrame::Origin, PriorFrame::SourceCentroid, PriorFrame::Automatic};
-}
-
-inline std::array<MiniBatchSampling, 2>
-choicesOf(MiniBatchSampling)
-{
-  return {MiniBatchSampling::WithReplacement, MiniBatchSampling::ShuffledEpochs};
-}
-
-inline std::array<Residual, 3>
-choicesOf(Residual)
-{
-  return {Residual::PointToPoint,
-          Residual::PointToPlane,
-          Residual::DistributionToDistribution};
-}
-
-inline std::array<CovarianceRegularization, 3>
-choicesOf(CovarianceRegularization)
-{
-  return {CovarianceRegularization::Plane,
-          CovarianceRegularization::Frobenius,
-          CovarianceRegularization::None};
-}
-
-inline std::array<ExactSteps, 5>
-choicesOf(ExactSteps)
-{
-  return {ExactSteps::Automatic,
-          ExactSteps::Langevin,
-          ExactSteps::Metropolis,
-          ExactSteps::SteinGradient,
-          ExactSteps::SteinNewton};
-}
-
-inline std::array<RobustKernel, 3>
-choicesOf(RobustKernel)
-{
-  return {RobustKernel::None, RobustKernel::Huber, RobustKernel::Tukey};
-}
-
-inline std::array<SgdOptimizer, 5>
-choicesOf(SgdOptimizer)
-{
-  return {SgdOptimizer::FixedStep,
-          SgdOptimizer::Momentum,
-          SgdOptimizer::AdaDelta,
-          SgdOptimizer::Adam,
-          SgdOptimizer::RmsProp};
+  std::vector<Choice> choices;
+  for (int i = 0; toString(static_cast<Choice>(i)) != std::string("unknown"); ++i)
+    choices.push_back(static_cast<Choice>(i));
+  return choices;
 }
 
 /** \brief "one, two or three". */

@@ -15,7 +15,8 @@ toString(StepKind kind)
 {
   static constexpr std::array<const char*, 4> names = {
       "registered", "widened", "predicted", "split"};
-  return names[static_cast<std::size_t>(kind)];
+  const auto index = static_cast<std::size_t>(kind);
+  return index < names.size() ? names[index] : "unknown";
 }
 
 Track::Track(const MotionModel& model, std::vector<std::int64_t> times, int map_scans)

@@ -5,7 +5,6 @@
 
 #include "track/motion_filter.h"
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -29,14 +28,6 @@ enum class StepKind {
 /** \brief Short name: "registered", "widened", "predicted", "split". */
 const char*
 toString(StepKind kind);
-
-/** \brief All of them, for register/choices.h. */
-inline std::array<StepKind, 4>
-choicesOf(StepKind)
-{
-  return {
-      StepKind::Registered, StepKind::Widened, StepKind::Predicted, StepKind::Split};
-}
 
 /** \brief If so many scans in a row could not be registered, the last one that can be
  * read is the new target. */

@@ -1,3 +1,5 @@
+#include "enumerator_names.h"
+
 #include <bayesian_icp/pose.h>
 
 #include <Eigen/Geometry>
@@ -82,17 +84,7 @@ anglesOf(const Eigen::Matrix3d& R)
 const char*
 toString(CovarianceConvention convention)
 {
-  switch (convention) {
-  case CovarianceConvention::Parameters:
-    return "parameters";
-  case CovarianceConvention::R3xSO3:
-    return "r3xso3";
-  case CovarianceConvention::LeftSE3:
-    return "left_se3";
-  case CovarianceConvention::RightSE3:
-    return "right_se3";
-  }
-  return "unknown";
+  return nameOf(convention, {"parameters", "r3xso3", "left_se3", "right_se3"});
 }
 
 double

@@ -1,3 +1,5 @@
+#include "enumerator_names.h"
+
 #include <bayesian_icp/prior.h>
 
 #include <cmath>
@@ -7,15 +9,7 @@ namespace bayesian_icp {
 const char*
 toString(PriorFrame frame)
 {
-  switch (frame) {
-  case PriorFrame::Origin:
-    return "origin";
-  case PriorFrame::SourceCentroid:
-    return "source-centroid";
-  case PriorFrame::Automatic:
-    return "automatic";
-  }
-  return "unknown";
+  return nameOf(frame, {"origin", "source-centroid", "automatic"});
 }
 
 Prior::Prior(const Vector6d& mean,

@@ -1,3 +1,5 @@
+#include "enumerator_names.h"
+
 #include <bayesian_icp/descent_optimizer.h>
 
 #include <cmath>
@@ -109,19 +111,7 @@ DescentOptimizer::~DescentOptimizer() = default;
 const char*
 toString(SgdOptimizer optimizer)
 {
-  switch (optimizer) {
-  case SgdOptimizer::FixedStep:
-    return "fixed";
-  case SgdOptimizer::Momentum:
-    return "momentum";
-  case SgdOptimizer::AdaDelta:
-    return "adadelta";
-  case SgdOptimizer::Adam:
-    return "adam";
-  case SgdOptimizer::RmsProp:
-    return "rmsprop";
-  }
-  return "unknown";
+  return nameOf(optimizer, {"fixed", "momentum", "adadelta", "adam", "rmsprop"});
 }
 
 double

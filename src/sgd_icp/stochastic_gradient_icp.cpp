@@ -1,4 +1,5 @@
 #include "../option_checker.h"
+#include "enumerator_names.h"
 #include "paper/matched_batch.h"
 
 #include <bayesian_icp/stochastic_gradient_icp.h>
@@ -102,21 +103,13 @@ StochasticGradientIcpOptions::validate() const
 const char*
 toString(DescentEnd end)
 {
-  switch (end) {
-  case DescentEnd::Converged:
-    return "converged";
-  case DescentEnd::MaxIterations:
-    return "max_iterations";
-  case DescentEnd::TooFewCorrespondences:
-    return "too_few_correspondences";
-  case DescentEnd::Diverged:
-    return "diverged";
-  case DescentEnd::Cancelled:
-    return "interrupted";
-  case DescentEnd::InvalidInput:
-    return "invalid_input";
-  }
-  return "unknown";
+  return nameOf(end,
+                {"converged",
+                 "max_iterations",
+                 "too_few_correspondences",
+                 "diverged",
+                 "interrupted",
+                 "invalid_input"});
 }
 
 StochasticGradientIcpResult

@@ -1,3 +1,4 @@
+#include "enumerator_names.h"
 #include "summary/plain_text.h"
 
 #include <bayesian_icp/data_report.h>
@@ -113,15 +114,7 @@ leastShareOfPrior(const DataReport& report)
 const char*
 toString(Observability observability)
 {
-  switch (observability) {
-  case Observability::Observed:
-    return "observed";
-  case Observability::Weak:
-    return "weak";
-  case Observability::PriorOnly:
-    return "prior_only";
-  }
-  return "unknown";
+  return nameOf(observability, {"observed", "weak", "prior_only"});
 }
 
 DataFlags

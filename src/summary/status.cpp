@@ -1,41 +1,33 @@
+#include "enumerator_names.h"
+
 #include <bayesian_icp/exports.h>
 #include <bayesian_icp/summary.h>
 
-#include <utility>
-
 namespace bayesian_icp {
-
-namespace {
-
-constexpr std::pair<Status, const char*> status_names[] = {
-    {Status::NotRun, "not_run"},
-    {Status::Ok, "ok"},
-    {Status::Doubtful, "doubtful"},
-    {Status::NotMixed, "not_mixed"},
-    {Status::SeveralModes, "several_modes"},
-    {Status::Diverged, "diverged"},
-    {Status::Cancelled, "interrupted"},
-    {Status::TooFewCorrespondences, "too_few_correspondences"},
-    {Status::InvalidOptions, "invalid_options"},
-    {Status::InvalidInput, "invalid_input"}};
-
-} // namespace
 
 const char*
 toString(Status status)
 {
-  for (const auto& [named, name] : status_names)
-    if (named == status)
-      return name;
-  return "unknown";
+  return nameOf(status,
+                {"not_run",
+                 "ok",
+                 "doubtful",
+                 "not_mixed",
+                 "several_modes",
+                 "diverged",
+                 "interrupted",
+                 "too_few_correspondences",
+                 "invalid_options",
+                 "invalid_input"});
 }
 
 bool
 readStatus(const std::string& name, Status& status)
 {
-  for (const auto& [named, its_name] : status_names)
-    if (its_name == name) {
-      status = named;
+  for (auto found = Status::NotRun; found <= Status::InvalidInput;
+       found = static_cast<Status>(static_cast<int>(found) + 1))
+    if (name == toString(found)) {
+      status = found;
       return true;
     }
   return false;
