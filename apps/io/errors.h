@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace bayesian_icp::io {
 
@@ -21,6 +22,14 @@ struct FileError : std::runtime_error {
   : std::runtime_error(file + ": " + reason)
   {}
 };
+
+/** \brief Why a file was not written. \param[in] error value of errno, 0 if unknown */
+inline std::string
+reasonNotWritten(int error)
+{
+  return "cannot be written: " +
+         (error != 0 ? std::generic_category().message(error) : "unknown error");
+}
 
 /** \brief A piece of a file or of the command line in quotes, fit for a terminal: not
  * too long, and without control characters. */

@@ -20,6 +20,13 @@ folderOf(const std::string& file)
   return path.has_parent_path() ? path.parent_path().string() : ".";
 }
 
+bool
+isSameFile(const std::string& a, const std::string& b)
+{
+  std::error_code ignored;
+  return fs::equivalent(a, b, ignored);
+}
+
 void
 makeFolder(const std::string& folder)
 {

@@ -12,6 +12,10 @@ namespace bayesian_icp::io {
 std::string
 folderOf(const std::string& file);
 
+/** \brief Whether both names are of one file that exists. */
+bool
+isSameFile(const std::string& a, const std::string& b);
+
 /** \brief Make a folder, and those that it is in, where they are missing.
  * \throws FileError if that fails */
 void

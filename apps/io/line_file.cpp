@@ -19,12 +19,6 @@ namespace bayesian_icp::io {
 
 namespace {
 
-std::string
-reasonOf(int error)
-{
-  return "cannot be written: " + std::generic_category().message(error);
-}
-
 int
 openToAppend(const std::string& name)
 {
@@ -32,7 +26,7 @@ openToAppend(const std::string& name)
   const int descriptor =
       open(name.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor < 0)
-    throw FileError(name, reasonOf(errno));
+    throw FileError(name, reasonNotWritten(errno));
   return descriptor;
 }
 
@@ -85,7 +79,7 @@ LineFile::cutTo(long size) const
   struct stat status = {};
   const bool is_longer = fstat(descriptor_, &status) != 0 || status.st_size > size;
   if (is_longer && ftruncate(descriptor_, size) != 0)
-    throw FileError(name_, reasonOf(errno));
+    throw FileError(name_, reasonNotWritten(errno));
 }
 
 void
@@ -102,7 +96,7 @@ LineFile::add(const std::string& line) const
     if (count <= 0) {
       const int error = count < 0 ? errno : ENOSPC;
       cutTo(size);
-      throw FileError(name_, reasonOf(error));
+      throw FileError(name_, reasonNotWritten(error));
     }
     num_written += static_cast<std::size_t>(count);
   }

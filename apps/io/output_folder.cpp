@@ -20,13 +20,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string
-reasonOf(int error)
-{
-  return "cannot be written: " +
-         (error != 0 ? std::generic_category().message(error) : "unknown error");
-}
-
 /** A new, empty file beside \p name, with the rights of any new file. */
 std::string
 makeTemporaryFile(const std::string& name)
@@ -34,7 +27,7 @@ makeTemporaryFile(const std::string& name)
   std::string temporary_name = name + ".XXXXXX";
   const int descriptor = mkstemp(temporary_name.data());
   if (descriptor < 0)
-    throw FileError(name, reasonOf(errno));
+    throw FileError(name, reasonNotWritten(errno));
   const mode_t mask = umask(0);
   umask(mask);
   fchmod(descriptor, 0666 & ~mask);
@@ -77,7 +70,7 @@ OutputFolder::OutputFolder(const std::string& folder) : folder_(folder)
   if (!fs::is_directory(folder, error))
     throw FileError(folder, "is not a folder");
   if (access(folder.c_str(), W_OK | X_OK) != 0)
-    throw FileError(folder, reasonOf(errno));
+    throw FileError(folder, reasonNotWritten(errno));
 }
 
 OutputFolder::~OutputFolder()
@@ -137,7 +130,7 @@ OutputFolder::add(const std::string& name,
     write(stream);
     stream.close();
     if (!stream)
-      throw FileError((fs::path(folder_) / name).string(), reasonOf(errno));
+      throw FileError((fs::path(folder_) / name).string(), reasonNotWritten(errno));
   });
 }
 
@@ -161,7 +154,7 @@ OutputFolder::commit()
     std::error_code error;
     fs::rename(files_.back().temporary_name, files_.back().name, error);
     if (error)
-      throw FileError(files_.back().name, reasonOf(error.value()));
+      throw FileError(files_.back().name, reasonNotWritten(error.value()));
     files_.pop_back();
   }
   for (const std::string& left_out : left_out_) {

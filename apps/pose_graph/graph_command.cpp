@@ -89,12 +89,10 @@ check(const po::variables_map& given, const GraphCommand& command)
   if (std::filesystem::is_directory(command.output_file))
     throw io::UsageError("--output: " + io::inQuotes(command.output_file) +
                          " is a folder; --optimize takes one");
-  for (const std::string& scan : request.scans) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(scan, command.output_file, ignored))
+  for (const std::string& scan : request.scans)
+    if (io::isSameFile(scan, command.output_file))
       throw io::UsageError("--output: " + io::inQuotes(command.output_file) +
                            " is one of the scans");
-  }
   if (given.count("robust-loss") > 0 && command.optimized_folder.empty())
     throw io::UsageError("--robust-loss needs --optimize");
   if (request.span < 1 || request.span > max_span)

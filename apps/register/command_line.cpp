@@ -1,10 +1,8 @@
 #include "register/command_line.h"
 
 #include "io/command_line.h"
+#include "io/folders.h"
 #include "register/settings_options.h"
-
-#include <filesystem>
-#include <system_error>
 
 namespace bayesian_icp::app {
 
@@ -90,15 +88,12 @@ refuseExportOptionsWithoutExport(const po::variables_map& given)
 void
 refuseToReplaceInput(const Request& request)
 {
-  const auto aligned = std::filesystem::path(request.output_folder) / "aligned.pcd";
-  for (const std::string& file : {request.source_file, request.target_file}) {
-    std::error_code ignored;
+  for (const std::string& file : {request.source_file, request.target_file})
     if (!request.output_folder.empty() &&
-        std::filesystem::equivalent(file, aligned, ignored))
+        io::isSameFile(file, request.output_folder + "/aligned.pcd"))
       throw io::UsageError("--output: " + io::inQuotes(request.output_folder) +
                            " has the input " + file +
                            ", which would be replaced; take another folder");
-  }
 }
 
 /** \throws io::UsageError if what is exported cannot be printed */

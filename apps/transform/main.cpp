@@ -126,9 +126,8 @@ void
 transformCloud(const Request& request)
 {
   const io::CloudFormat format = io::formatOf(request.output_file);
-  std::error_code ignored;
   if (!request.may_overwrite_input &&
-      fs::equivalent(request.input_file, request.output_file, ignored))
+      io::isSameFile(request.input_file, request.output_file))
     throw io::UsageError(request.output_file +
                          " is the input; use --overwrite to replace it");
   const Eigen::Affine3d motion(motionOf(request));

@@ -180,8 +180,7 @@ runCyclesCommand(int argc, const char* const* argv)
   const std::vector<std::string> files = io::optionTexts(*given, "graph");
   if (files.size() != 1)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
-  std::error_code ignored;
-  if (std::filesystem::equivalent(files[0], options.result.file, ignored))
+  if (io::isSameFile(files[0], options.result.file))
     throw io::UsageError("--output: " + io::inQuotes(options.result.file) +
                          " is the graph");
   constexpr double rounding = 1e-6;
