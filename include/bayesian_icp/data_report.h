@@ -70,7 +70,7 @@ struct DataFlags {
   /** The two starts ended more than max_basin_distance apart, and the worse end costs
    * no more than max_other_cost_ratio times the better one. Either may be right. */
   bool wrong_basin = false;
-  /** Less than min_active_fraction of the points of either cloud lie on the surface of
+  /** In both clouds, less than min_active_fraction of the points lie on the surface of
    * the other one. */
   bool low_support = false;
   /** Fewer than min_effective_patches independent patches determine the pose, or fewer

@@ -32,7 +32,8 @@ struct PriorOptions {
    * default) mean the initial guess. */
   Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /** Variance of x, y, z [m^2] and 1/kappa of roll, pitch, yaw [rad^2], eqs. (6) and
-   * (7). Positive; infinity means no prior on that coordinate. */
+   * (7). At least 1e-24; infinity means no prior on that coordinate, which preset
+   * `calibrated` does not accept. */
   Vector6d variance = Vector6d::Constant(0.125);
   /** The point whose translation x, y, z describe. */
   PriorFrame frame = PriorFrame::Automatic;
