@@ -54,9 +54,9 @@ printHelp(std::ostream& stream)
     stream << "  " << std::left << std::setw(14) << command.name << command.summary
            << '\n';
   stream
-      << "\nCOMMAND --help tells its options, pcl_bayesian_icp_evaluate --version the "
-         "version.\nExit codes: 0 good, 1 a result is not to be relied on, 2 usage, 3 "
-         "cannot read or\nwrite a file.\n";
+      << "\nCOMMAND --help lists its options. --version shows the version.\n"
+         "Exit codes: 0 success, 1 do not rely on a result, 2 usage, 3 a file cannot\n"
+         "be read or written.\n";
 }
 
 int

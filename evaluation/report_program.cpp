@@ -71,10 +71,10 @@ printHelp()
   std::cout << R"(Usage: pcl_bayesian_icp_evaluate report FOLDER
 
 Makes report.md, report.html and figures (SVG and PNG) of all studies
-whose CSV files are in the folder, by Python with pandas and matplotlib
-(Debian's packages python3-pandas and python3-matplotlib). Nothing is
-registered or sampled.
-Exit codes: 0 good, 2 usage, 3 no report.
+whose CSV files are in the folder. It runs Python with pandas and matplotlib
+(Debian's packages python3-pandas and python3-matplotlib), and registers and
+samples nothing.
+Exit codes: 0 success, 2 usage, 3 no report.
 )";
 }
 

@@ -53,23 +53,24 @@ struct CoverageOptions {
 
 constexpr char coverage_help[] = R"(Usage: pcl_bayesian_icp_evaluate coverage [options]
 
-Is the posterior as wide as it should be? Registers pairs of scans whose true
-pose was drawn from the prior, by every method, and compares each posterior
-with the truth. Every run is a row of a CSV file: squared Mahalanobis
-distance of the truth (NEES), log score [nats] and energy score in units of
-the prior's standard deviations, probability integral transforms (PIT),
-errors, standard scores and deviations of the six coordinates of a twist
-about the source's centroid, mean displacement of the source's points [m],
-time, nearest-neighbour queries, flags. A table goes to the standard output,
-progress to the standard error.
-Of recordings the prior is the default one about a guess, log scores are in
-metres and radians and at least -50 a pair, and the table counts lost pairs
-(displaced by more than the recording's limit; they are left out of NEES/6),
-alarms (flags on good ones: not lost, NEES below 16.812) and misses (bad ones
+Is the posterior as wide as it should be? Registers pairs of scans, whose true
+pose is drawn from the prior, with every method, and compares each posterior
+with the truth. Each run is a row of a CSV file: squared Mahalanobis distance
+of the truth (NEES), log score [nats] and energy score in units of the prior's
+standard deviations, probability integral transforms (PIT), errors, standard
+scores and deviations of the six coordinates of a twist about the source's
+centroid, mean displacement of the source's points [m], time,
+nearest-neighbour queries, flags. The table goes to standard output, progress
+to standard error.
+For recordings, the prior is the default one about a guess. Log scores are in
+metres and radians, and at least -50 for a pair. The table counts lost pairs
+(displaced by more than the recording's limit; NEES/6 leaves them out), alarms
+(flags on good pairs: not lost, NEES below 16.812) and misses (bad pairs
 without a flag: lost, or NEES above 27.856).
-Rows of other scans, truths or guesses of the same names do not count. Results
-of another build of the methods have to be deleted by hand.
-Exit codes: 0 good, 2 usage, 3 cannot read or write a file, or make the report.
+Rows of the same names but other scans, truths or guesses do not count. Delete
+results of another build of the methods by hand.
+Exit codes: 0 success, 2 usage, 3 a file cannot be read or written, or the
+report cannot be made.
 )";
 
 AxisDeviation

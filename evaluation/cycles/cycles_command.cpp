@@ -124,25 +124,24 @@ Are the covariances of a pose graph right? Needs no true poses. Around each
 cycle of edges the product of the poses should be the identity, within the
 sum of the covariances. The normalised squared error of closures (NEES) is
 then 1 per degree of freedom on average, and 50 % and 95 % of the closures
-are in their regions. Edges of the same scan share its
-noise, and all edges share what the sensor does wrong in each scan:
---scan-share and --common-share say how much of their variance. Larger
-errors mean that covariances are too small, or that an edge is wrong.
-Directions in which a closure is less certain than 3 m or 3 rad are not
-counted: no cloud has seen them.
+are in their regions. Larger errors mean that covariances are too small, or
+that an edge is wrong. Edges of the same scan share its noise, and all edges
+share the systematic errors of the sensor: --scan-share and --common-share
+state these parts of their variance. Directions in which a closure is less
+certain than 3 m or 3 rad do not count: no cloud determines them.
 
-Make the graph with pcl_bayesian_icp_track --span 3; edges that contain a
-prior close too well.
+Make the graph with pcl_bayesian_icp_track --span 3. Cycles of edges that
+contain a prior close too well.
 
-Errors that all edges share nearly cancel: if each registration is drawn
-towards no motion in the same proportion, every cycle still closes.
+Errors that all edges share nearly cancel: if every registration shortens the
+motion in the same proportion, every cycle still closes.
 
-A table goes to the standard output; every cycle is a row of a CSV file.
-Below the table, one chi-square test takes all cycles together, and knows
-which edges they have in common. If all covariances are right, it fails for
-one graph in a thousand.
-Exit codes: 0 good, 1 that test has failed, or there is no cycle to test,
-2 usage, 3 cannot read or write a file.
+The table goes to standard output; each cycle is a row of a CSV file. Below
+the table, one chi-square test combines all cycles and takes their common
+edges into account. If all covariances are right, it fails for one graph in a
+thousand.
+Exit codes: 0 success, 1 that test has failed, or there is no cycle to test,
+2 usage, 3 a file cannot be read or written.
 )";
 
 po::typed_value<double>*
@@ -165,7 +164,7 @@ runCyclesCommand(int argc, const char* const* argv)
   po::options_description description("Options", 88);
   // clang-format off
   description.add_options()
-    ("max-length", integer(options.max_length, 3, 100), "most edges of a cycle")
+    ("max-length", integer(options.max_length, 3, 100), "largest number of edges of a cycle")
     ("scan-share", share(options.shared.scan),
      "part of the variance of an edge that is the noise of each of its two scans, which "
      "moves edges to the scan the other way than edges from it")

@@ -30,44 +30,44 @@ struct NamedExperiment {
 constexpr char help_of_all[] = R"(
 
 The output folder gets a CSV file with one row for each run, and the data of the
-pictures. Python with pandas and matplotlib makes report.md, report.html and the
-pictures from these; the tool prints medians without it. An interrupted run
-continues where it stopped. A pair that is missing or broken is named and skipped.
-Delete the results of another build of the methods yourself.
-Exit codes: 0 good, 2 usage, 3 cannot read or write a file, left a pair out, or
-made no report.
+pictures. From these, Python with pandas and matplotlib makes report.md, report.html
+and the pictures. Without Python, the tool still prints medians. The same command
+continues an interrupted run. It reports and skips a missing or broken pair.
+Delete results of another build of the methods by hand.
+Exit codes: 0 success, 2 usage, 3 a file cannot be read or written, a pair was
+skipped, or there is no report.
 )";
 
 /** In the order of the report. */
 const std::vector<NamedExperiment> experiments = {
     {"distribution",
      "the paper's Table I: divergence of every method from Monte Carlo ICP",
-     R"(KL(baseline || method) of every method, the baseline being the results of
-Monte Carlo ICP, beside the paper's; marginal densities, pictures of the clouds,
-and scores against the true pose.)",
+     R"(KL(baseline || method) of every method, next to the paper's. The baseline is the
+results of Monte Carlo ICP. Also marginal densities, pictures of the clouds, and
+scores against the true pose.)",
      distributionExperiment},
     {"samples",
      "the same divergence as a function of the number of draws",
-     "KL(baseline || draws) for 100 to 6000 draws; bowl and can, unless pairs are "
-     "given.",
+     "KL(baseline || draws) for 100 to 6000 draws. The default pairs are bowl "
+     "and can.",
      samplesExperiment},
     {"burn-in",
      "the same divergence as a function of the length of burn-in",
-     "KL(baseline || 2000 draws) after 0 to 4000 draws that are left out; bowl and "
-     "can,\n"
-     "unless pairs are given.",
+     "KL(baseline || 2000 draws) after a burn-in of 0 to 4000 draws. The default "
+     "pairs\n"
+     "are bowl and can.",
      burnInExperiment},
     {"runtime",
      "seconds per 1000 draws, for 1, 2 and 4 threads",
      R"(Wall time and processor time per 1000 draws of the presets paper, exact and
-calibrated for 1, 2 and 4 threads, beside the paper's; each pair is timed as often
-as there are repeats. Run nothing else meanwhile.)",
+calibrated for 1, 2 and 4 threads, next to the paper's. Each pair is timed --repeats
+times. Run nothing else in the meantime.)",
      runtimeExperiment},
     {"accuracy",
      "errors of posterior means, SGD-ICP and ICP from random starts",
      R"(Translation and rotation error of Bayesian ICP's mean (presets paper, exact and
-calibrated), SGD-ICP and ICP to completion, from 50 starts in ±1 m, ±0.3 rad (5 with
---quick).)",
+calibrated), SGD-ICP and ICP to completion, from 50 starts within ±1 m, ±0.3 rad (5
+with --quick).)",
      accuracyExperiment}};
 
 /** What --quick has in place of the defaults. */
@@ -94,11 +94,11 @@ describeOptions(PaperStudyOptions& options)
      "number of runs of Monte Carlo ICP for each pair (the paper has 10000). A larger "
      "number later only adds runs")
     ("start-translation", positiveNumber(options.start_translation),
-     "these runs start within this distance on each axis [m] ...")
+     "the baseline runs start within this distance on each axis [m]")
     ("start-rotation", positiveNumber(options.start_rotation),
-     "... and within this of each angle [rad]")
+     "the baseline runs start within this of each angle [rad]")
     ("repeats", integer(options.num_repeats, 2, most),
-     "number of runs of each method behind a mean and its deviation")
+     "number of runs of each method from which a mean and its deviation are computed")
     ("points", integer(options.num_points, 0, most),
      "number of source points, chosen at random; 0 means all")
     ("seed", integer(options.seed, 0, max_seed), "seed of all random numbers")
@@ -199,7 +199,7 @@ std::vector<SubCommand>
 paperCommands()
 {
   std::string summary =
-      "All experiments of the paper into one folder, and a report of them:";
+      "Runs all experiments of the paper into one folder, and makes a report:";
   for (const NamedExperiment& experiment : experiments)
     summary += "\n  " + experiment.name + ": " + experiment.summary;
   const auto runAll = [](const PaperStudy& study) {

@@ -114,16 +114,16 @@ numParticlesOf(const std::string& text)
 constexpr char samplers_help[] = R"(Usage: pcl_bayesian_icp_evaluate samplers [options]
 
 Compares the draws of every sampler with a gold standard: long Metropolis
-runs on the same posterior, kept beside the results. Every run is a row of a
+runs on the same posterior, kept with the results. Each run is a row of a
 CSV file: KL divergence of Gaussian moments (gold standard to sampler,
 6-D and per coordinate) [nats], Wasserstein-1 distance [standard deviations
 of the gold standard] and Kolmogorov-Smirnov distance of the marginals,
 largest R-hat, smallest bulk and tail effective sample size (ESS), CPU time
-of all threads [s], smallest bulk ESS a second, status. A table of medians
-and worst cases goes to the standard output, progress to the standard error.
-Results of another build of the samplers have to be deleted by hand.
-Exit codes: 0 good, 1 a gold standard did not converge, 2 usage, 3 cannot
-read or write a file, or make the report.
+of all threads [s], smallest bulk ESS per second, status. The table of medians
+and worst cases goes to standard output, progress to standard error. Delete
+results of another build of the samplers by hand.
+Exit codes: 0 success, 1 a gold standard did not converge, 2 usage, 3 a file
+cannot be read or written, or the report cannot be made.
 )";
 
 po::options_description

@@ -24,15 +24,15 @@ struct SbcOptions {
 
 constexpr char sbc_help[] = R"(Usage: pcl_bayesian_icp_evaluate sbc [options]
 
-Simulation-based calibration: are the draws of a sampler draws of the
-posterior? True poses are drawn from the prior and data from the very
-likelihood; the rank of the true pose among 99 draws is then uniform, in
-each of the six coordinates. calibrated-scans ranks true poses of simulated
-scans, of which the likelihood is no exact model. Every run is a row of a
-CSV file. A table goes to the standard output, progress to the standard
-error. Results of another build have to be deleted by hand.
-Exit codes: 0 good, 1 ranks are not uniform or draws are no good, 2 usage,
-3 cannot read or write a file, or make the report.
+Simulation-based calibration: does a sampler draw from the posterior? True
+poses are drawn from the prior, and data from the likelihood that the sampler
+assumes. The rank of the true pose among 99 draws is then uniform in each of
+the six coordinates. calibrated-scans ranks the true poses of simulated scans,
+which the likelihood models only approximately. Each run is a row of a CSV
+file. The table goes to standard output, progress to standard error. Delete
+results of another build by hand.
+Exit codes: 0 success, 1 ranks are not uniform or draws are unusable, 2 usage,
+3 a file cannot be read or written, or the report cannot be made.
 )";
 
 /** The samplers of these names, all of them if there are none.

@@ -212,23 +212,23 @@ trajectoriesHelp()
 {
   std::string help = R"(Usage: pcl_bayesian_icp_evaluate trajectories [FOLDER] [options]
 
-Do the covariances of registrations make trajectories better, and is the
-stated accuracy of these true? Registers the scans of each recording to those
-up to --span before them, and to earlier scans at the same place. The same
-solver makes trajectories of the edges: with the means of preset calibrated
-and several covariances (its own, a constant one fitted to the other
-recordings, the inverse Hessian of GICP, Censi's closed form), and with the
-means of GICP and of point-to-plane ICP and their own.
+Do the covariances of registrations make trajectories more accurate, and are
+trajectories as accurate as stated? Registers each scan of a recording to those
+up to --span before it, and some to earlier scans at the same place. One solver
+computes trajectories from the edges: with the means of preset calibrated and
+several covariances (its own, a constant one fitted to the other recordings,
+the inverse Hessian of GICP, Censi's closed form), and with the means and
+covariances of GICP and of point-to-plane ICP.
 
 Without FOLDER, the recordings are simulated drives: )";
   const std::vector<std::string> drives = driveNames();
   for (const std::string& name : drives)
     help += name + (name == drives.back() ? ".\n" : ", ");
-  return help + R"(FOLDER has recordings with true poses, a folder each, as for
-coverage --real. All methods begin at the true pose with errors of 0.1 m and
-0.03 rad on each axis. Edges do not contain that guess (the closed form keeps
-its wide prior); but as an odometry it is an edge of its own from each scan to
-the next, the same for all methods.
+  return help + R"(FOLDER contains one folder per recording, with true poses, as for
+coverage --real. All methods start at the true pose with errors of 0.1 m and
+0.03 rad on each axis. The edge of a registration does not contain this guess
+(the closed form keeps its wide prior). The guess is a separate odometry edge
+from each scan to the next, the same for all methods.
 
 The table has the error of positions after alignment (ATE), of relative poses
 of neighbours (RPE), of the last pose (drift), the normalised squared error of
@@ -236,11 +236,11 @@ all poses per degree of freedom (NEES/6) and that of closures of cycles of up
 to four edges (1 if covariances are right).
 Errors include those of the true poses ("of": exact, or quality A, B, C).
 
-Each registration is a row of a second CSV file, FILE_edges.csv, in which an
-interrupted study goes on. Rows of other scans, other guesses or another
+Each registration is a row of a second CSV file, FILE_edges.csv, from which an
+interrupted study continues. Rows of other scans, other guesses or another
 version of this program do not count.
 
-Exit codes: 0 good, 2 usage, 3 cannot read or write a file.
+Exit codes: 0 success, 2 usage, 3 a file cannot be read or written.
 )";
 }
 
