@@ -1,6 +1,6 @@
 /** \file
- * \brief First-order optimisers of stochastic gradient descent. They know gradients,
- * and nothing of point clouds.
+ * \brief First-order optimisers of stochastic gradient descent. They use gradients
+ * only, no point clouds.
  */
 #pragma once
 
@@ -11,9 +11,9 @@
 
 namespace bayesian_icp {
 
-/** \brief How a gradient g becomes a step. All but the step size are the constants of
- * the SGD-ICP authors' program; operations on vectors are by component, and sums start
- * at zero. */
+/** \brief How a gradient g becomes a step. All constants except the step size are those
+ * of the SGD-ICP authors' program. Operations on vectors are by component, and sums
+ * start at zero. */
 enum class SgdOptimizer {
   /** -step_size g. */
   FixedStep,
@@ -45,15 +45,15 @@ class BAYESIAN_ICP_EXPORT DescentOptimizer {
 public:
   virtual ~DescentOptimizer();
 
-  /** \brief Take in the gradient at the current position.
-   * \return what is to be added to the position */
+  /** \brief Use the gradient at the current position.
+   * \return the step to add to the position */
   virtual Vector6d
   step(const Vector6d& gradient) = 0;
 };
 
-/** \brief An optimiser that has seen no gradient yet.
- * \param[in] optimizer which one
- * \param[in] step_size NaN: defaultStepSize() */
+/** \brief Make an optimiser that has not seen a gradient.
+ * \param[in] optimizer kind of optimiser
+ * \param[in] step_size NaN means defaultStepSize() */
 BAYESIAN_ICP_EXPORT std::unique_ptr<DescentOptimizer>
 makeDescentOptimizer(SgdOptimizer optimizer, double step_size);
 

@@ -18,11 +18,11 @@ namespace bayesian_icp {
 
 class NeighborCache;
 
-/** \brief The instructions a search is made of. All of them give the same bits. */
+/** \brief The processor instructions that a search uses. All give the same bits. */
 enum class InstructionSet { Plain, Sse2, Avx2 };
 
-/** \brief What this build of the library and this processor can run, Plain first, the
- * fastest last. */
+/** \brief The instruction sets that this build of the library and this processor
+ * support, Plain first, the fastest last. */
 BAYESIAN_ICP_EXPORT std::vector<InstructionSet>
 supportedInstructionSets();
 
@@ -34,8 +34,8 @@ supportedInstructionSets();
  * (dx * dx + dy * dy) + dz * dz with d = point - query; clouds far from the origin
  * should be centred by the caller.
  *
- * Memory: the points (12 bytes each) and at most 24 bytes a point + 1 kB for the tree,
- * another 16 bytes a point while it is built. */
+ * Memory: the points (12 bytes each), at most 24 bytes per point + 1 kB for the tree,
+ * and another 16 bytes per point while it is built. */
 class BAYESIAN_ICP_EXPORT KdTree {
 public:
   /** \brief The index of no point. */
@@ -53,8 +53,8 @@ public:
   /** \brief Build the tree.
    * \param[in] points 3 x n [m], fewer than 2^32 - 1 columns; columns with a non-finite
    *            coordinate are never found
-   * \param[in] num_threads threads to build with at most, 0: as OpenMP would; a small
-   *            cloud is built by one
+   * \param[in] num_threads largest number of threads, 0 means OpenMP's default; the
+   *            tree of a small cloud is built by one
    * \throws std::invalid_argument if there are too many points */
   explicit KdTree(Eigen::Matrix3Xf points, int num_threads = 0);
 
@@ -68,8 +68,8 @@ public:
   KdTree&
   operator=(KdTree&&) noexcept;
 
-  /** \brief The point nearest to \p query; among equally near ones that of the smallest
-   * index. Several threads may call it at once; it allocates nothing.
+  /** \brief The point nearest to \p query; of equally near points, the one with the
+   * smallest index. Several threads may call it at once. It allocates nothing.
    * \param[in] query same frame as the points [m]; none is found for a non-finite one
    * \param[in] max_squared_distance the gate [m^2], inclusive; may be infinite, but a
    *            squared distance that overflows a float is beyond every gate
@@ -104,11 +104,11 @@ private:
   std::unique_ptr<const Tree> tree_;
 };
 
-/** \brief Ask many queries: calls search(begin, end) for blocks of 0 ... count - 1, in
+/** \brief Run many queries: call search(begin, end) for blocks of 0 ... count - 1, in
  * any order. Several threads share a large number of queries. They are started for this
- * call, and none of them waits actively, so busy cores are not kept busier.
+ * call, and none of them busy-waits.
  * \param[in] count number of queries
- * \param[in] num_threads 0: as many as OpenMP would use; one inside a parallel region
+ * \param[in] num_threads 0 means OpenMP's default, and one inside a parallel region
  * \param[in] search may be called by several threads at once; the first exception that
  *            it throws is thrown to the caller */
 BAYESIAN_ICP_EXPORT void

@@ -17,27 +17,28 @@
 
 namespace bayesian_icp {
 
-/** \brief Defaults are those of the authors' program; docs/sgd_icp.md says which. */
+/** \brief Options of SGD-ICP. The defaults are those of the authors' program:
+ * docs/sgd_icp.md. */
 struct StochasticGradientIcpOptions {
   SgdOptimizer optimizer = SgdOptimizer::Adam;
-  /** Positive; NaN: defaultStepSize(). No effect on AdaDelta. */
+  /** Positive; NaN means defaultStepSize(). AdaDelta does not use it. */
   double step_size = std::numeric_limits<double>::quiet_NaN();
   /** Source points per step, positive. If the source has fewer, all are used. */
   int batch_size = 150;
-  /** Positive. */
+  /** Largest number of steps, positive. */
   int max_iterations = 150;
-  /** Use a target point for the nearest of a mini-batch's source points only. */
+  /** Pair each target point only with the nearest source point of a mini-batch. */
   bool is_one_to_one = true;
-  /** The pose is still while its translation [m] and the sum of its three angles'
-   * changes [rad] are less than these away from where it came to rest; not negative, 0
-   * is never. */
+  /** The pose is at rest while the change of its translation [m] and the sum of the
+   * absolute changes of its angles [rad], since it came to rest, are below these
+   * limits. Not negative; 0 means never. */
   double translation_epsilon = 5e-3;
   double rotation_epsilon = 5e-3;
-  /** Number of consecutive still steps that count as converged, positive. */
+  /** Number of consecutive steps at rest that count as converged, positive. */
   int num_still_iterations = 5;
   std::uint64_t seed = 1;
 
-  /** \brief What is wrong with the first bad field; empty if all is well. */
+  /** \brief Describe the first invalid field. Empty if all fields are valid. */
   BAYESIAN_ICP_EXPORT std::string
   validate() const;
 };
@@ -50,7 +51,7 @@ enum class DescentEnd {
   TooFewCorrespondences,
   /** The pose became non-finite. */
   Diverged,
-  /** The progress callback asked for it. */
+  /** The progress callback stopped the descent. */
   Cancelled,
   /** Bad options, fewer than three source points, or a non-finite initial pose. For the
    * class of PCL, also a refused cloud, or indices outside their cloud. */
@@ -64,27 +65,27 @@ toString(DescentEnd end);
 
 /** \brief Where the descent ended. */
 struct StochasticGradientIcpResult {
-  /** T_target_source as a canonical pose [m, rad]: the last finite one. */
+  /** The last finite pose, T_target_source, canonical [m, rad]. */
   Vector6d pose = Vector6d::Zero();
-  /** Steps made; mini-batches with too few correspondences make none. */
+  /** Number of steps; mini-batches with too few correspondences make none. */
   int num_iterations = 0;
   /** Whether the pose came to rest: end is Converged. */
   bool has_converged = false;
   DescentEnd end = DescentEnd::InvalidInput;
 };
 
-/** \brief Called after each step, counted from 1, with the pose (angles as they come,
- * not wrapped); returns false to stop. */
+/** \brief Called after each step, counted from 1, with the pose (angles not wrapped).
+ * It returns false to stop. */
 using StochasticGradientIcpProgress =
     std::function<bool(int iteration, const Vector6d& pose)>;
 
 /** \brief Descend the mean of |R s + u - q|^2 / 2 over the pairs of each mini-batch
- * from \p initial_pose. The source is dealt out in shuffled epochs.
+ * from \p initial_pose. Mini-batches come from shuffled epochs of the source.
  * \param[in] source_points 3 x n, finite, source frame [m]
- * \param[in] search finds correspondences within its gate; called by this thread only
+ * \param[in] search finds correspondences within its gate; only this thread calls it
  * \param[in] initial_pose T_target_source [m, rad]
- * \param[in] options step size, batches and when to stop
- * \param[in] progress told of each step; may be empty */
+ * \param[in] options step size, mini-batches and stopping criteria
+ * \param[in] progress called after each step; may be empty */
 BAYESIAN_ICP_EXPORT StochasticGradientIcpResult
 stochasticGradientIcp(
     const Eigen::Matrix3Xd& source_points,

@@ -13,12 +13,12 @@ namespace pcl {
 /** \brief Iterative closest point with the posterior of its transformation.
  *
  * align() first runs pcl::IterativeClosestPoint. Final transformation, output,
- * convergence and correspondences are those of that class to the last bit (but for
- * indices, see below), although this library's tree finds the pairs (unless the user
- * installs a search tree). align()
- * then samples the posterior of the source-to-target pose with preconditioned Langevin
- * chains over mini-batches of the source (Maken, Ramos, Ott: Estimating Motion
- * Uncertainty with Bayesian ICP, ICRA 2020).
+ * convergence and correspondences are those of that class to the last bit (except with
+ * indices, see below). Unless the user installs a search tree, this library's tree
+ * finds the same pairs. align() then samples the posterior of the source-to-target pose
+ * with preconditioned Langevin chains over mini-batches of the source (Maken, Ramos,
+ * Ott: Estimating Motion Uncertainty with Bayesian ICP, ICRA 2020). Preset::Exact also
+ * has other kinds of steps.
  *
  * The default, Preset::Calibrated, estimates the scale from the clouds.
  * getSummary().data states how well they determine the pose in each direction.
@@ -204,8 +204,8 @@ public:
   }
 
   /** \brief Set N of eq. (5), for presets `paper` and `exact`. Preset `calibrated`
-   * estimates its scale itself: align() then reports Status::InvalidOptions, until
-   * setOptions() is called: setOptions(getOptions()) changes nothing else. */
+   * estimates its scale itself. With it, align() then reports Status::InvalidOptions
+   * until setOptions() is called. setOptions(getOptions()) changes nothing else. */
   void
   setEffectivePoints(double effective_points)
   {

@@ -27,9 +27,9 @@ namespace pcl {
  * unless convergence_criteria_ states otherwise; getResult() distinguishes the two.
  *
  * Non-finite points, indices, refused clouds and exceptions are treated as in
- * pcl::BayesianIterativeClosestPoint.
- * correspondences_ are those of the whole source at the final transformation. The same
- * seed gives the same result. Use one object from one thread at a time.
+ * pcl::BayesianIterativeClosestPoint. correspondences_ are those of the whole source at
+ * the final transformation. The same seed gives the same result. Use one object from
+ * one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations; the descent is in double
  * \ingroup registration
