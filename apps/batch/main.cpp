@@ -92,9 +92,9 @@ number of threads of the whole process: each pair has one thread if there are
 more pairs than threads. docs/batch.md describes the keys of a line.
 
 A batch that was stopped continues if it is started again with the same
---results. Pairs of which a file has another size or modification time than when
-it was read lose their line and are registered again. If a pair cannot be read
-or registered, its line has the status "error", and the other pairs continue.
+--results. If the size or modification time of a pair's file has changed since it
+was read, the pair loses its line and is registered again. If a pair cannot be
+read or registered, its line has the status "error", and the other pairs continue.
 )",
           R"(
 Exit codes:

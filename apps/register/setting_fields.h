@@ -42,8 +42,8 @@ visitRegistration(SettingsT& settings, Visitor& visit)
          "Without it, a target point may be in several pairs."},
         settings.is_one_to_one);
   visit({group, "use_mean", "mean", "",
-         "Take the posterior mean as the final transformation, unless the status is "
-         "worse than not mixed. Without it, the final transformation is ICP's result."},
+         "Take the posterior mean as the final transformation if the status is ok, "
+         "doubtful or not mixed. Without it, the final transformation is ICP's result."},
         settings.use_mean);
 }
 

@@ -62,7 +62,7 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
      "Register scans to a map of the last scans, with one point in each cube of this "
      "width (m). Without it, each scan is registered to the one before it.")
     ("map-scans", io::number("N", request.map_scans),
-     "Number of scans in a map. After as many scans a new map begins. (default 5)");
+     "Number of scans in a map. After this many scans a new map begins. (default 5)");
   // clang-format on
   po::options_description all;
   all.add(group).add(motion).add(map);
@@ -200,11 +200,11 @@ If the status is not ok, the registration is repeated as if the velocity were as
 unknown as at the start, and the better result is used.
 
 If a scan is registered with status doubtful, its standard deviations are
-tripled ("widened"). A scan that cannot be registered, or only in another basin,
-gets the predicted pose ("predicted"), and the next one is registered to the
-same target. From the third such scan in a row on, a scan that can be read
-becomes the target ("split"). Directions that the clouds do not determine are
-left to the prediction.
+tripled ("widened"). A scan that cannot be registered, or that has the flag
+wrong_basin, gets the predicted pose ("predicted"), and the next one is
+registered to the same target. From the third such scan in a row on, a scan that
+can be read becomes the target ("split"). Directions that the clouds do not
+determine are left to the prediction.
 
 FOLDER gets
   edges.jsonl                one line per scan: its edge without the prior, its
