@@ -1,6 +1,7 @@
 #include "track/track_line.h"
 
 #include "io/coordinates.h"
+#include "io/errors.h"
 #include "io/numbers.h"
 #include "io/text_hash.h"
 #include "io/time_stamps.h"

@@ -4,6 +4,8 @@
 
 #include <bayesian_icp/summary.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 
 namespace bayesian_icp::viewer {
