@@ -92,6 +92,31 @@ onStairs(Random& random)
   }
 }
 
+constexpr double pillar_distance = 0.5;
+
+/** Floor and walls of a corridor along x, and pillars beside it, as far as \p end. */
+auto
+onPillarsUpTo(double end)
+{
+  return [end](Random& random) -> Eigen::Vector3d {
+    const double along = 2.0 * random.uniform() - 1.0, across = random.uniform();
+    const auto num_pillars = static_cast<std::size_t>(2.0 * end / pillar_distance);
+    switch (random.index(4)) {
+    case 0:
+      return {end * along, 2.0 * across - 1.0, 0.0};
+    case 1:
+      return {end * along, random.index(2) == 0 ? -1.0 : 1.0, across};
+    default:
+      const Eigen::AngleAxisd turn(2.0 * quarter_turn * along,
+                                   Eigen::Vector3d::UnitZ());
+      const double x =
+          pillar_distance * (static_cast<double>(random.index(num_pillars)) + 0.5) -
+          end;
+      return Eigen::Vector3d(x, 0.8, across) + turn * Eigen::Vector3d(0.08, 0.0, 0.0);
+    }
+  };
+}
+
 struct FacePoint {
   Eigen::Vector3d point, normal;
 };
@@ -382,6 +407,27 @@ TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
   const ModeSearch search = findModes(problem.scorer, problem.prior, first, only_hops);
   EXPECT_LT(squaredErrorOf(search.modes.front().estimate, clouds.truth),
             test::chi_square_999);
+}
+
+TEST(CalibratedModes, ASlideFindsTheOtherPlacesAmongPillars)
+{
+  Clouds clouds = cloudsOf(onPillarsUpTo(1.5), 0.03);
+  clouds.target = sampled(onPillarsUpTo(4.0), 20000, 3);
+  Vector6d deviations;
+  deviations << Eigen::Vector3d::Constant(0.35), Eigen::Vector3d::Constant(0.1);
+  const test::Problem problem(clouds.source, clouds.target, deviations);
+  for (const int num_pillars : {-1, 1}) {
+    const Eigen::Isometry3d slipped =
+        Eigen::Translation3d(num_pillars * pillar_distance, 0.0, 0.0) * clouds.truth;
+    const CalibratedEstimate first = problem.estimate({}, &slipped);
+    ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
+    ASSERT_FALSE(mayHaveSeveralModes(problem.scorer, problem.prior, first));
+    const std::vector<CalibratedMode> modes =
+        findModes(problem.scorer, problem.prior, first).modes;
+    EXPECT_TRUE(std::any_of(modes.begin(), modes.end(), [&](const auto& mode) {
+      return squaredErrorOf(mode.estimate, clouds.truth) < test::chi_square_999;
+    }));
+  }
 }
 
 class ModeWeights : public testing::Test {

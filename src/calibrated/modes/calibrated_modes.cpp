@@ -2,8 +2,8 @@
 
 #include "calibrated/draws/product_coordinates.h"
 #include "calibrated/modes/mode_weights.h"
-#include "calibrated/modes/parallel_faces.h"
 #include "calibrated/modes/robust_mode.h"
+#include "calibrated/modes/translated_fits.h"
 #include "calibrated/surface/even_choice.h"
 #include "geometry/principal_axes.h"
 #include "threads/for_each_piece.h"
@@ -346,6 +346,15 @@ betterFitOf(const SurfaceScorer& scorer,
   return squaredDeviations(subset, prior, best->pose);
 }
 
+/** The two directions along which the clouds tell least about translations. */
+std::vector<Eigen::Vector3d>
+weakTranslations(const CalibratedEstimate& e)
+{
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(
+      Eigen::Matrix3d(e.covariance.topLeftCorner<3, 3>()));
+  return {principal.eigenvectors().col(2), principal.eigenvectors().col(1)};
+}
+
 /** Where the search ends that follows some points. */
 struct CloudEnds {
   SurfaceScorer subset;
@@ -379,15 +388,18 @@ endsOfCloud(const SurfaceScorer& leading,
         subset, prior, wideCoordinates(scorer, prior), ends.first, options);
   for (const RobustFit& end : others)
     num_queries += subset.numPoints() * end.num_evaluations;
-  const bool is_first = others.empty() || costsLess(ends.first, others.front());
-  const std::vector<RobustFit> on_faces =
-      endsOnParallelFaces(leading,
-                          subset,
-                          prior,
-                          is_first ? ends.first : others.front(),
-                          options.estimate.num_threads,
-                          num_queries);
-  others.insert(others.end(), on_faces.begin(), on_faces.end());
+  const auto add = [&](const std::vector<RobustFit>& found) {
+    others.insert(others.end(), found.begin(), found.end());
+    std::stable_sort(others.begin(), others.end(), costsLess);
+  };
+  const auto best = [&] {
+    return others.empty() || costsLess(ends.first, others.front()) ? ends.first
+                                                                   : others.front();
+  };
+  const int num_threads = options.estimate.num_threads;
+  add(endsAtRepeats(
+      subset, prior, best(), weakTranslations(first), num_threads, num_queries));
+  add(endsOnParallelFaces(leading, subset, prior, best(), num_threads, num_queries));
   const double max_squared = std::max(
       max_squared_deviations, squaredDeviations(scorer, prior, ends.first.pose));
   others.erase(std::remove_if(others.begin(),
@@ -397,7 +409,6 @@ endsOfCloud(const SurfaceScorer& leading,
                                        max_squared;
                               }),
                others.end());
-  std::stable_sort(others.begin(), others.end(), costsLess);
   return ends;
 }
 
@@ -480,7 +491,7 @@ findModes(const SurfaceScorer& scorer,
   const CloudEnds ends =
       endsOfCloud(scorer, scorer, prior, first, options, search.num_queries);
   if (!addModesOfTarget(scorer, prior, first, ends.leastCost(), options, search)) {
-    if (ends.others.empty() ||
+    if (ends.others.empty() || first.keep.minCoeff() > 0.0 ||
         !isClearlyWorse(ends.first, ends.others.front(), astray_margin))
       search.modes.push_back({first, 0.0});
     addModes(scorer, nullptr, prior, ends, options, search);

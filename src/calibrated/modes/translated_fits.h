@@ -1,6 +1,6 @@
 /** \file
- * \brief Search for better fits where the source may lie on the wrong one of two
- * parallel faces.
+ * \brief Search for other fits a translation away: on the other one of two parallel
+ * faces, and where the target repeats itself.
  */
 #pragma once
 
@@ -29,5 +29,19 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
                     const RobustFit& from,
                     int num_threads,
                     long& num_queries);
+
+/** \brief Slide the source from \p from along some axes, and follow the places where it
+ * fits better than beside them: those of another pillar, parked car or shelf. Slides
+ * are as long as the hops above.
+ *
+ * \param[in] axes unit vectors, target frame
+ * \return ends that cost at most a fifth more than \p from */
+std::vector<RobustFit>
+endsAtRepeats(const SurfaceScorer& subset,
+              const HeldPrior& prior,
+              const RobustFit& from,
+              const std::vector<Eigen::Vector3d>& axes,
+              int num_threads,
+              long& num_queries);
 
 } // namespace bayesian_icp

@@ -1,4 +1,4 @@
-#include "calibrated/modes/parallel_faces.h"
+#include "calibrated/modes/translated_fits.h"
 
 #include "calibrated/surface/even_choice.h"
 #include "threads/for_each_piece.h"
@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -36,6 +37,13 @@ constexpr double min_share_of_points = 0.01;
 constexpr std::size_t max_ways_tried = 250;
 /** At most so many kinds of ways are found at a pose, and followed from it. */
 constexpr std::size_t max_ways_found = 8, max_ways_followed = 16;
+
+/** The source slides this number of steps along an axis and against it. Of the places
+ * where it fits better than a step nearer or further, so many are followed. */
+constexpr int num_slides = 30;
+constexpr std::size_t max_repeats = 4;
+/** Residuals count at least up to this one. */
+constexpr double least_cap = 5.0;
 
 constexpr int max_rounds = 4, max_fit_steps = 10;
 constexpr double max_relative_cost = 1.2;
@@ -195,14 +203,55 @@ addToKnown(const std::vector<Vector3d>& found, std::vector<Vector3d>& ways)
         ways.push_back(either);
 }
 
+/** Ways to the places along an axis where the source fits better than beside them,
+ * best first. */
+std::vector<Vector3d>
+repeatsAlong(const Vector3d& axis,
+             double step,
+             const SurfaceScorer& scorer,
+             const RobustFit& from,
+             int num_threads)
+{
+  constexpr Index num_costs = 2 * num_slides + 1;
+  const auto wayTo = [&](Index i) {
+    return Vector3d(static_cast<double>(i - num_slides) * step * axis);
+  };
+  // Distances count up to a step, so that no place is missed between two of them.
+  const double cap = std::max(least_cap, step / scorer.noise());
+  Eigen::Array<double, num_costs, 1> costs;
+  forEachPiece(num_costs, num_threads, [&](std::ptrdiff_t i) {
+    const Isometry3d pose = Eigen::Translation3d(wayTo(i)) * from.pose;
+    PatchHints hints;
+    SurfaceScores scores;
+    scorer.evaluate(pose, pose * scorer.centroid(), 1.0, hints, scores);
+    const auto on_patch = scores.residuals.array().abs().min(cap) / cap;
+    costs[i] = (on_patch + scores.off_continuation.array()).mean();
+  });
+  std::vector<Index> repeats;
+  for (Index i = 1; i + 1 < num_costs; ++i)
+    if (std::abs(i - num_slides) > 1 && costs[i] < costs[i - 1] &&
+        costs[i] < costs[i + 1])
+      repeats.push_back(i);
+  std::stable_sort(repeats.begin(), repeats.end(), [&](Index a, Index b) {
+    return costs[a] < costs[b];
+  });
+  repeats.resize(std::min(repeats.size(), max_repeats));
+  std::vector<Vector3d> ways;
+  std::transform(repeats.begin(), repeats.end(), std::back_inserter(ways), wayTo);
+  return ways;
+}
+
+/** \param[in] start_scale as in RobustFitOptions */
 std::vector<RobustFit>
 followHops(const SurfaceScorer& scorer,
            const HeldPrior& prior,
            const Isometry3d& from,
            const std::vector<Vector3d>& ways,
+           double start_scale,
            int num_threads)
 {
   RobustFitOptions fit;
+  fit.start_scale = start_scale;
   fit.max_steps = max_fit_steps;
   fit.tolerance = 0.1 * scorer.noise();
   std::vector<RobustFit> ends(ways.size());
@@ -233,7 +282,8 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
   for (int round = 0; round < max_rounds && is_better; ++round) {
     addToKnown(finder.find(best.pose), ways);
     is_better = false;
-    for (RobustFit& end : followHops(subset, prior, best.pose, ways, num_threads)) {
+    for (RobustFit& end :
+         followHops(subset, prior, best.pose, ways, 0.0, num_threads)) {
       num_queries += subset.numPoints() * end.num_evaluations;
       ends.push_back(std::move(end));
       if (ends.back().cost < best.cost) {
@@ -249,6 +299,30 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
                               return end.cost > max_relative_cost * best.cost;
                             }),
              ends.end());
+  return ends;
+}
+
+std::vector<RobustFit>
+endsAtRepeats(const SurfaceScorer& subset,
+              const HeldPrior& prior,
+              const RobustFit& from,
+              const std::vector<Vector3d>& axes,
+              int num_threads,
+              long& num_queries)
+{
+  const double step = maxLength(subset, prior, from.pose) / num_slides;
+  std::vector<RobustFit> ends;
+  for (const Vector3d& axis : axes) {
+    const std::vector<Vector3d> ways =
+        repeatsAlong(axis, step, subset, from, num_threads);
+    num_queries += (2 * num_slides + 1) * subset.numPoints();
+    for (RobustFit& end : followHops(
+             subset, prior, from.pose, ways, step / subset.noise(), num_threads)) {
+      num_queries += subset.numPoints() * end.num_evaluations;
+      if (end.cost < max_relative_cost * from.cost)
+        ends.push_back(std::move(end));
+    }
+  }
   return ends;
 }
 
