@@ -3,6 +3,8 @@
 #include "summary/estimates.h"
 #include "support/test_support.h"
 
+#include <bayesian_icp/diagnostics.h>
+#include <bayesian_icp/options.h>
 #include <bayesian_icp/summary.h>
 
 #include <gtest/gtest.h>
@@ -381,6 +383,71 @@ TEST(Summary, ChainsOfUnequalLengthAreAllUsedForTheMoments)
   const Summary summary = summarize(chains);
   EXPECT_EQ(summary.num_draws, 1999);
   EXPECT_EQ(summary.status, Status::Ok);
+}
+
+TEST(Summary, ChainsWithFewEffectiveDrawsInTheTailsAreNotMixed)
+{
+  // Independent but in width: one in ten is wide, and these come 25 at a time.
+  Random random(40, 0);
+  ChainSet chains = mixedChains(random);
+  for (auto& chain : chains.chains) {
+    const double mean = chain.draws.col(1).mean();
+    for (Eigen::Index i = 0; i < chain.draws.rows(); ++i)
+      if (i / 25 % 10 == 5)
+        chain.draws(i, 1) = mean + 20.0 * (chain.draws(i, 1) - mean);
+  }
+  const Summary summary = summarize(chains);
+  const auto& coordinate = summary.coordinates[1];
+  ASSERT_LT(coordinate.tail_ess, min_ess);
+  ASSERT_GT(coordinate.bulk_ess, min_ess);
+  ASSERT_LT(coordinate.rhat, max_rhat);
+  EXPECT_EQ(summary.status, Status::NotMixed);
+}
+
+TEST(Doubts, LowerNoStatusButOk)
+{
+  for (const Status status : {Status::Ok,
+                              Status::Doubtful,
+                              Status::NotMixed,
+                              Status::SeveralModes,
+                              Status::Diverged,
+                              Status::Cancelled}) {
+    Summary summary;
+    summary.status = status;
+    summary.message = "a";
+    addDoubts({"b", "c"}, summary);
+    const bool was_ok = status == Status::Ok;
+    EXPECT_EQ(summary.status, was_ok ? Status::Doubtful : status);
+    EXPECT_EQ(summary.message, was_ok ? "a, but b; c" : "a; also b; c");
+  }
+}
+
+TEST(Doubts, OfRoundingThatIsATenthOfTheVarianceOfADistance)
+{
+  // From 512 to 1024 m floats are 2^-14 m apart. Rounding to that has a variance of a
+  // twelfth of its square, in each of two clouds.
+  const double step = std::ldexp(1.0, -14), limit = step * std::sqrt(10.0 / 6.0);
+  for (const Preset preset : {Preset::Paper, Preset::Exact, Preset::Calibrated})
+    for (const double factor : {0.99, 1.01}) {
+      Options options;
+      options.preset = preset;
+      options.paper.scale.measurement_sigma = options.exact.scale.measurement_sigma =
+          1.0;
+      Summary summary;
+      summary.status = Status::Ok;
+      summary.num_chains = 4;
+      if (preset == Preset::Paper)
+        options.paper.scale.measurement_sigma = factor * limit;
+      if (preset == Preset::Exact)
+        options.exact.scale.measurement_sigma = factor * limit;
+      if (preset == Preset::Calibrated) {
+        summary.data.is_available = true;
+        summary.data.noise_scale = factor * limit;
+      }
+      doubtRounding(700.0, options, summary);
+      EXPECT_EQ(summary.status, factor < 1.0 ? Status::Doubtful : Status::Ok)
+          << toString(preset) << ' ' << factor;
+    }
 }
 
 } // namespace
