@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+
 #include <stdexcept>
 
 using namespace bayesian_icp;
@@ -51,7 +53,7 @@ nextStep(const Track& track, StepKind kind)
     const double ahead = step.scan - step.edge.target;
     step.edge.pose.mean << 0.1 * ahead, 0.0, 0.01, 0.0, 0.001, 0.002 * ahead;
     step.edge.pose.covariance = 1e-6 * Matrix6d::Identity();
-    step.edge.num_unmeasured = 0;
+    step.edge.num_unmeasured = step.scan % 2;
     step.more_edges.assign(step.scan % 2, step.edge);
   }
   return step;
@@ -121,6 +123,20 @@ TEST(Track, MakesAMapOfTheLastScans)
   const Matrix6d covariance = track.targetCovariance(Eigen::Matrix4d::Identity());
   EXPECT_NEAR(covariance(0, 0), 2.0 / 3.0 * 2e-6, 1e-8);
   EXPECT_GT(covariance(1, 1), covariance(0, 0));
+  // A scan 0.1 or 0.2 m behind that is turned to the left moves the map's origin left.
+  EXPECT_NEAR(covariance(1, 5), (0.1 + 0.2) / 3.0 * 1e-6, 1e-8);
+  // A map that is out of place by exp(xi) moves a scan by T^-1 exp(xi) T.
+  const Eigen::Matrix4d T = matrixOf({3.0, -2.0, 1.0, 0.3, -0.2, 0.7});
+  constexpr double step = 1e-5;
+  Matrix6d moved;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d xi = step * Vector6d::Unit(k);
+    moved.col(k) =
+        (logSE3(T.inverse() * expSE3(xi) * T) - logSE3(T.inverse() * expSE3(-xi) * T)) /
+        (2.0 * step);
+  }
+  EXPECT_TRUE(
+      track.targetCovariance(T).isApprox(moved * covariance * moved.transpose(), 1e-7));
 }
 
 TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
@@ -139,6 +155,8 @@ TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
     again.take(readTrackLine(trackLine(request, track), request, again.size()));
   }
   EXPECT_EQ(track.target(), again.target());
+  EXPECT_GT(track.numUnmeasured(), 0u);
+  EXPECT_EQ(track.numUnmeasured(), again.numUnmeasured());
   for (int k = 0; k < track.size(); ++k) {
     EXPECT_EQ(track.poses()[std::size_t(k)].mean, again.poses()[std::size_t(k)].mean);
     EXPECT_EQ(track.poses()[std::size_t(k)].covariance,
@@ -160,6 +178,9 @@ TEST(Track, RefusesLinesOfAnotherOne)
   EXPECT_THROW(readTrackLine(line, request, 2), std::runtime_error);
   TrackRequest other = request;
   other.acceleration = 1.0;
+  EXPECT_THROW(readTrackLine(line, other, 1), std::runtime_error);
+  other = request;
+  other.angular_acceleration = 1.0;
   EXPECT_THROW(readTrackLine(line, other, 1), std::runtime_error);
   other = request;
   other.times[1] = 150'000'000;
