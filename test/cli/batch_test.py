@@ -224,6 +224,7 @@ class BatchRefused(BatchTest):
             ([manifest, "more"], "'more'"),
             ([manifest, "--sigma", "x"], "--sigma"),
             ([manifest, "--suggested-prior", "--prior-variance", "1"], "exclude"),
+            ([manifest, "--suggested-prior", "--prior-frame", "origin"], "exclude"),
         ):
             with self.subTest(words=words):
                 self.assert_refused(2, run_batch(*words), *parts)
@@ -313,6 +314,12 @@ class BatchResume(BatchTest):
         other = run_batch(manifest, *FAST, "--sigma", 2, "--results", self.results)
         first = json.loads(text.splitlines()[0])["name"]
         self.assert_refused(3, other, self.results, f"'{first}'", "other settings")
+        self.assertEqual(self.results.read_bytes(), text)
+        self.file("T.txt", "1 0 0 0.01\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
+        pairs = json.loads(manifest.read_text())
+        guessed = self.manifest([{**pair, "guess": "T.txt"} for pair in pairs])
+        other = run_batch(guessed, *FAST, "--results", self.results)
+        self.assert_refused(3, other, self.results, f"'{first}'", "other settings, files")
         self.assertEqual(self.results.read_bytes(), text)
         self.results.write_text("x,y\n1,2\n")
         other = run_batch(manifest, *FAST, "--results", self.results)
