@@ -1,5 +1,5 @@
-#include "enumerator_names.h"
-#include "option_checker.h"
+#include "options/enumerator_names.h"
+#include "options/option_checker.h"
 
 #include <bayesian_icp/options.h>
 

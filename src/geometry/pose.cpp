@@ -1,4 +1,4 @@
-#include "enumerator_names.h"
+#include "options/enumerator_names.h"
 
 #include <bayesian_icp/pose.h>
 

@@ -1,5 +1,5 @@
-#include "../option_checker.h"
-#include "enumerator_names.h"
+#include "options/enumerator_names.h"
+#include "options/option_checker.h"
 #include "paper/matched_batch.h"
 
 #include <bayesian_icp/stochastic_gradient_icp.h>

@@ -1,4 +1,4 @@
-#include "enumerator_names.h"
+#include "options/enumerator_names.h"
 #include "summary/plain_text.h"
 
 #include <bayesian_icp/data_report.h>

@@ -16,16 +16,17 @@ BELOW_EVALUATION = ("include", "src", "apps", "benchmark")
 # What a room of src/ may include. Files in src/ itself are above all rooms.
 ROOMS = {
     "algebra": [],
+    "options": [],
     "threads": [],
-    "geometry": ["algebra"],
+    "geometry": ["algebra", "options"],
     "search": ["threads"],
     "sampler": ["algebra", "threads"],
-    "summary": ["sampler"],
+    "summary": ["options", "sampler"],
     "exports": ["algebra", "geometry"],
     "paper": ["sampler"],
     "exact": ["algebra", "sampler", "search", "summary"],
     "calibrated": ["algebra", "geometry", "sampler", "search", "summary", "threads"],
-    "sgd_icp": ["paper"],
+    "sgd_icp": ["options", "paper"],
     "pcl": [],
 }
 
