@@ -241,14 +241,16 @@ repeatsAlong(const Vector3d& axis,
   return ways;
 }
 
-/** \param[in] start_scale as in RobustFitOptions */
+/** \param[in] start_scale as in RobustFitOptions
+ * \param[in,out] num_queries is increased by the queries of the fits */
 std::vector<RobustFit>
 followHops(const SurfaceScorer& scorer,
            const HeldPrior& prior,
            const Isometry3d& from,
            const std::vector<Vector3d>& ways,
            double start_scale,
-           int num_threads)
+           int num_threads,
+           long& num_queries)
 {
   RobustFitOptions fit;
   fit.start_scale = start_scale;
@@ -260,6 +262,8 @@ followHops(const SurfaceScorer& scorer,
     const auto way = static_cast<std::size_t>(i);
     ends[way] = fitRobustly(scorer, prior, Eigen::Translation3d(ways[way]) * from, fit);
   });
+  for (const RobustFit& end : ends)
+    num_queries += scorer.numPoints() * end.num_evaluations;
   return ends;
 }
 
@@ -283,8 +287,7 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
     addToKnown(finder.find(best.pose), ways);
     is_better = false;
     for (RobustFit& end :
-         followHops(subset, prior, best.pose, ways, 0.0, num_threads)) {
-      num_queries += subset.numPoints() * end.num_evaluations;
+         followHops(subset, prior, best.pose, ways, 0.0, num_threads, num_queries)) {
       ends.push_back(std::move(end));
       if (ends.back().cost < best.cost) {
         best = ends.back();
@@ -316,12 +319,15 @@ endsAtRepeats(const SurfaceScorer& subset,
     const std::vector<Vector3d> ways =
         repeatsAlong(axis, step, subset, from, num_threads);
     num_queries += (2 * num_slides + 1) * subset.numPoints();
-    for (RobustFit& end : followHops(
-             subset, prior, from.pose, ways, step / subset.noise(), num_threads)) {
-      num_queries += subset.numPoints() * end.num_evaluations;
+    for (RobustFit& end : followHops(subset,
+                                     prior,
+                                     from.pose,
+                                     ways,
+                                     step / subset.noise(),
+                                     num_threads,
+                                     num_queries))
       if (end.cost < max_relative_cost * from.cost)
         ends.push_back(std::move(end));
-    }
   }
   return ends;
 }
