@@ -181,7 +181,8 @@ double
 evennessOf(const PointRows& local)
 {
   const Eigen::Index num_points = local.rows();
-  const auto x = local.col(0).array(), y = local.col(1).array();
+  Eigen::ArrayXd x = local.col(0);
+  const auto y = local.col(1).array();
   // Of an ellipse that is filled evenly.
   constexpr double pi = 3.14159265358979323846;
   const double area =
@@ -191,13 +192,10 @@ evennessOf(const PointRows& local)
   double sum = 0.0;
   int count = 0;
   for (Eigen::Index i = 0; i < num_points; i += step, ++count) {
-    const auto nearestIn = [&](Eigen::Index begin, Eigen::Index size) {
-      return size > 0 ? ((x.segment(begin, size) - x[i]).square() +
-                         (y.segment(begin, size) - y[i]).square())
-                            .minCoeff()
-                      : std::numeric_limits<double>::infinity();
-    };
-    sum += std::sqrt(std::min(nearestIn(0, i), nearestIn(i + 1, num_points - i - 1)));
+    const double here = x[i];
+    x[i] = std::numeric_limits<double>::infinity(); // not a neighbour of itself
+    sum += std::sqrt(((x - here).square() + (y - y[i]).square()).minCoeff());
+    x[i] = here;
   }
   return sum / count / (0.5 * std::sqrt(area / static_cast<double>(num_points)));
 }
@@ -386,14 +384,14 @@ fitQuadric(const PointRows& local,
   const double slope_variance =
       num_points *
       std::max(quadric.varianceOf(1), shape.is_curve ? 0.0 : quadric.varianceOf(2));
-  // The tests that cost as much as the fit are last.
+  // The dearest tests are last.
   const bool is_quadric =
       slope_variance < max_slope_variance &&
       patch.radius > options.min_radius_to_noise * sigma &&
+      (isExact(patch.radius, sigma) || local.rows() >= shape.min_points) &&
+      (shape.is_curve || evennessOf(local) > min_evenness) &&
       (isExact(patch.radius, sigma) ||
-       (local.rows() >= shape.min_points &&
-        misfit(local, shape, patch.radius, squared_heights, rss) < shape.max_misfit)) &&
-      (shape.is_curve || evennessOf(local) > min_evenness);
+       misfit(local, shape, patch.radius, squared_heights, rss) < shape.max_misfit);
   if (!is_quadric)
     return;
   const Vector6d solution = quadric.solution();
