@@ -252,45 +252,55 @@ private:
   static constexpr int num_product_terms = placeOfTerm(2 * degree + 1, 0);
   using ProductTerms = Eigen::Matrix<double, num_product_terms, 1>;
 
-  /** Products of two terms: those up to twice the degree. Points are taken a few at a
+  /** Products of two terms: those up to twice the degree. Points are taken a block at a
    * time, so that the loops over them are vectorised. */
   static ProductTerms
   sumOfProducts(const PointRows& local, double radius, Terms& moments)
   {
-    constexpr Eigen::Index num_lanes = 4;
-    using Lanes = Eigen::Array<double, num_lanes, 1>;
-    std::array<Lanes, num_product_terms> terms, sums;
-    std::array<Lanes, num_terms> moment_sums;
-    sums.fill(Lanes::Zero());
-    moment_sums.fill(Lanes::Zero());
+    constexpr Eigen::Index block_size = 32;
+    using Block = Eigen::Array<double, block_size, 1>;
+    Eigen::Array<double, num_lanes, num_product_terms> sums;
+    Eigen::Array<double, num_lanes, num_terms> moment_sums;
+    sums.setZero();
+    moment_sums.setZero();
     const double scale = 1.0 / radius;
-    for (Eigen::Index begin = 0; begin < local.rows(); begin += num_lanes) {
-      const Eigen::Index size = std::min(num_lanes, local.rows() - begin);
-      Lanes z = Lanes::Zero();
-      if (size < num_lanes)
-        terms[0] = terms[1] = terms[2] = z;
-      terms[0].head(size).setOnes();
-      terms[1].head(size) = local.col(0).segment(begin, size) * scale;
-      terms[2].head(size) = local.col(1).segment(begin, size) * scale;
+    for (Eigen::Index begin = 0; begin < local.rows(); begin += block_size) {
+      const Eigen::Index size = std::min(block_size, local.rows() - begin);
+      Block x = Block::Zero(), y = x, z = x;
+      x.head(size) = local.col(0).segment(begin, size) * scale;
+      y.head(size) = local.col(1).segment(begin, size) * scale;
       z.head(size) = local.col(2).segment(begin, size);
-      const Lanes x = terms[1], y = terms[2];
-      for (int d = 2; d <= 2 * degree; ++d) {
-        const int place = placeOfTerm(d, 0), lower = placeOfTerm(d - 1, 0);
+      // The terms of one degree.
+      std::array<Block, 2 * degree + 1> terms;
+      terms[0].setZero();
+      terms[0].head(size).setOnes();
+      for (int d = 0; d <= 2 * degree; ++d) {
+        if (d > 0)
+          at(terms, d) = y * at(terms, d - 1);
         for (int k = 0; k < d; ++k)
-          at(terms, place + k) = x * at(terms, lower + k);
-        at(terms, place + d) = y * at(terms, place - 1);
+          at(terms, k) *= x;
+        for (int k = 0; k <= d; ++k) {
+          addLanes(at(terms, k), sums.col(placeOfTerm(d, k)));
+          if (d <= degree)
+            addLanes(at(terms, k) * z, moment_sums.col(placeOfTerm(d, k)));
+        }
       }
-      for (int k = 0; k < num_product_terms; ++k)
-        at(sums, k) += at(terms, k);
-      for (int k = 0; k < num_terms; ++k)
-        at(moment_sums, k) += at(terms, k) * z;
     }
-    for (int k = 0; k < num_terms; ++k)
-      moments[k] = at(moment_sums, k).sum();
-    ProductTerms totals;
-    for (int k = 0; k < num_product_terms; ++k)
-      totals[k] = at(sums, k).sum();
-    return totals;
+    moments = moment_sums.colwise().sum().transpose();
+    return sums.colwise().sum().transpose();
+  }
+
+  static constexpr Eigen::Index num_lanes = 4;
+
+  /** Add every fourth number. */
+  template <typename Numbers, typename Sums>
+  static void
+  addLanes(const Numbers& numbers, Sums&& sums)
+  {
+    Eigen::Array<double, num_lanes, 1> lanes = sums;
+    for (Eigen::Index i = 0; i < numbers.size(); i += num_lanes)
+      lanes += numbers.template segment<num_lanes>(i);
+    sums = lanes;
   }
 
   template <typename Array>
