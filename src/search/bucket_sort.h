@@ -10,14 +10,12 @@
 
 namespace bayesian_icp {
 
-/** \brief Sort the \p count least of \p keys to the front of \p sorted: into buckets of
- * equal width, and then those.
+/** \brief Sort \p keys into buckets of equal width, and then those.
  * \param[in] placeOf from a key to a float or double in [0, 1], in the order of the
- * keys \param[out] sorted all keys \param[in,out] buckets a buffer */
+ * keys \param[out] sorted the keys \param[in,out] buckets a buffer */
 template <typename Key, typename Place>
 void
 sortInBuckets(const std::vector<Key>& keys,
-              std::size_t count,
               const Place& placeOf,
               std::vector<Key>& sorted,
               std::vector<std::uint32_t>& buckets)
@@ -39,16 +37,13 @@ sortInBuckets(const std::vector<Key>& keys,
   sorted.resize(keys.size());
   for (const Key& key : keys)
     sorted[--buckets[bucketOf(key)]] = key; // ... and, in the end, begins
-  const auto begin = sorted.begin();
-  for (std::size_t bucket = 0; bucket < num_buckets; ++bucket) {
-    const std::size_t first = buckets[bucket];
-    if (first >= count)
-      break;
-    const std::size_t last =
-        bucket + 1 < num_buckets ? buckets[bucket + 1] : sorted.size();
-    if (last - first > 1)
-      std::sort(begin + static_cast<std::ptrdiff_t>(first),
-                begin + static_cast<std::ptrdiff_t>(last));
+  // Insertion moves keys within their buckets only.
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const Key key = sorted[i];
+    std::size_t place = i;
+    for (; place > 0 && key < sorted[place - 1]; --place)
+      sorted[place] = sorted[place - 1];
+    sorted[place] = key;
   }
 }
 

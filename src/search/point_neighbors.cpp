@@ -21,13 +21,11 @@ constexpr float no_limit = std::numeric_limits<float>::max();
 /** Radius of the ball that is searched first, in that of the last one. */
 constexpr float usual_growth = 1.15f;
 
-/** Sort the \p count nearest of the keys to the front. Points of a
- * surface are spread evenly over the squared distance. */
+/** Points of a surface are spread evenly over the squared distance. */
 void
-sortNearest(const std::vector<std::uint64_t>& keys,
-            std::size_t count,
-            std::vector<std::uint64_t>& sorted,
-            std::vector<std::uint32_t>& buckets)
+sortByDistance(const std::vector<std::uint64_t>& keys,
+               std::vector<std::uint64_t>& sorted,
+               std::vector<std::uint32_t>& buckets)
 {
   float furthest = 0.f;
   for (const auto key : keys)
@@ -37,7 +35,7 @@ sortNearest(const std::vector<std::uint64_t>& keys,
   const auto placeOf = [&](std::uint64_t key) {
     return is_scaled ? std::min(squaredDistanceOf(key) * scale, 1.f) : 0.f;
   };
-  sortInBuckets(keys, count, placeOf, sorted, buckets);
+  sortInBuckets(keys, placeOf, sorted, buckets);
 }
 
 } // namespace
@@ -104,7 +102,7 @@ PointNeighbors::find(const Vector3f& query, std::size_t count, NeighborList& lis
     if (gather(query, count, std::min(limit, no_limit), list.found_) >= count)
       break;
   count = std::min(count, list.found_.size());
-  sortNearest(list.found_, count, list.sorted_, list.buckets_);
+  sortByDistance(list.found_, list.sorted_, list.buckets_);
   list.indices.resize(count);
   list.squared_distances.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -128,14 +128,14 @@ principalFrame(const PointRows& points, const Vector3d* plane_normal)
 double
 aspectOf(const PointRows& local)
 {
-  const Eigen::ArrayXd x = local.col(0).array() - local.col(0).mean();
+  const auto x = local.col(0).array() - local.col(0).mean();
   const double spread = x.square().sum();
   if (!(spread > 0.0))
     return 0.0;
   // Second axis and parabola without what a line explains; the axes are uncorrelated.
-  const Eigen::ArrayXd y = local.col(1).array() - local.col(1).mean();
-  Eigen::ArrayXd bend = x.square() - x.square().mean();
-  bend -= x * ((bend * x).sum() / spread);
+  const auto y = local.col(1).array() - local.col(1).mean();
+  const auto parabola = x.square() - x.square().mean();
+  const auto bend = parabola - x * ((parabola * x).sum() / spread);
   const double size = bend.square().sum();
   const double along_bend = (bend * y).sum();
   const double explained = size > 0.0 ? along_bend * along_bend / size : 0.0;
@@ -159,7 +159,6 @@ successionOf(const PointRows& local, PatchFitWorkspace& workspace)
   const auto& ordered = workspace.ordered_places;
   sortInBuckets(
       places,
-      places.size(),
       [&](const auto& place) {
         return std::isfinite(scale) ? std::min((place.first - low) * scale, 1.0) : 0.0;
       },
