@@ -443,9 +443,9 @@ evenPoints(const Matrix3Xd& points,
       max_part_used *
       static_cast<double>(std::min(used.size(), model.patches().size())));
   max_points = std::min(max_points, std::max(num_first, part));
-  const Eigen::Vector3d centroid = centroidOf(points, used);
+  const Eigen::Matrix3Xf relative = relativeTo(centroidOf(points, used), points, used);
   const auto choose = [&](Index count) {
-    return evenChoice(relativeTo(centroid, points, used), count, ChoiceStream::Points);
+    return evenChoice(relative, count, ChoiceStream::Points);
   };
   Random random(seed, order_stream);
   std::vector<Index> columns = choose(std::min(max_points, num_first));

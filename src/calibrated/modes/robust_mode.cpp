@@ -50,16 +50,17 @@ reweighted(const SurfaceScores& linear, const Vector6d& xi, double tau)
   for (Index i = 0; i < linear.residuals.size(); ++i) {
     if (!linear.has_patch[static_cast<std::size_t>(i)])
       continue;
-    const auto jacobian = linear.jacobians.col(i);
+    const Vector6d jacobian = linear.jacobians.col(i);
     const double residual = linear.residuals[i] + jacobian.dot(xi);
     const double weight = tukeyWeight(residual / (SurfaceScorer::tukey_constant * tau));
     if (weight == 0.0)
       continue;
-    equations.information.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
+    const Vector6d weighted = weight * jacobian;
+    equations.information += weighted.lazyProduct(jacobian.transpose());
     equations.gradient += weight * residual * jacobian;
   }
   equations.information =
-      Matrix6d(equations.information.selfadjointView<Eigen::Lower>());
+      Matrix6d(equations.information.selfadjointView<Eigen::Upper>()); // symmetric
   return equations;
 }
 

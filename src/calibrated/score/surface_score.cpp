@@ -389,10 +389,9 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
     ++scores.num_active;
     scores.num_active_of_source += i < source_points_.cols();
     scores.total += scores.scores.col(i);
-    scores.information.selfadjointView<Eigen::Lower>().rankUpdate(
-        scores.jacobians.col(i));
+    const Vector6d jacobian = scores.jacobians.col(i);
+    scores.information += jacobian.lazyProduct(jacobian.transpose());
   }
-  scores.information = Matrix6d(scores.information.selfadjointView<Eigen::Lower>());
 }
 
 int

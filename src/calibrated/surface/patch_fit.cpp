@@ -393,7 +393,7 @@ fitQuadric(const PointRows& local,
   const double slope_variance =
       num_points *
       std::max(quadric.varianceOf(1), shape.is_curve ? 0.0 : quadric.varianceOf(2));
-  // The dearest tests are last.
+  // The costliest tests are last.
   const bool is_quadric =
       slope_variance < max_slope_variance &&
       patch.radius > options.min_radius_to_noise * sigma &&
