@@ -25,7 +25,6 @@ from ._core import (
     Direction,
     ExactOptions,
     LikelihoodScale,
-    Mode,
     Options,
     PaperOptions,
     PriorOptions,
@@ -44,7 +43,7 @@ from ._core import (
     pose_from_matrix,
 )
 from ._draws import convert_covariance, ess, mcse, rhat
-from ._result import COORDINATES, Measurement, Result
+from ._result import COORDINATES, Measurement, Mode, Prior, Result
 
 if TYPE_CHECKING:
     from ._files import read_pcd, read_ply
@@ -53,7 +52,7 @@ if TYPE_CHECKING:
 __all__ = [
     "COORDINATES", "CalibratedOptions", "ChainOptions", "CoordinateSummary", "DataReport",
     "Direction", "ExactOptions", "LikelihoodScale", "Measurement", "Mode", "Options",
-    "PaperOptions", "PriorOptions", "ResidualOptions", "Result", "ScanPair", "SgldOptions",
+    "PaperOptions", "Prior", "PriorOptions", "ResidualOptions", "Result", "ScanPair", "SgldOptions",
     "Target", "align", "convert_covariance", "covariance_about", "ess", "exp_se3",
     "g2o_covariance", "gtsam_covariance", "log_se3", "matrix_from_pose", "mcse", "mean_pose",
     "pose_error", "pose_from_error", "pose_from_matrix", "read_pcd", "read_ply", "rhat",

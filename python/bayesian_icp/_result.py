@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,8 @@ COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 class Pose:
     """Mean and covariance of a pose that maps source points into the target frame."""
 
-    _estimate: _core.Estimate | _core.PoseMeasurement
+    def __init__(self, pose: _core.PoseEstimate) -> None:
+        self._pose = pose
 
     @property
     def T_target_source(self) -> Array:
@@ -30,7 +32,7 @@ class Pose:
     @property
     def mean(self) -> Array:
         """(6,) the same as (x, y, z, roll, pitch, yaw) [m, rad]."""
-        return self._estimate.mean
+        return self._pose.mean
 
     def covariance(self, convention: str = "parameters") -> Array:
         """Covariance about the mean, translation first [m, rad].
@@ -52,13 +54,13 @@ class Pose:
         ValueError
             If there is no such convention.
         """
-        return self._estimate.covariance(convention)
+        return self._pose.covariance(convention)
 
     @property
     def status(self) -> str:
         """Whether to trust it: "ok", or what is wrong, as "doubtful", "not_mixed",
         "several_modes", "diverged", "interrupted" or "too_few_correspondences"."""
-        return self._estimate.status
+        return self._pose.status
 
     def to_ros(
         self, *, frame_id: str = "target", timestamp_ns: int = 0, accept_unreliable: bool = False
@@ -79,7 +81,7 @@ class Pose:
         ValueError
             If the posterior cannot be exported, or a name or time is bad.
         """
-        return _core.ros(self._estimate, _exports(target_frame=frame_id, timestamp_ns=timestamp_ns,
+        return _core.ros(self._pose, _exports(target_frame=frame_id, timestamp_ns=timestamp_ns,
                                                   accept_unreliable=accept_unreliable))
 
     def to_g2o(self, *, target_vertex: int = 0, source_vertex: int = 1, accept_unreliable: bool = False) -> str:
@@ -90,7 +92,7 @@ class Pose:
         ValueError
             If the posterior cannot be exported, or its covariance not be inverted.
         """
-        return _core.g2o(self._estimate, _exports(target_vertex=target_vertex, source_vertex=source_vertex,
+        return _core.g2o(self._pose, _exports(target_vertex=target_vertex, source_vertex=source_vertex,
                                                   accept_unreliable=accept_unreliable))
 
     def to_gtsam(self, *, accept_unreliable: bool = False) -> str:
@@ -102,7 +104,7 @@ class Pose:
         ValueError
             If the posterior cannot be exported.
         """
-        return _core.gtsam(self._estimate, _exports(accept_unreliable=accept_unreliable))
+        return _core.gtsam(self._pose, _exports(accept_unreliable=accept_unreliable))
 
     def to_tum(self, *, timestamp_ns: int = 0, accept_unreliable: bool = False) -> str:
         """One line of a TUM trajectory: timestamp x y z qx qy qz qw.
@@ -112,7 +114,7 @@ class Pose:
         ValueError
             If the posterior cannot be exported.
         """
-        return _core.tum(self._estimate, _exports(timestamp_ns=timestamp_ns,
+        return _core.tum(self._pose, _exports(timestamp_ns=timestamp_ns,
                                                   accept_unreliable=accept_unreliable))
 
     def __repr__(self) -> str:
@@ -129,23 +131,73 @@ class Pose:
 class Measurement(Pose):
     """What the clouds alone say about the pose: a posterior without its prior.
 
-    Made by `Result.without_prior`.
+    Made by `Result.without_prior` and `Mode.without_prior`.
     """
 
-    def __init__(self, measurement: _core.PoseMeasurement) -> None:
-        self._estimate: _core.PoseMeasurement = measurement
-
-    @property
-    def num_unmeasured(self) -> int:
+    def __init__(self, pose: _core.PoseEstimate, num_unmeasured: int) -> None:
+        super().__init__(pose)
+        self.num_unmeasured = num_unmeasured
         """Directions that the clouds do not see, 0 to 6; their deviation is 100 times
         the prior's."""
-        return self._estimate.num_unmeasured
 
     def _remark(self) -> str:
         return f", {self.num_unmeasured} of 6 directions unmeasured"
 
 
-class Result(Pose):
+class Prior(Pose):
+    """The prior that was sampled with, as a Gaussian about its mean T_target_source.
+
+    Made by `Result.prior`. Without a posterior all numbers but the variance are NaN.
+    """
+
+    def __init__(self, prior: _core.Prior) -> None:
+        super().__init__(prior.estimate)
+        self.variance = prior.variance
+        """(6,) variances of x, y, z [m^2] of the reference point, and of roll, pitch,
+        yaw [rad^2]."""
+        self.reference_point = prior.reference_point
+        """(3,) the point that x, y, z of the variance are about, in the source frame [m]:
+        its origin or the centroid of its points. `covariance` is about the origin."""
+
+
+class _Posterior(Pose):
+    """A pose with the prior that is in it."""
+
+    def __init__(self, pose: _core.PoseEstimate, prior: _core.Prior) -> None:
+        super().__init__(pose)
+        self._prior = prior
+
+    @property
+    def prior(self) -> Prior:
+        """The prior that is in mean and covariance, T_target_source as they are."""
+        return Prior(self._prior)
+
+    def without_prior(self) -> Measurement:
+        """Remove the prior, for filters and pose graphs that know it already."""
+        return Measurement(*_core.without_prior(self._pose, self._prior))
+
+
+class Mode(_Posterior):
+    """One mode of a posterior: mean and covariances are those of its draws.
+
+    Made by `Result.modes`. If the result has the status "several_modes", the mode has
+    "doubtful", so it can be exported: it is you who chose it.
+    """
+
+    def __init__(
+        self, pose: _core.PoseEstimate, prior: _core.Prior, weight: float, chains: list[int]
+    ) -> None:
+        super().__init__(pose, prior)
+        self.weight = weight
+        """Share of the posterior, 0 to 1, good to a factor of a few."""
+        self.chains = chains
+        """Indices of its chains, for `Result.chain`."""
+
+    def _remark(self) -> str:
+        return f", weight {self.weight:.2g}"
+
+
+class Result(_Posterior):
     """Posterior of the pose that maps source points into the target frame.
 
     Made by `align`. The pose is the posterior mean, the bi-invariant mean of the draws on
@@ -154,7 +206,8 @@ class Result(Pose):
     """
 
     def __init__(self, estimate: _core.Estimate, options: _core.Options, guess: Array, seconds: float) -> None:
-        self._estimate: _core.Estimate = estimate
+        super().__init__(estimate.posterior, estimate.prior)
+        self._estimate = estimate
         self._options = options
         self._guess = guess
         self.seconds = seconds
@@ -190,10 +243,11 @@ class Result(Pose):
         """All that preset calibrated says about the clouds: noise, support, warnings."""
         return self._estimate.data
 
-    @property
-    def modes(self) -> list[_core.Mode]:
-        """The modes, heaviest first; empty if there is one, or nobody looked."""
-        return self._estimate.modes
+    @functools.cached_property
+    def modes(self) -> list[Mode]:
+        """The modes, heaviest first. Empty if preset calibrated found one alone, and for
+        preset paper, which does not look for them."""
+        return [Mode(pose, self._prior, weight, chains) for pose, weight, chains in self._estimate.modes]
 
     @property
     def coordinates(self) -> dict[str, _core.CoordinateSummary]:
@@ -206,13 +260,15 @@ class Result(Pose):
         return self._estimate.num_diverged_chains
 
     @property
+    def init_T_target_source(self) -> Array:
+        """(4, 4) initial guess of the run, which maps source points into the target
+        frame [m]: the identity unless it was given."""
+        return _core.matrix_from_pose(self._guess)
+
+    @property
     def options(self) -> _core.Options:
         """A copy of the options of the run."""
         return _core.Options(self._options)
-
-    def without_prior(self) -> Measurement:
-        """Remove the prior, for filters and pose graphs that know it already."""
-        return Measurement(self._estimate.without_prior())
 
     def to_arviz(self) -> dict[str, dict[str, Array]]:
         """Groups and variables for ``arviz.from_dict``: ``from_dict(d)`` from ArviZ 1.0 on,

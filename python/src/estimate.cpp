@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <tuple>
+#include <utility>
 
 namespace py = pybind11;
 
@@ -93,6 +95,36 @@ samplesOf(const PosteriorEstimate& estimate)
   return samples;
 }
 
+/** A failed estimate has no prior. */
+PoseEstimate
+gaussianOf(const Prior& prior)
+{
+  return prior.mean().allFinite() ? estimateOf(prior) : PoseEstimate();
+}
+
+/** Posterior, weight and chains of each mode. The covariances are those of its draws;
+ * a mode that is chosen among several is doubtful. */
+std::vector<std::tuple<PoseEstimate, double, std::vector<int>>>
+modesOf(const PosteriorEstimate& estimate)
+{
+  std::vector<std::tuple<PoseEstimate, double, std::vector<int>>> modes;
+  const Status status = estimate.summary.status;
+  for (const Mode& mode : estimate.summary.modes) {
+    std::vector<Chain> chains;
+    for (const int index : mode.chains)
+      chains.push_back(estimate.chains[static_cast<std::size_t>(index)]);
+    const PoseMatrix draws = pooledDraws(chains);
+    PoseEstimate posterior;
+    posterior.status = status == Status::SeveralModes ? Status::Doubtful : status;
+    posterior.mean = mode.mean;
+    for (const auto convention : covariance_conventions)
+      posterior.covariances[static_cast<std::size_t>(convention)] =
+          covarianceAbout(mode.mean, draws, convention);
+    modes.emplace_back(posterior, mode.weight, mode.chains);
+  }
+  return modes;
+}
+
 std::vector<std::string>
 flagsOfReport(const DataReport& report)
 {
@@ -126,11 +158,6 @@ bindSummary(py::module_& module)
       .def_readonly("bulk_ess", &C::bulk_ess)
       .def_readonly("tail_ess", &C::tail_ess)
       .def_readonly("mcse", &C::mcse);
-  py::class_<Mode>(module, "Mode", "One mode of the posterior.")
-      .def_readonly("weight", &Mode::weight)
-      .def_readonly("mean", &Mode::mean)
-      .def_readonly("covariance", &Mode::covariance)
-      .def_readonly("chains", &Mode::chains);
   using D = DataDirection;
   py::class_<D>(module, "Direction", "One motion and how well it is known.")
       .def_readonly("twist", &D::twist, "(6,) about the moved centroid [1, rad/m].")
@@ -189,29 +216,33 @@ bindEstimate(py::module_& module)
                std::to_string(target.prepared.points().cols()) + " points>";
       });
 
-  using M = PoseMeasurement;
-  py::class_<M>(module, "PoseMeasurement", "A posterior without its prior.")
-      .def_property_readonly("status", [](const M& m) { return m.estimate.status; })
-      .def_property_readonly("mean", [](const M& m) { return m.estimate.mean; })
-      .def(
-          "covariance",
-          [](const M& m, CovarianceConvention convention) {
-            return m.estimate.covariance(convention);
-          },
-          py::arg("convention"))
-      .def_readonly("num_unmeasured", &M::num_unmeasured);
+  using P = PoseEstimate;
+  py::class_<P>(module, "PoseEstimate", "Mean and covariances of a pose.")
+      .def_readonly("status", &P::status)
+      .def_readonly("mean", &P::mean, py::return_value_policy::copy)
+      .def("covariance", &P::covariance, py::arg("convention"));
+  py::class_<Prior>(module, "Prior", "The prior that was sampled with.")
+      .def_property_readonly("estimate", &gaussianOf)
+      .def_property_readonly("variance",
+                             [](const Prior& p) { return Vector6d(p.variance()); })
+      .def_property_readonly("reference_point", [](const Prior& p) {
+        return Eigen::Vector3d(p.referencePoint());
+      });
+  module.def(
+      "without_prior",
+      [](const P& posterior, const Prior& prior) {
+        const PoseMeasurement measurement = withoutPrior(posterior, prior);
+        return std::pair(measurement.estimate, measurement.num_unmeasured);
+      },
+      py::arg("posterior"),
+      py::arg("prior"));
 
   using E = PosteriorEstimate;
   py::class_<E>(module, "Estimate", "Draws and their summary.")
-      .def_property_readonly("status", [](const E& e) { return e.summary.status; })
+      .def_property_readonly("posterior",
+                             [](const E& e) { return PoseEstimate(e.summary); })
+      .def_readonly("prior", &E::prior)
       .def_property_readonly("message", [](const E& e) { return e.summary.message; })
-      .def_property_readonly("mean", [](const E& e) { return e.summary.mean; })
-      .def(
-          "covariance",
-          [](const E& e, CovarianceConvention convention) {
-            return e.summary.covariance(convention);
-          },
-          py::arg("convention"))
       .def_property_readonly("coordinates",
                              [](const E& e) { return e.summary.coordinates; })
       .def_property_readonly("num_chains",
@@ -220,15 +251,13 @@ bindEstimate(py::module_& module)
                              [](const E& e) { return e.summary.num_diverged_chains; })
       .def_property_readonly("num_draws",
                              [](const E& e) { return e.summary.num_draws; })
-      .def_property_readonly("modes", [](const E& e) { return e.summary.modes; })
+      .def_property_readonly("modes", &modesOf)
       .def_property_readonly("data", [](const E& e) { return e.summary.data; })
       .def_property_readonly("samples", &samplesOf)
       .def(
           "chain",
           [](const E& e, std::size_t chain) { return e.chains.at(chain).draws; },
-          py::arg("index"))
-      .def("without_prior",
-           [](const E& e) { return withoutPrior(PoseEstimate(e.summary), e.prior); });
+          py::arg("index"));
   module.def("estimate",
              &estimate,
              py::arg("source"),

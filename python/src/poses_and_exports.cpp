@@ -3,8 +3,6 @@
 
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/exports.h>
-#include <bayesian_icp/measurement.h>
-#include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/ros_messages.h>
 
 #include <string>
@@ -58,23 +56,6 @@ rosDict(const PoseEstimate& estimate, const ExportOptions& options)
   return py::dict(
       "header"_a = header,
       "pose"_a = py::dict("pose"_a = pose, "covariance"_a = message.pose.covariance));
-}
-
-/** Binds an export of a posterior and of a measurement. */
-template <typename Function>
-void
-bindExport(py::module_& module, const char* name, const Function& function)
-{
-  module.def(
-      name,
-      [function](const PosteriorEstimate& estimate, const ExportOptions& options) {
-        return function(PoseEstimate(estimate.summary), options);
-      });
-  module.def(
-      name,
-      [function](const PoseMeasurement& measurement, const ExportOptions& options) {
-        return function(measurement.estimate, options);
-      });
 }
 
 void
@@ -140,10 +121,10 @@ bindPosesAndExports(py::module_& module)
                                        std::pair("tail_ess", &tailEss),
                                        std::pair("mcse_mean", &mcseMean)})
     module.def(name, function, py::arg("draws"));
-  bindExport(module, "ros", &rosDict);
-  bindExport(module, "g2o", &g2oEdge);
-  bindExport(module, "gtsam", &gtsamText);
-  bindExport(module, "tum", &tumLine);
+  module.def("ros", &rosDict, py::arg("estimate"), py::arg("options"));
+  module.def("g2o", &g2oEdge, py::arg("estimate"), py::arg("options"));
+  module.def("gtsam", &gtsamText, py::arg("estimate"), py::arg("options"));
+  module.def("tum", &tumLine, py::arg("estimate"), py::arg("options"));
 }
 
 } // namespace bayesian_icp::python

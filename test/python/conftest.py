@@ -34,6 +34,12 @@ def result(mug):
 
 
 @pytest.fixture(scope="session")
+def failed(mug):
+    """The result of clouds that have nothing in common."""
+    return bayesian_icp.align(source=mug[0] + np.float32(100), target=mug[1], prior_std=(0.01, 0.01))
+
+
+@pytest.fixture(scope="session")
 def program():
     """The command line tool of the build."""
     path = os.environ.get("PCL_BAYESIAN_ICP", "")

@@ -118,6 +118,59 @@ def test_without_prior(mug):
     assert repr(measured).endswith(", 0 of 6 directions unmeasured>")
 
 
+@pytest.fixture(scope="module")
+def several():
+    """Scans of a rectangular tube, which looks the same after half a turn."""
+    rng = np.random.default_rng(1)
+    is_wide = rng.random(6000) < 0.5
+    xyz = rng.uniform(-1, 1, (6000, 3)) * [0.3, 0.2, 0.1]
+    xyz[is_wide, 1] = np.copysign(0.2, xyz[is_wide, 1])
+    xyz[~is_wide, 0] = np.copysign(0.3, xyz[~is_wide, 0])
+    xyz += rng.normal(scale=0.001, size=xyz.shape)
+    guess = bayesian_icp.matrix_from_pose([0, 0, 0, 0, 0, 1.5])
+    return bayesian_icp.align(source=xyz[::2], target=xyz[1::2], init_T_target_source=guess)
+
+
+def test_a_mode_is_a_posterior(several):
+    assert several.status == "several_modes"
+    with pytest.raises(ValueError, match="several"):
+        several.to_tum()
+    assert sum(mode.weight for mode in several.modes) == pytest.approx(1)
+    for mode in several.modes:
+        assert mode.status == "doubtful"
+        assert len(mode.to_g2o().split()) == 3 + 7 + 21
+        draws = np.concatenate([several.chain(index) for index in mode.chains])
+        assert np.allclose(mode.mean, bayesian_icp.mean_pose(draws))
+        for convention in CONVENTIONS:
+            expected = bayesian_icp.covariance_about(mode.mean, draws, convention)
+            assert np.allclose(mode.covariance(convention), expected, rtol=1e-9, atol=1e-16)
+        measured = mode.without_prior()
+        assert measured.num_unmeasured == 1  # along the tube
+        assert measured.status == "doubtful" and measured.covariance()[2, 2] > 1e3 * mode.covariance()[2, 2]
+        assert ", weight 0." in repr(mode)
+
+
+def test_result_has_the_guess_and_the_prior(several, mug):
+    assert np.allclose(several.init_T_target_source, bayesian_icp.matrix_from_pose([0, 0, 0, 0, 0, 1.5]))
+    assert np.allclose(several.prior.T_target_source, several.init_T_target_source)
+    far = np.array([3.0, 0, 0])
+    mean = [0.01, 0, 0, 0, 0, 0.1]
+    result = bayesian_icp.align(source=mug[0] + far, target=mug[1] + far, prior_mean=mean,
+                                prior_std=(0.1, 0.2), prior_frame="source-centroid")
+    assert np.array_equal(result.init_T_target_source, np.eye(4))
+    prior = result.prior
+    assert np.allclose(prior.mean, mean) and np.allclose(prior.variance, [0.01] * 3 + [0.04] * 3)
+    assert np.allclose(prior.reference_point, (mug[0] + far).mean(axis=0), atol=0.1)
+    # Of the origin, which a turn about the centroid moves.
+    assert prior.covariance()[1, 1] == pytest.approx(0.01 + 0.04 * 9, rel=0.1)
+    assert prior.to_gtsam() and result.modes == []
+
+
+def test_a_failed_result_has_a_guess_and_no_prior(failed):
+    assert np.array_equal(failed.init_T_target_source, np.eye(4))
+    assert failed.prior.status == "not_run" and np.isnan(failed.prior.covariance()).all()
+
+
 def test_result_shows_itself(result):
     assert repr(result).startswith("<bayesian_icp.Result ok: x=0.0")
     assert "observed" in repr(result.directions[0])
