@@ -32,8 +32,9 @@ struct BAYESIAN_ICP_EXPORT PoseMeasurement {
    * directions, the mean is the posterior's, and the standard deviation is
    * unmeasured_deviation times the prior's, so that the covariance can be inverted. */
   PoseEstimate estimate;
-  /** Number of unmeasured directions, which the clouds do not determine, 0 to 6. */
-  int num_unmeasured = 0;
+  /** Number of unmeasured directions, which the clouds do not determine, 0 to 6. It is
+   * 6 without a measurement. */
+  int num_unmeasured = 6;
 };
 
 /** \brief Remove the prior from a posterior. In information form, information and mean

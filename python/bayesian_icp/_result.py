@@ -138,7 +138,7 @@ class Measurement(Pose):
         super().__init__(pose)
         self.num_unmeasured = num_unmeasured
         """Directions that the clouds do not see, 0 to 6; their deviation is 100 times
-        the prior's."""
+        the prior's. 6 without a posterior."""
 
     def _remark(self) -> str:
         return f", {self.num_unmeasured} of 6 directions unmeasured"

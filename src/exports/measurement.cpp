@@ -73,6 +73,7 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
       covariance, near_mean.precision + least_precision * Matrix6d::Identity());
   const Matrix6d& directions = shares.axes;
   Vector6d variances, gains;
+  measurement.num_unmeasured = 0;
   for (int k = 0; k < 6; ++k) {
     const double share = shares.variances[k];
     const bool is_measured =

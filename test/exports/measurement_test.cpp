@@ -111,6 +111,7 @@ TEST(WithoutPrior, NaNWithoutAPosterior)
       withoutPrior(PoseEstimate(), Prior(some_pose, Vector6d::Ones()));
   EXPECT_TRUE(measurement.estimate.mean.array().isNaN().all());
   EXPECT_TRUE(measurement.estimate.covariance(left).array().isNaN().all());
+  EXPECT_EQ(measurement.num_unmeasured, 6);
 }
 
 TEST(WithoutPrior, APriorThatIsNotFiniteIsAnInvalidInput)

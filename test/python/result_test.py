@@ -167,6 +167,7 @@ def test_result_has_the_guess_and_the_prior(several, mug):
 
 
 def test_a_failed_result_has_a_guess_and_no_prior(failed):
+    assert failed.without_prior().num_unmeasured == 6
     assert np.array_equal(failed.init_T_target_source, np.eye(4))
     assert failed.prior.status == "not_run" and np.isnan(failed.prior.covariance()).all()
 
