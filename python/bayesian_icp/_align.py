@@ -154,10 +154,7 @@ def _pose(name: str, value: ArrayLike) -> NDArray[np.float64]:
         raise ValueError(f"{name} has the shape {numbers.shape}, but must have (4, 4)")
     if not np.isfinite(numbers).all():
         raise ValueError(f"{name} is not finite: {numbers.tolist()}")
-    if is_pose:
-        return numbers
-    R = numbers[:3, :3]
-    is_rigid = np.linalg.norm(R.T @ R - np.eye(3)) < 1e-3 and np.linalg.det(R) > 0
-    if not is_rigid or not np.array_equal(numbers[3], [0, 0, 0, 1]):
-        raise ValueError(f"{name} is not a rotation and a translation: {numbers.tolist()}")
-    return _core.pose_from_matrix(numbers)
+    try:
+        return numbers if is_pose else _core.pose_from_matrix(numbers)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None

@@ -58,6 +58,28 @@ rosDict(const PoseEstimate& estimate, const ExportOptions& options)
       "pose"_a = py::dict("pose"_a = pose, "covariance"_a = message.pose.covariance));
 }
 
+/** \return \p T, if it is a rotation and a translation to the accuracy of 32 bits */
+const Eigen::Matrix4d&
+rigid(const Eigen::Matrix4d& T)
+{
+  if (!T.allFinite())
+    throw py::value_error("the matrix is not finite");
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  const double skew = (R.transpose() * R - Eigen::Matrix3d::Identity()).norm();
+  const Eigen::RowVector4d last_row = T.row(3);
+  if (skew > 1e-3 || R.determinant() < 0.0 ||
+      !last_row.isApprox(Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0), 1e-5))
+    throw py::value_error(
+        py::str("the matrix is not a rotation and a translation: det R is {:.4g}, "
+                "|R^T R - I| is {:.2g}, and the last row is {}; they must be 1, 0 and "
+                "[0, 0, 0, 1]")
+            .format(R.determinant(), skew, last_row));
+  return T;
+}
+
+/** Releases the interpreter's lock in a function that takes long. */
+using Unlocked = py::call_guard<py::gil_scoped_release>;
+
 void
 bindPoses(py::module_& module)
 {
@@ -67,10 +89,11 @@ bindPoses(py::module_& module)
              "4x4 T_target_source of a pose (x, y, z, roll, pitch, yaw) [m, rad].");
   module.def(
       "pose_from_matrix",
-      &poseOf,
+      [](const Eigen::Matrix4d& T) { return poseOf(rigid(T)); },
       py::arg("T_target_source"),
-      "Pose (x, y, z, roll, pitch, yaw) [m, rad] of a 4x4 matrix, whose rotation "
-      "is first made the nearest one.");
+      "Pose (x, y, z, roll, pitch, yaw) [m, rad] of a 4x4 matrix [m], to the accuracy "
+      "of 32 bits: its rotation is made the nearest one. ValueError if the matrix is "
+      "mirrored, scaled, sheared, transposed or not finite.");
   module.def("pose_error",
              &poseError,
              py::arg("pose"),
@@ -87,17 +110,23 @@ bindPoses(py::module_& module)
       "The pose that has an error relative to a mean: the inverse of pose_error().");
   module.def("mean_pose",
              &meanPose,
+             Unlocked(),
              py::arg("draws"),
              "Bi-invariant mean on SE(3) of (n, 6) draws [m, rad].");
   module.def("covariance_about",
              &covarianceAbout,
+             Unlocked(),
              py::arg("mean"),
              py::arg("draws"),
              py::arg("convention") = CovarianceConvention::Parameters,
              "6x6 second moment of the errors of (n, 6) draws about a mean.");
   module.def(
       "exp_se3", &expSE3, py::arg("twist"), "4x4 matrix of a twist (v, w) [m, rad].");
-  module.def("log_se3", &logSE3, py::arg("transform"), "Twist (v, w) of a 4x4 matrix.");
+  module.def(
+      "log_se3",
+      [](const Eigen::Matrix4d& T) { return logSE3(rigid(T)); },
+      py::arg("transform"),
+      "Twist (v, w) [m, rad] of a 4x4 matrix; ValueError as in pose_from_matrix().");
   module.def("gtsam_covariance",
              &gtsamCovariance,
              py::arg("right_se3"),
@@ -120,7 +149,7 @@ bindPosesAndExports(py::module_& module)
                                        std::pair("bulk_ess", &bulkEss),
                                        std::pair("tail_ess", &tailEss),
                                        std::pair("mcse_mean", &mcseMean)})
-    module.def(name, function, py::arg("draws"));
+    module.def(name, function, Unlocked(), py::arg("draws"));
   module.def("ros", &rosDict, py::arg("estimate"), py::arg("options"));
   module.def("g2o", &g2oEdge, py::arg("estimate"), py::arg("options"));
   module.def("gtsam", &gtsamText, py::arg("estimate"), py::arg("options"));

@@ -55,8 +55,8 @@ def test_points_that_are_not_finite(value):
 
 @pytest.mark.parametrize("keywords, error, pattern", [
     ({"init_T_target_source": np.eye(3)}, ValueError, r"init_T_target_source has the shape \(3, 3\)"),
-    ({"init_T_target_source": 2 * np.eye(4)}, ValueError, "init_T_target_source is not a rotation"),
-    ({"init_T_target_source": np.diag([1, 1, -1, 1])}, ValueError, "init_T_target_source is not a rotation"),
+    ({"init_T_target_source": 2 * np.eye(4)}, ValueError, "init_T_target_source: the matrix is not a rotation"),
+    ({"prior_mean": np.diag([1, 1, -1, 1])}, ValueError, "prior_mean: the matrix is not a rotation.* det R is -1, "),
     ({"init_T_target_source": np.full((4, 4), np.nan)}, ValueError, "init_T_target_source is not finite"),
     ({"init_T_target_source": "here"}, TypeError, "init_T_target_source is 'here'"),
     ({"prior_mean": np.zeros(5)}, ValueError, r"prior_mean has the shape \(5,\)"),
@@ -75,6 +75,32 @@ def test_points_that_are_not_finite(value):
 ])
 def test_bad_keywords(keywords, error, pattern):
     refused(error, pattern, **keywords)
+
+
+POSE = np.array([500, -2, 3, 0.1, -0.2, 3.0])
+T = bayesian_icp.matrix_from_pose(POSE)
+
+
+@pytest.mark.parametrize("matrix, pattern", [
+    (np.zeros((4, 4)), r"det R is 0, .R.T R - I. is 1.7, and the last row is \[0. 0. 0. 0.\]"),
+    (np.diag([1, -1, 1, 1]) @ T, "det R is -1, "),
+    (np.diag([2, 2, 2, 1]) @ T, "det R is 8, "),
+    (T.T, r"last row is \[500.  -2.   3.   1.\]"),
+    (T @ (np.eye(4) + 0.1 * np.eye(4, k=1)), "must be 1, 0 and"),
+    (np.full((4, 4), np.nan), "not finite"),
+    (np.where(T == 500, np.inf, T), "not finite"),
+])
+@pytest.mark.parametrize("function", [bayesian_icp.pose_from_matrix, bayesian_icp.log_se3])
+def test_matrices_that_are_not_rigid(function, matrix, pattern):
+    with pytest.raises(ValueError, match=pattern):
+        function(matrix)
+
+
+def test_matrices_of_32_bits_are_rigid():
+    single = T.astype(np.float32)
+    product = np.linalg.multi_dot([single, np.linalg.inv(single)] * 20 + [single])
+    assert np.allclose(bayesian_icp.pose_from_matrix(product), POSE, atol=1e-2)
+    assert np.allclose(bayesian_icp.exp_se3(bayesian_icp.log_se3(product)), T, atol=1e-2)
 
 
 @pytest.mark.parametrize("group, field, value", [

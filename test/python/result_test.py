@@ -1,5 +1,7 @@
 """What a result gives to others: covariances, exports, diagnostics, measurement."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -89,6 +91,26 @@ def test_diagnostics_are_those_of_the_result(result):
         bayesian_icp.ess(errors, "all")
     with pytest.raises(ValueError, match=r"draws has the shape \(6,\)"):
         bayesian_icp.rhat(result.mean)
+
+
+@pytest.mark.parametrize("function, shape", [
+    (bayesian_icp.mean_pose, (400_000, 6)), (bayesian_icp.rhat, (4, 250_000)), (bayesian_icp.ess, (4, 250_000))])
+def test_long_work_lets_other_threads_run(function, shape):
+    draws = np.random.default_rng(1).normal(scale=0.1, size=shape)
+    turns, done = [], threading.Event()
+
+    def work():
+        while not done.wait(0.001):
+            turns.append(1)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    before = len(turns)
+    function(draws)
+    during = len(turns) - before
+    done.set()
+    thread.join()
+    assert during > 20
 
 
 def test_to_arviz(result):
