@@ -116,6 +116,8 @@ def align(
         chosen.prior.variance = _six("prior_variance", prior_variance)
     if prior_frame is not None:
         chosen.prior.frame = prior_frame
+    if not isinstance(source, _core.Target):
+        source = _core.Target(source, "source")
     if not isinstance(target, _core.Target):
         target = _core.Target(target)
     bar = Bar() if progress is True else None
@@ -126,7 +128,7 @@ def align(
     finally:
         if bar:
             bar.close()
-    return Result(estimate, chosen, guess, time.monotonic() - start)
+    return Result(estimate, chosen, guess, (len(source), len(target)), time.monotonic() - start)
 
 
 def _numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:

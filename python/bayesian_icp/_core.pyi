@@ -160,7 +160,7 @@ class DataReport:
     def warnings(self) -> list[str]: ...
 
 class Target:
-    def __init__(self, points: Any) -> None: ...
+    def __init__(self, points: Any, name: str = "target") -> None: ...
     def __len__(self) -> int: ...
 
 class PoseEstimate:
@@ -203,7 +203,7 @@ class Estimate:
 
 def without_prior(posterior: PoseEstimate, prior: Prior) -> tuple[PoseEstimate, int]: ...
 def estimate(
-    source: Any,
+    source: Target,
     target: Target,
     guess: ArrayLike,
     options: Options,

@@ -205,11 +205,19 @@ class Result(_Posterior):
     numbers are NaN and `samples` is empty.
     """
 
-    def __init__(self, estimate: _core.Estimate, options: _core.Options, guess: Array, seconds: float) -> None:
+    def __init__(
+        self,
+        estimate: _core.Estimate,
+        options: _core.Options,
+        guess: Array,
+        num_points: tuple[int, int],
+        seconds: float,
+    ) -> None:
         super().__init__(estimate.posterior, estimate.prior)
         self._estimate = estimate
         self._options = options
         self._guess = guess
+        self._num_points = num_points
         self.seconds = seconds
         """Wall time of the run [s]."""
 
@@ -219,7 +227,7 @@ class Result(_Posterior):
         return self._estimate.samples
 
     def chain(self, index: int) -> Array:
-        """(draws, 6) of one chain, all of them, diverged or not."""
+        """(draws, 6) of one chain, from 0 on, diverged or not; IndexError if there is none."""
         return self._estimate.chain(index)
 
     @property
@@ -288,7 +296,7 @@ class Result(_Posterior):
         Raises
         ------
         ValueError
-            If there are no draws.
+            If there are no draws, or a cloud has not as many points as that of the run.
         OSError
             If the file cannot be written.
         RuntimeError
@@ -297,7 +305,7 @@ class Result(_Posterior):
         from . import _tools
 
         _tools.write_report(self._estimate, self._options, self._guess, self.seconds,
-                            os.fspath(path), source, target)
+                            os.fspath(path), source, target, self._num_points)
 
     def _remark(self) -> str:
         return f", flags: {', '.join(self.flags)}" if self.flags else ""

@@ -20,4 +20,5 @@ def write_report(
     path: str,
     source: Any,
     target: Any,
+    num_points: tuple[int, int],
 ) -> None: ...

@@ -43,7 +43,7 @@ refuseMisuse(const Summary& summary)
 }
 
 PosteriorEstimate
-estimate(const py::object& source_cloud,
+estimate(const std::shared_ptr<const Target>& source,
          const std::shared_ptr<const Target>& target,
          const Vector6d& guess,
          const Options& options,
@@ -52,10 +52,6 @@ estimate(const py::object& source_cloud,
   const std::string complaint = options.validate();
   if (!complaint.empty())
     throw py::value_error(complaint);
-  const auto source =
-      py::isinstance<Target>(source_cloud)
-          ? source_cloud.cast<std::shared_ptr<const Target>>()
-          : std::make_shared<const Target>(pointsOf(source_cloud, "source"));
   PosteriorEstimate result = runBeside(
       [=](const ProgressCallback& progress) {
         return estimatePosterior(
@@ -201,14 +197,17 @@ bindEstimate(py::module_& module)
       "A cloud that is prepared once and used many times, as target or source.\n\n"
       "Parameters\n----------\n"
       "points : array_like, (N, 3)\n"
-      "    Finite points [m], or an open3d.geometry.PointCloud.\n\n"
+      "    Finite points [m], or an open3d.geometry.PointCloud.\n"
+      "name : str\n"
+      "    Of the cloud, in the texts of errors.\n\n"
       "Raises\n------\n"
       "TypeError\n    If they are not real numbers.\n"
       "ValueError\n    If the shape is not (N, 3), or a point is not finite.")
-      .def(py::init([](const py::object& points) {
-             return std::make_shared<Target>(pointsOf(points, "target"));
+      .def(py::init([](const py::object& points, const std::string& name) {
+             return std::make_shared<Target>(pointsOf(points, name));
            }),
-           py::arg("points"))
+           py::arg("points"),
+           py::arg("name") = "target")
       .def("__len__",
            [](const Target& target) { return target.prepared.points().cols(); })
       .def("__repr__", [](const Target& target) {
@@ -256,7 +255,13 @@ bindEstimate(py::module_& module)
       .def_property_readonly("samples", &samplesOf)
       .def(
           "chain",
-          [](const E& e, std::size_t chain) { return e.chains.at(chain).draws; },
+          [](const E& e, py::ssize_t index) {
+            if (index < 0 || index >= static_cast<py::ssize_t>(e.chains.size()))
+              throw py::index_error(
+                  "index is " + std::to_string(index) + ", but there are " +
+                  std::to_string(e.chains.size()) + " chains, from 0 on");
+            return e.chains[static_cast<std::size_t>(index)].draws;
+          },
           py::arg("index"));
   module.def("estimate",
              &estimate,

@@ -6,6 +6,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -51,7 +52,13 @@ tell(const py::object& observer, const Progress& state)
   if (observer.is_none())
     return true;
   const py::object answer = observer(state.steps, state.total_steps, state.pose);
-  return answer.is_none() || answer.cast<bool>();
+  try {
+    return answer.is_none() || answer.cast<bool>();
+  }
+  catch (const py::cast_error&) {
+    throw py::type_error("progress returned " + std::string(py::repr(answer)) +
+                         ", but must return True, False or None");
+  }
 }
 
 /** Waits for the work, and passes on signals and progress meanwhile. */

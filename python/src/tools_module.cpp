@@ -16,6 +16,7 @@
 #include <pybind11/stl.h>
 
 #include <filesystem>
+#include <string>
 #include <utility>
 
 namespace py = pybind11;
@@ -68,9 +69,13 @@ scenes()
 }
 
 io::CloudFile
-cloudOf(const py::object& points, const std::string& name)
+cloudOf(const py::object& points, const std::string& name, Eigen::Index num_points)
 {
   const Points given = pointsOf(points, name);
+  if (given.xyz.cols() != num_points)
+    throw py::value_error(name + " has " + std::to_string(given.xyz.cols()) +
+                          " points, but the one that was registered had " +
+                          std::to_string(num_points));
   io::CloudFile cloud;
   cloud.file = name;
   cloud.points = given.xyz.cast<float>();
@@ -87,13 +92,14 @@ writeReport(const PosteriorEstimate& estimate,
             double seconds,
             const std::string& path,
             const py::object& source,
-            const py::object& target)
+            const py::object& target,
+            const std::pair<Eigen::Index, Eigen::Index>& num_points)
 {
   if (estimate.summary.num_draws == 0)
     throw py::value_error("there are no draws to report: " + estimate.summary.message);
   app::Run run;
-  run.source = cloudOf(source, "source");
-  run.target = cloudOf(target, "target");
+  run.source = cloudOf(source, "source", num_points.first);
+  run.target = cloudOf(target, "target", num_points.second);
   run.settings.options = options;
   run.settings.guess = matrixOf(guess);
   run.settings.use_mean = true;
@@ -146,5 +152,6 @@ PYBIND11_MODULE(_tools, module)
              py::arg("seconds"),
              py::arg("path"),
              py::arg("source"),
-             py::arg("target"));
+             py::arg("target"),
+             py::arg("num_points"));
 }

@@ -121,8 +121,9 @@ def test_uneven_chains_are_cut(mug):
     found = bayesian_icp.align(source=mug[0], target=mug[1], options=options)
     assert found.samples.shape == (3, 3, 6)
     assert [len(found.chain(i)) for i in range(3)] == [4, 3, 3]
-    with pytest.raises(IndexError):
-        found.chain(3)
+    for index in (3, -1):
+        with pytest.raises(IndexError, match=f"index is {index}, but there are 3 chains"):
+            found.chain(index)
 
 
 def test_clouds_without_overlap_give_nan_not_the_identity(failed):
@@ -154,6 +155,12 @@ def test_an_exception_of_the_observer_reaches_the_caller(mug):
 
     with pytest.raises(RuntimeError, match="enough"):
         bayesian_icp.align(source=mug[0], target=mug[1], progress=observe)
+
+
+def test_an_observer_must_not_return_a_text(mug):
+    with pytest.raises(TypeError, match="progress returned 'half', but must return True, False or None"):
+        bayesian_icp.align(source=mug[0], target=mug[1], progress=lambda *_: "half")
+    assert bayesian_icp.align(source=mug[0], target=mug[1], progress=lambda *_: np.bool_(False)).status == "interrupted"
 
 
 def test_the_bar_ends_with_a_line(mug, capsys):

@@ -49,6 +49,10 @@ def test_writes_the_report(mug, result, tmp_path):
         result.write_report(tmp_path / "file" / "report.html", source=mug[0], target=mug[1])
     with pytest.raises(ValueError, match="source has the shape"):
         result.write_report(page, source=mug[0].T, target=mug[1])
+    with pytest.raises(ValueError, match="source has .* points, but the one that was registered had"):
+        result.write_report(page, source=mug[1], target=mug[0])
+    with pytest.raises(ValueError, match=f"target has {len(mug[1]) - 1} points"):
+        result.write_report(page, source=mug[0], target=mug[1][1:])
 
 
 def test_simulates_as_the_program_did():

@@ -51,6 +51,8 @@ def test_points_that_are_not_finite(value):
     refused(ValueError, r"source\[17\] is array.*must be finite", source=cloud)
     with pytest.raises(ValueError, match=r"target\[17\]"):
         bayesian_icp.Target(cloud)
+    with pytest.raises(ValueError, match=r"scan 4\[17\]"):
+        bayesian_icp.Target(cloud, "scan 4")
 
 
 @pytest.mark.parametrize("keywords, error, pattern", [
