@@ -11,19 +11,19 @@ class PriorOptions:
     mean: Any
     variance: Any
     frame: str
-    def __init__(self, other: PriorOptions = ...) -> None: ...
+    def __init__(self, other: Optional[PriorOptions] = None, **fields: Any) -> None: ...
 
 class ChainOptions:
     num_chains: int
     num_draws: int
     seed: int
     num_threads: int
-    def __init__(self, other: ChainOptions = ...) -> None: ...
+    def __init__(self, other: Optional[ChainOptions] = None, **fields: Any) -> None: ...
 
 class LikelihoodScale:
     effective_points: float
     measurement_sigma: float
-    def __init__(self, other: LikelihoodScale = ...) -> None: ...
+    def __init__(self, other: Optional[LikelihoodScale] = None, **fields: Any) -> None: ...
 
 class SgldOptions:
     step_size: float
@@ -33,7 +33,7 @@ class SgldOptions:
     block_decay_factor: float
     block_decay_interval: int
     block_decay_start: float
-    def __init__(self, other: SgldOptions = ...) -> None: ...
+    def __init__(self, other: Optional[SgldOptions] = None, **fields: Any) -> None: ...
 
 class PaperOptions:
     scale: LikelihoodScale
@@ -44,7 +44,7 @@ class PaperOptions:
     num_burn_in: int
     thinning: int
     initial_spread: Any
-    def __init__(self, other: PaperOptions = ...) -> None: ...
+    def __init__(self, other: Optional[PaperOptions] = None, **fields: Any) -> None: ...
 
 class ResidualOptions:
     residual: str
@@ -52,7 +52,7 @@ class ResidualOptions:
     kernel: str
     kernel_width: float
     max_distance: float
-    def __init__(self, other: ResidualOptions = ...) -> None: ...
+    def __init__(self, other: Optional[ResidualOptions] = None, **fields: Any) -> None: ...
 
 class ExactOptions:
     scale: LikelihoodScale
@@ -65,14 +65,14 @@ class ExactOptions:
     thinning: Optional[int]
     initial_spread: Any
     max_source_points: int
-    def __init__(self, other: ExactOptions = ...) -> None: ...
+    def __init__(self, other: Optional[ExactOptions] = None, **fields: Any) -> None: ...
 
 class CalibratedOptions:
     max_source_points: int
     num_mode_points: int
     num_burn_in: Optional[int]
     thinning: Optional[int]
-    def __init__(self, other: CalibratedOptions = ...) -> None: ...
+    def __init__(self, other: Optional[CalibratedOptions] = None, **fields: Any) -> None: ...
 
 class Options:
     preset: str
@@ -81,7 +81,7 @@ class Options:
     paper: PaperOptions
     exact: ExactOptions
     calibrated: CalibratedOptions
-    def __init__(self, other: Options = ...) -> None: ...
+    def __init__(self, other: Optional[Options] = None, **fields: Any) -> None: ...
     def validate(self) -> str: ...
 
 class ExportOptions:
@@ -91,7 +91,7 @@ class ExportOptions:
     target_vertex: int
     source_vertex: int
     accept_unreliable: bool
-    def __init__(self, other: ExportOptions = ...) -> None: ...
+    def __init__(self, other: Optional[ExportOptions] = None, **fields: Any) -> None: ...
 
 class CoordinateSummary:
     @property

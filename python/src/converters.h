@@ -80,8 +80,11 @@ struct type_caster<bayesian_icp::Automatic<T>> {
       other = T(0);
     else
       other.setZero();
-    return make_caster<T>::cast(
-        option.valueOr(other), return_value_policy::copy, parent);
+    const handle value =
+        make_caster<T>::cast(option.valueOr(other), return_value_policy::copy, parent);
+    if (hasattr(value, "flags")) // whoever writes into this copy would change nothing
+      value.attr("flags").attr("writeable") = false;
+    return value;
   }
 };
 

@@ -12,6 +12,26 @@ namespace bayesian_icp::python {
 
 namespace {
 
+/** \return \p value, or an error with the name and the meaning of the option */
+template <typename Value>
+Value
+valueOf(const py::object& value, const char* name, const char* doc)
+{
+  try {
+    return value.cast<Value>();
+  }
+  catch (const py::value_error& error) {
+    throw py::value_error(std::string(name) + ": " + error.what());
+  }
+  catch (const py::cast_error&) {
+    const std::string text =
+        py::str("{} is {!r}, but must be: {}").format(name, value, doc);
+    if (PyIndex_Check(value.ptr()) != 0) // out of range, or an array of another shape
+      throw py::value_error(text);
+    throw py::type_error(text);
+  }
+}
+
 /** A structure of options, whose fields are bound one after the other. */
 template <typename Struct>
 class Fields : public py::class_<Struct> {
@@ -19,8 +39,20 @@ public:
   Fields(py::module_& module, const char* name, const char* doc)
   : py::class_<Struct>(module, name, doc)
   {
-    this->def(py::init<>(), "All options at their defaults.");
-    this->def(py::init<const Struct&>(), py::arg("other"), "A copy.");
+    this->attr("_names") = py::list();
+    this->def(py::init(&copyOf),
+              py::arg("other") = py::none(),
+              "A copy of other, or the defaults, with the fields that are given.");
+    this->def("__repr__", [](const py::object& self) {
+      py::list texts;
+      for (const auto& [field, value] : fieldsOf(self))
+        texts.append(py::str("{}={!r}").format(field, value));
+      return py::str("{}({})").format(py::type::of(self).attr("__name__"),
+                                      py::str(", ").attr("join")(texts));
+    });
+    this->def(py::pickle(&fieldsOf, [](const py::dict& fields) {
+      return copyOf(nullptr, py::kwargs(fields));
+    }));
   }
 
   /** Other than def_readwrite(), a bad value is refused with the field's name. */
@@ -28,27 +60,64 @@ public:
   Fields&
   add(const char* name, Value Struct::*field, const char* doc)
   {
+    return add(
+        name,
+        [field](Struct& self) -> Value& { return self.*field; },
+        [=](Struct& self, const py::object& value) {
+          self.*field = valueOf<Value>(value, name, doc);
+        },
+        doc);
+  }
+
+  template <typename Getter, typename Setter>
+  Fields&
+  add(const char* name, const Getter& getter, const Setter& setter, const char* doc)
+  {
+    this->attr("_names").attr("append")(name);
     this->def_property(
         name,
-        py::cpp_function([field](Struct& self) -> Value& { return self.*field; },
-                         py::return_value_policy::reference_internal),
-        [field, name](Struct& self, const py::object& value) {
-          try {
-            self.*field = value.cast<Value>();
-          }
-          catch (const py::value_error& error) {
-            throw py::value_error(std::string(name) + ": " + error.what());
-          }
-          catch (const py::cast_error&) {
-            throw py::type_error(std::string(name) + " is " +
-                                 std::string(py::repr(value)) +
-                                 ", which it cannot be: see help() of its class");
-          }
-        },
+        py::cpp_function(getter, py::return_value_policy::reference_internal),
+        setter,
         doc);
     return *this;
   }
+
+private:
+  static Struct
+  copyOf(const Struct* other, const py::kwargs& fields)
+  {
+    const py::object self = py::cast(other != nullptr ? *other : Struct());
+    for (const auto& [name, value] : fields)
+      py::setattr(self, name, value);
+    return self.cast<Struct>();
+  }
+
+  static py::dict
+  fieldsOf(const py::object& self)
+  {
+    py::dict fields;
+    for (const py::handle name : self.attr("_names"))
+      fields[name] = self.attr(name);
+    return fields;
+  }
 };
+
+/** The prior's mean; \c automatic is the guess. */
+Automatic<Vector6d>
+meanOf(const PriorOptions& prior)
+{
+  return prior.mean.array().isNaN().all() ? Automatic<Vector6d>() : prior.mean;
+}
+
+void
+setMean(PriorOptions& prior, const py::object& value)
+{
+  const char* const doc = "six finite numbers, or None: the initial guess";
+  const auto mean = valueOf<Automatic<Vector6d>>(value, "mean", doc);
+  if (!mean.valueOr(Vector6d::Zero()).allFinite())
+    throw py::value_error(py::str("mean is {}, but must be {}").format(value, doc));
+  prior.mean = mean.valueOr(PriorOptions().mean);
+}
 
 void
 bindShared(py::module_& module)
@@ -57,8 +126,10 @@ bindShared(py::module_& module)
                        "PriorOptions",
                        "What is known about the pose before the clouds are seen.")
       .add("mean",
-           &PriorOptions::mean,
-           "(6,) x, y, z, roll, pitch, yaw [m, rad]; six NaN mean the initial guess.")
+           &meanOf,
+           &setMean,
+           "(6,) T_target_source as finite x, y, z, roll, pitch, yaw [m, rad]; None: "
+           "the initial guess.")
       .add("variance",
            &PriorOptions::variance,
            "(6,) variances [m^2, rad^2], positive; infinity means no prior on a "

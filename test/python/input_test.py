@@ -1,5 +1,7 @@
 """Input that is refused, with its name and value in the text, and input of any layout."""
 
+import pickle
+
 import hypothesis.extra.numpy as arrays
 import numpy as np
 import pytest
@@ -69,7 +71,7 @@ def test_points_that_are_not_finite(value):
     ({"prior_frame": "middle"}, ValueError, "frame: 'middle' is none of .'origin', 'source-centroid', 'automatic'"),
     ({"preset": "best"}, ValueError, "preset: 'best' is none of .'paper', 'exact', 'calibrated'"),
     ({"preset": 3}, ValueError, "preset: 3 is none of"),
-    ({"seed": -1}, TypeError, "seed is -1"),
+    ({"seed": -1}, ValueError, r"seed is -1, but must be: .*0 to 2\^64-1"),
     ({"seed": 1.5}, TypeError, "seed is 1.5"),
     ({"num_threads": -2}, ValueError, "num_threads is -2"),
     ({"progress": "bar"}, TypeError, "progress is 'bar'"),
@@ -125,11 +127,52 @@ def test_options_refuse_unknown_names_and_kinds():
         options.exact.residual.kernel = "round"
     with pytest.raises(ValueError, match="sampling: None is none of .'with-replacement', 'shuffled-epochs'.$"):
         options.paper.sampling = None
-    with pytest.raises(TypeError, match="mean is"):
-        options.prior.mean = np.zeros(5)
     assert options.exact.thinning is None
     options.exact.thinning = 3
     assert bayesian_icp.Options(options).exact.thinning == 3
+
+
+@pytest.mark.parametrize("mean, error", [
+    (np.full(6, np.nan), ValueError), ([0, 0, 0, 0, 0, np.nan], ValueError), ([np.inf] * 6, ValueError),
+    ("here", TypeError), (np.zeros(5), ValueError),
+])
+def test_a_prior_mean_that_is_not_finite(mean, error):
+    with pytest.raises(error, match="mean is .*None: the initial guess"):
+        bayesian_icp.PriorOptions(mean=mean)
+
+
+def test_no_prior_mean_is_the_guess():
+    prior = bayesian_icp.PriorOptions()
+    assert prior.mean is None
+    prior.mean = POSE
+    assert np.array_equal(prior.mean, POSE)
+    with pytest.raises(ValueError, match="read-only"):
+        prior.mean[0] = 1
+    prior.mean = None
+    assert prior.mean is None
+
+
+def test_options_are_made_of_their_fields():
+    chains = bayesian_icp.ChainOptions(num_draws=8, seed=2**64 - 1)
+    assert (chains.num_chains, chains.num_draws, chains.seed) == (4, 8, 2**64 - 1)
+    options = bayesian_icp.Options(preset="exact", chains=chains)
+    copy = bayesian_icp.Options(options, prior=bayesian_icp.PriorOptions(frame="origin"))
+    assert (copy.preset, copy.chains.num_draws, copy.prior.frame) == ("exact", 8, "origin")
+    assert options.prior.frame == "automatic"
+    with pytest.raises(AttributeError, match="colour"):
+        bayesian_icp.Options(colour=1)
+
+
+def test_options_show_themselves_and_pickle():
+    options = bayesian_icp.Options(preset="exact")
+    options.prior.mean = POSE
+    options.exact.scale.measurement_sigma = 0.25
+    options.exact.thinning = 3
+    copy = pickle.loads(pickle.dumps(options))
+    assert repr(copy) == repr(options) != repr(bayesian_icp.Options())
+    assert repr(copy).startswith("Options(preset='exact', prior=PriorOptions(mean=array([")
+    assert "measurement_sigma=0.25)" in repr(copy)
+    assert np.array_equal(copy.prior.mean, POSE) and copy.exact.thinning == 3
 
 
 def few_draws():
