@@ -147,7 +147,7 @@ class Measurement(Pose):
 class Prior(Pose):
     """The prior that was sampled with, as a Gaussian about its mean T_target_source.
 
-    Made by `Result.prior`. Without a posterior all numbers but the variance are NaN.
+    Made by `Result.prior`. Without a posterior all numbers are NaN.
     """
 
     def __init__(self, prior: _core.Prior) -> None:

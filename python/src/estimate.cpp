@@ -59,6 +59,10 @@ estimate(const std::shared_ptr<const Target>& source,
       },
       observer);
   refuseMisuse(result.summary);
+  if (!result.prior.mean().allFinite()) // nothing was sampled with any variance
+    result.prior = Prior(result.prior.mean(),
+                         result.prior.mean(),
+                         Eigen::Vector3d(result.prior.mean().head<3>()));
   // Presets exact and paper search among points of 32 bits.
   if (source->is_rounded || target->is_rounded || options.preset != Preset::Calibrated)
     doubtRounding(std::max(source->usual_coordinate, target->usual_coordinate),

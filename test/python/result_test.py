@@ -192,6 +192,7 @@ def test_a_failed_result_has_a_guess_and_no_prior(failed):
     assert failed.without_prior().num_unmeasured == 6
     assert np.array_equal(failed.init_T_target_source, np.eye(4))
     assert failed.prior.status == "not_run" and np.isnan(failed.prior.covariance()).all()
+    assert np.isnan(failed.prior.variance).all() and np.isnan(failed.prior.reference_point).all()
 
 
 def test_result_shows_itself(result):
