@@ -91,6 +91,7 @@ T = bayesian_icp.matrix_from_pose(POSE)
     (np.diag([2, 2, 2, 1]) @ T, "det R is 8, "),
     (T.T, r"last row is \[500.  -2.   3.   1.\]"),
     (T @ (np.eye(4) + 0.1 * np.eye(4, k=1)), "must be 1, 0 and"),
+    (np.eye(3), r"the matrix has the shape \(3, 3\), but must have \(4, 4\)"),
     (np.full((4, 4), np.nan), "not finite"),
     (np.where(T == 500, np.inf, T), "not finite"),
 ])
