@@ -41,6 +41,23 @@ noteOfSize(const Run& run)
          "in metres, state --prior-variance.";
 }
 
+/** Drivers put returns without a range at the sensor. */
+std::string
+noteOfZeros(const io::CloudFile& cloud)
+{
+  constexpr double noticeable = 0.01;
+  const auto num_zeros = (cloud.points.array() == 0.0F).colwise().all().count();
+  if (!(static_cast<double>(num_zeros) >
+        noticeable * static_cast<double>(cloud.num_finite)))
+    return "";
+  return cloud.file + ": note: " + std::to_string(num_zeros) +
+         " points are at 0 0 0, as returns without a range are. ICP pairs them with "
+         "one "
+         "another, which takes long and draws its result to no motion. Preset "
+         "calibrated "
+         "counts them as one point. Remove them, or set them to NaN.";
+}
+
 Run
 runRegistration(const Request& request)
 {
@@ -50,6 +67,8 @@ runRegistration(const Request& request)
   if (!request.is_quiet)
     for (const std::string& note : {io::noteOfLostDigits(run.source),
                                     io::noteOfLostDigits(run.target),
+                                    noteOfZeros(run.source),
+                                    noteOfZeros(run.target),
                                     noteOfSize(run)})
       io::tell(note);
   ProgressBar bar(!request.is_quiet);

@@ -240,6 +240,15 @@ class DegenerateClouds(ToolTest):
         self.assertEqual(strict_json(result.stdout)["source"]["finite_points"], 50)
         self.assertIn("kept to 0.062 m", result.stderr)
 
+    def test_returns_without_a_range(self):
+        without = self.file("without.pcd", pcd_bytes(POINTS))
+        path = self.file("zeros.pcd", pcd_bytes([*POINTS, (0, 0, 0), (-0.0, 0, 0)]))
+        result = run(without, path, *FAST)
+        self.assert_ran(result)
+        self.assertIn("zeros.pcd: note: 2 points are at 0 0 0", result.stderr)
+        self.assertNotIn("without.pcd: note", result.stderr)
+        self.assertNotIn("0 0 0", run(path, path, *FAST, "--quiet").stderr)
+
     def test_hardly_in_metres(self):
         path = self.file("cloud.pcd", pcd_bytes([tuple(6000 * a for a in p) for p in POINTS]))
         result = run(path, path, *FAST)
