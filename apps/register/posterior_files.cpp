@@ -85,7 +85,8 @@ modesJson(const std::vector<Mode>& modes)
          {"chains", mode.chains},
          {"mean", meanJson(mode.mean)},
          {"covariance",
-          covarianceJson(CovarianceConvention::Parameters, mode.covariance)}});
+          covarianceJson(CovarianceConvention::Parameters,
+                         mode.covariance(CovarianceConvention::Parameters))}});
   return list;
 }
 

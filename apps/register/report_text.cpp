@@ -60,13 +60,14 @@ modeText(const Mode& mode, std::size_t number)
   for (const int chain : mode.chains)
     text += ' ' + io::textOf(chain);
   text += '\n';
+  const Matrix6d& covariance = mode.covariance(CovarianceConvention::Parameters);
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (const Eigen::Index k : {row, row + 3})
       text +=
           leftAligned((k < 3 ? "  " : "   ") + nameWithUnit(static_cast<int>(k), "rad"),
                       label_width + 2) +
           cell(mode.mean[k], 6, column_width) + " +-" +
-          cell(std::sqrt(mode.covariance(k, k)), 6, column_width);
+          cell(std::sqrt(covariance(k, k)), 6, column_width);
     text += '\n';
   }
   return text;

@@ -88,11 +88,14 @@ scaleSummary(double unit, Summary& summary)
   Vector6d factors;
   factors << unit, unit, unit, 1.0, 1.0, 1.0;
   summary.mean = factors.cwiseProduct(summary.mean);
-  for (Matrix6d& covariance : summary.covariances)
-    covariance = factors.asDiagonal() * covariance * factors.asDiagonal();
+  const auto scale = [&](std::array<Matrix6d, 4>& covariances) {
+    for (Matrix6d& covariance : covariances)
+      covariance = factors.asDiagonal() * covariance * factors.asDiagonal();
+  };
+  scale(summary.covariances);
   for (Mode& mode : summary.modes) {
     mode.mean = factors.cwiseProduct(mode.mean);
-    mode.covariance = factors.asDiagonal() * mode.covariance * factors.asDiagonal();
+    scale(mode.covariances);
   }
   for (std::size_t k = 0; k < 3; ++k) {
     CoordinateSummary& coordinate = summary.coordinates[k];

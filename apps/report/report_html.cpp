@@ -87,11 +87,11 @@ modesTable(const std::vector<Mode>& modes)
     for (const int chain : modes[i].chains)
       chains += (chains.empty() ? "" : ", ") + io::textOf(chain);
     Cells cells = {io::textOf(i + 1), io::fixedTextOf(modes[i].weight, 3), chains};
+    const Matrix6d& covariance = modes[i].covariance(CovarianceConvention::Parameters);
     for (int k = 0; k < 6; ++k) {
       const double factor = isAngle(k) ? degrees_per_radian : 1.0;
-      cells.push_back(
-          numberText(factor * modes[i].mean[k], 4, unknown) + " ± " +
-          numberText(factor * std::sqrt(modes[i].covariance(k, k)), 4, unknown));
+      cells.push_back(numberText(factor * modes[i].mean[k], 4, unknown) + " ± " +
+                      numberText(factor * std::sqrt(covariance(k, k)), 4, unknown));
     }
     table.rows.push_back(cells);
   }

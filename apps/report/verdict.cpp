@@ -80,9 +80,12 @@ modesText(const std::vector<Mode>& modes)
   std::string text;
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const Mode& mode = modes[i];
-    text += (i > 0 ? "; or " : "") + std::string("pose ") + io::textOf(i + 1) +
-            " (weight " + weightText(mode.weight) +
-            "): " + poseText(mode.mean, mode.covariance.diagonal().cwiseSqrt());
+    text +=
+        (i > 0 ? "; or " : "") + std::string("pose ") + io::textOf(i + 1) +
+        " (weight " + weightText(mode.weight) + "): " +
+        poseText(
+            mode.mean,
+            mode.covariance(CovarianceConvention::Parameters).diagonal().cwiseSqrt());
   }
   return text;
 }

@@ -30,6 +30,9 @@ struct BAYESIAN_ICP_EXPORT PoseEstimate {
   /** \brief An unknown estimate: all numbers are NaN. */
   PoseEstimate();
   explicit PoseEstimate(const Summary& summary);
+  /** \brief One mode of \p summary. If there are several to choose from, it is
+   * Doubtful, so that it can be exported: the choice is yours. */
+  PoseEstimate(const Summary& summary, const Mode& mode);
 
   const Matrix6d&
   covariance(CovarianceConvention convention) const;

@@ -94,16 +94,22 @@ struct CoordinateSummary {
 };
 
 /** \brief One mode of the posterior. */
-struct Mode {
+struct BAYESIAN_ICP_EXPORT Mode {
   /** Share of the posterior among the modes found, in [0, 1]. It is an estimate from a
    * Gaussian at each mode, good to a factor of a few. */
   double weight = 1.0;
   /** Mean pose of its draws [m, rad]. */
   Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
-  /** Covariance of its draws, CovarianceConvention::Parameters [m, rad]. */
-  Matrix6d covariance = Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** Covariances of its draws about their mean, as Summary::covariances. */
+  std::array<Matrix6d, 4> covariances;
   /** Indices of its chains. */
   std::vector<int> chains;
+
+  Mode();
+
+  /** \brief The covariance in \p convention. */
+  const Matrix6d&
+  covariance(CovarianceConvention convention) const;
 };
 
 /** \brief Posterior of the pose in numbers. */

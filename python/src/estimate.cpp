@@ -102,26 +102,13 @@ gaussianOf(const Prior& prior)
   return prior.mean().allFinite() ? estimateOf(prior) : PoseEstimate();
 }
 
-/** Posterior, weight and chains of each mode. The covariances are those of its draws;
- * a mode that is chosen among several is doubtful. */
+/** Posterior, weight and chains of each mode. */
 std::vector<std::tuple<PoseEstimate, double, std::vector<int>>>
 modesOf(const PosteriorEstimate& estimate)
 {
   std::vector<std::tuple<PoseEstimate, double, std::vector<int>>> modes;
-  const Status status = estimate.summary.status;
-  for (const Mode& mode : estimate.summary.modes) {
-    std::vector<Chain> chains;
-    for (const int index : mode.chains)
-      chains.push_back(estimate.chains[static_cast<std::size_t>(index)]);
-    const PoseMatrix draws = pooledDraws(chains);
-    PoseEstimate posterior;
-    posterior.status = status == Status::SeveralModes ? Status::Doubtful : status;
-    posterior.mean = mode.mean;
-    for (const auto convention : covariance_conventions)
-      posterior.covariances[static_cast<std::size_t>(convention)] =
-          covarianceAbout(mode.mean, draws, convention);
-    modes.emplace_back(posterior, mode.weight, mode.chains);
-  }
+  for (const Mode& mode : estimate.summary.modes)
+    modes.emplace_back(PoseEstimate(estimate.summary, mode), mode.weight, mode.chains);
   return modes;
 }
 

@@ -73,6 +73,12 @@ PoseEstimate::PoseEstimate(const Summary& summary)
 , covariances(summary.covariances)
 {}
 
+PoseEstimate::PoseEstimate(const Summary& summary, const Mode& mode)
+: status(summary.status == Status::SeveralModes ? Status::Doubtful : summary.status)
+, mean(mode.mean)
+, covariances(mode.covariances)
+{}
+
 const Matrix6d&
 PoseEstimate::covariance(CovarianceConvention convention) const
 {

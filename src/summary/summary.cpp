@@ -124,8 +124,9 @@ summarizeModes(const ChainSet& chain_set)
     Mode mode;
     mode.chains = chains.members;
     mode.mean = meanPose(draws);
-    mode.covariance =
-        covarianceAbout(mode.mean, draws, CovarianceConvention::Parameters);
+    for (const auto convention : covariance_conventions)
+      mode.covariances[static_cast<std::size_t>(convention)] =
+          covarianceAbout(mode.mean, draws, convention);
     mode.weight = std::exp(chains.log_evidence - chain_set.modes.front().log_evidence);
     sum += mode.weight;
     modes.push_back(mode);
@@ -281,6 +282,17 @@ messageOf(const Summary& summary, const ChainSet& set, const WorstDiagnostics& w
 }
 
 } // namespace
+
+Mode::Mode()
+{
+  covariances.fill(Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN()));
+}
+
+const Matrix6d&
+Mode::covariance(CovarianceConvention convention) const
+{
+  return covariances[static_cast<std::size_t>(convention)];
+}
 
 Summary::Summary()
 {

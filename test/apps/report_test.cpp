@@ -144,7 +144,7 @@ TEST(Verdict, SeveralModesHaveAPoseEach)
   Mode mode;
   mode.weight = 0.7;
   mode.mean = Vector6d::Zero();
-  mode.covariance = 1e-6 * Matrix6d::Identity();
+  mode.covariances.fill(1e-6 * Matrix6d::Identity());
   summary.modes = {mode, mode};
   summary.modes[1].weight = 0.001;
   summary.modes[1].mean[0] = 0.1;

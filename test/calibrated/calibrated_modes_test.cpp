@@ -6,6 +6,7 @@
 #include "calibrated/modes/robust_mode.h"
 #include "support/test_support.h"
 
+#include <bayesian_icp/exports.h>
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/random.h>
 
@@ -551,6 +552,16 @@ TEST(CalibratedModes, OfACubeAreInTheSummary)
     EXPECT_GE(mode.weight, 0.02);
     sum += mode.weight;
     nearest_turn = std::min(nearest_turn, std::abs(wrapAngle(mode.mean[5] - 1.3)));
+    std::vector<Chain> chains;
+    for (const int index : mode.chains)
+      chains.push_back(estimate.chains[static_cast<std::size_t>(index)]);
+    const PoseMatrix draws = pooledDraws(chains);
+    const PoseEstimate chosen(summary, mode);
+    EXPECT_EQ(chosen.status, Status::Doubtful);
+    EXPECT_EQ(chosen.mean, meanPose(draws));
+    for (const auto convention : covariance_conventions)
+      EXPECT_EQ(chosen.covariance(convention),
+                covarianceAbout(chosen.mean, draws, convention));
   }
   EXPECT_NEAR(sum, 1.0, 1e-12);
   EXPECT_LT(nearest_turn, 0.05 * quarter_turn);

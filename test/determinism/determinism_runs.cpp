@@ -252,7 +252,7 @@ recordOf(const PosteriorEstimate& estimate)
     append(covariance);
   for (const Mode& mode : summary.modes) {
     record.numbers.push_back(mode.weight);
-    append(mode.covariance);
+    append(mode.covariance(CovarianceConvention::Parameters));
   }
   record.tables.push_back({"mean", summary.mean.transpose()});
   record.tables.push_back({"standard_deviation", record.unit.transpose()});

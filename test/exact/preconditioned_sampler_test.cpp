@@ -142,7 +142,8 @@ TEST(Modes, ThatRemainAreReportedWithWeightMeanAndChains)
   for (int i = 0; i < 2; ++i) {
     const Mode& mode = summary.modes[static_cast<std::size_t>(i)];
     EXPECT_NEAR(mode.mean[0], i == 0 ? 1.0 : -1.0, 0.02);
-    EXPECT_NEAR(std::sqrt(mode.covariance(0, 0)), 0.05, 0.01);
+    EXPECT_NEAR(
+        std::sqrt(mode.covariance(CovarianceConvention::Parameters)(0, 0)), 0.05, 0.01);
   }
   EXPECT_GT(summary.coordinates[0].rhat, 1.5);
 }
