@@ -52,10 +52,8 @@ noteOfZeros(const io::CloudFile& cloud)
     return "";
   return cloud.file + ": note: " + std::to_string(num_zeros) +
          " points are at 0 0 0, as returns without a range are. ICP pairs them with "
-         "one "
-         "another, which takes long and draws its result to no motion. Preset "
-         "calibrated "
-         "counts them as one point. Remove them, or set them to NaN.";
+         "one another, which takes long and draws its result to no motion. Preset "
+         "calibrated counts them as one point. Remove them, or set them to NaN.";
 }
 
 Run
