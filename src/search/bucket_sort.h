@@ -29,14 +29,19 @@ sortInBuckets(const std::vector<Key>& keys,
   buckets.assign(num_buckets, 0);
   for (const Key& key : keys)
     ++buckets[bucketOf(key)];
-  std::uint32_t sum = 0;
+  std::uint32_t sum = 0, largest = 0;
   for (auto& bucket : buckets) { // where it ends ...
+    largest = std::max(largest, bucket);
     sum += bucket;
     bucket = sum;
   }
   sorted.resize(keys.size());
   for (const Key& key : keys)
     sorted[--buckets[bucketOf(key)]] = key; // ... and, in the end, begins
+  if (largest > 32) {                       // dense clusters: insertion is quadratic
+    std::sort(sorted.begin(), sorted.end());
+    return;
+  }
   // Insertion moves keys within their buckets only.
   for (std::size_t i = 1; i < sorted.size(); ++i) {
     const Key key = sorted[i];

@@ -450,7 +450,7 @@ protected:
     auto& scores = modes[1].estimate.scores;
     std::fill(scores.has_patch.begin(), scores.has_patch.begin() + num_missing, false);
     scores.off_continuation.head(num_missing).setConstant(off_continuation);
-    weighModes(problem_.prior, region_of_cloud, modes);
+    weighModes(problem_.prior, region_of_cloud, {}, modes);
     return modes[0].log_weight - modes[1].log_weight;
   }
 
@@ -498,7 +498,7 @@ TEST_F(ModeWeights, PointsOfAModelThatAScanCannotMeetAreNoEvidence)
     auto& scores = modes[1].estimate.scores;
     std::fill(scores.has_patch.end() - num_missing, scores.has_patch.end(), false);
     scores.off_continuation.tail(num_missing).setOnes();
-    weighModes(problem_.prior, 0.0, modes);
+    weighModes(problem_.prior, 0.0, {}, modes);
     return modes[0].log_weight - modes[1].log_weight;
   };
   const double of_scans = weightOf(0.95, 0.95);

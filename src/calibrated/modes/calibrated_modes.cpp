@@ -1,6 +1,7 @@
 #include "calibrated/modes/calibrated_modes.h"
 
 #include "calibrated/draws/product_coordinates.h"
+#include "calibrated/modes/look_alikes.h"
 #include "calibrated/modes/mode_weights.h"
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/modes/translated_fits.h"
@@ -496,7 +497,10 @@ findModes(const SurfaceScorer& scorer,
       search.modes.push_back({first, 0.0});
     addModes(scorer, nullptr, prior, ends, options, search);
   }
-  weighModes(prior, mayBeLost(prior) ? region_of_cloud : 0.0, search.modes);
+  weighModes(prior,
+             mayBeLost(prior) ? region_of_cloud : 0.0,
+             unseenPoints(scorer, search.modes),
+             search.modes);
   return search;
 }
 

@@ -22,10 +22,14 @@ namespace bayesian_icp {
  *
  * \param[in] region_of_cloud if not 0, points that meet the target in only one of two
  *            modes are counted separately, as patches of this fraction of a cloud,
- *            because they come into view together */
+ *            because they come into view together
+ * \param[in] unseen of unseenPoints(), or empty. These points are no evidence. Then
+ * fits may differ a little, because the views do, and the Gaussian's integral does not
+ * count if all modes hold all motions. */
 void
 weighModes(const HeldPrior& prior,
            double region_of_cloud,
+           const std::vector<std::vector<char>>& unseen,
            std::vector<CalibratedMode>& modes);
 
 } // namespace bayesian_icp

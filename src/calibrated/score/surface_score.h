@@ -242,6 +242,13 @@ public:
     return source_points_;
   }
 
+  /** \brief The target's points that were added, target frame [m]. */
+  const Eigen::Matrix3Xd&
+  targetPoints() const
+  {
+    return target_points_;
+  }
+
   /** \brief The target's surface. */
   const SurfaceModel&
   model() const
