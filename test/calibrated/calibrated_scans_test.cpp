@@ -254,6 +254,34 @@ scanAmongPillars(const Eigen::Vector2d& place, double yaw, std::uint64_t stream)
       points.front().data(), 3, static_cast<Eigen::Index>(points.size()));
 }
 
+TEST(CalibratedScans, LengthsMayHaveAnyUnit)
+{
+  // Powers of two, which scale without rounding.
+  Options options;
+  simulator::SimulationOptions scan = simulator::defaultOptions("mug");
+  scan.offset << 0.3, -0.3, 0.2, 0.3, -0.3, 0.3;
+  const simulator::ScanPair scans = simulator::simulate(scan);
+  const Summary expected = summaryOf(scans, options);
+  for (const float scale : {1024.0F, 1.0F / 1024.0F}) {
+    SCOPED_TRACE(scale);
+    simulator::ScanPair scaled = scans;
+    scaled.source *= scale;
+    scaled.target *= scale;
+    Options scaled_options = options;
+    scaled_options.prior.variance.head<3>() *= scale * scale;
+    const Summary summary = summaryOf(scaled, scaled_options);
+    EXPECT_EQ(summary.status, expected.status) << summary.message;
+    Vector6d unit = Vector6d::Ones();
+    unit.head<3>() *= scale;
+    EXPECT_TRUE(summary.mean.cwiseQuotient(unit).isApprox(expected.mean, 1e-6));
+    const Matrix6d covariance = unit.cwiseInverse().asDiagonal() *
+                                summary.covariance(CovarianceConvention::R3xSO3) *
+                                unit.cwiseInverse().asDiagonal();
+    EXPECT_TRUE(
+        covariance.isApprox(expected.covariance(CovarianceConvention::R3xSO3), 1e-6));
+  }
+}
+
 TEST(CalibratedScans, AmongPillarsThatLookAlikeTheyAreNotSurelyWrong)
 {
   // The wrong pillar has more overlap, and so a better fit, because the sensor moves

@@ -1,6 +1,7 @@
 #include "calibrated/modes/robust_mode.h"
 
 #include "algebra/decompositions.h"
+#include "geometry/principal_axes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,12 +27,12 @@ constexpr double points_to_prior = 0.2;
 /** Annealing has ended when the scale is within this factor of the residuals'. */
 constexpr double scale_tolerance = 1.001;
 
-/** Point-to-point ICP: longest step [m, rad], weight of a squared distance against the
- * prior [1/m^2], maximum number of steps, and length of a step at which it ends. */
+/** Point-to-point ICP: longest step, as a part of the root mean square radius of the
+ * points, greatest number of steps, and length of a step at which it ends, as a part of
+ * the noise. Lengths of steps are root mean square displacements of the points. */
 constexpr double max_point_step = 0.2;
-constexpr double point_weight = 1e4;
 constexpr int max_point_steps = 20;
-constexpr double point_tolerance = 1e-4;
+constexpr double point_tolerance = 0.01;
 
 /** Two fits are distinct if their residuals differ by this many standard deviations. */
 constexpr double clear_deviations = 2.0;
@@ -166,6 +167,8 @@ fitPointToPoint(const SurfaceScorer& scorer,
   RobustFit fit;
   fit.pose = start;
   PatchHints hints(static_cast<std::size_t>(scorer.numPoints()), KdTree::none);
+  // Of a squared distance against the prior [1/m^2].
+  const double point_weight = 1.0 / (scorer.noise() * scorer.noise());
   for (int step = 0; step < max_point_steps; ++step) {
     const Vector3d centre = fit.pose * scorer.centroid();
     const TwistPrior pull = twistPrior(prior, fit.pose, centre);
@@ -190,17 +193,19 @@ fitPointToPoint(const SurfaceScorer& scorer,
       gradient.tail<3>() += point_weight * arm.cross(residual);
     }
     ++fit.num_evaluations;
-    const Matrix6d matrix = point_weight * static_cast<double>(scorer.numPoints()) *
-                                displacementMetric(scorer, fit.pose) +
-                            pull.precision;
+    const Matrix6d metric = displacementMetric(scorer, fit.pose);
+    const Matrix6d matrix =
+        point_weight * static_cast<double>(scorer.numPoints()) * metric +
+        pull.precision;
     Vector6d xi = -matrix.ldlt().solve(gradient);
     if (!xi.allFinite())
       break;
-    const double length = xi.norm();
-    if (length > max_point_step)
-      xi *= max_point_step / length;
+    const double length = std::sqrt(xi.dot(metric * xi));
+    const double radius = radiusOf(metric);
+    if (length > max_point_step * radius)
+      xi *= max_point_step * radius / length;
     fit.pose = movedBy(xi, centre, fit.pose);
-    if (length < point_tolerance)
+    if (length < point_tolerance * scorer.noise())
       break;
   }
   return fit;
