@@ -62,6 +62,9 @@ describeExportOptions(ExportRequest& exports)
        takeVertices(vertices, options);
      }),
      "Vertices of target and source in g2o. (default 0,1)")
+    ("export-without-prior", io::flag(exports.is_without_prior),
+     "Export what the clouds alone determine, for a filter or graph that already "
+     "contains the prior, for example as odometry.")
     ("export-unreliable", io::flag(options.accept_unreliable),
      "Also export if the status is neither ok nor doubtful. Without it, such a "
      "posterior is not exported.");
@@ -76,8 +79,12 @@ refuseExportOptionsWithoutExport(const po::variables_map& given)
 {
   if (given.count("export") > 0)
     return;
-  for (const char* option :
-       {"target-frame", "source-frame", "timestamp", "vertices", "export-unreliable"})
+  for (const char* option : {"target-frame",
+                             "source-frame",
+                             "timestamp",
+                             "vertices",
+                             "export-without-prior",
+                             "export-unreliable"})
     if (given.count(option) > 0)
       throw io::UsageError(std::string("--") + option +
                            ": has no effect without --export");

@@ -15,6 +15,8 @@ namespace bayesian_icp::app {
 /** \brief What --export and the options that go with it say. */
 struct ExportRequest {
   std::vector<std::string> formats;
+  /** Whether the prior is removed. */
+  bool is_without_prior = false;
   ExportOptions options;
 };
 

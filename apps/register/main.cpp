@@ -13,6 +13,8 @@
 #include "register/sgd_run.h"
 #include "report/report_html.h"
 
+#include <bayesian_icp/measurement.h>
+
 #include <cmath>
 #include <optional>
 
@@ -80,6 +82,22 @@ runRegistration(const Request& request)
   return run;
 }
 
+/** The posterior, or what the clouds alone determine if that is asked for. */
+PoseEstimate
+exportedEstimate(const Request& request, const Run& run)
+{
+  const PoseEstimate posterior(run.result.summary);
+  if (!request.exports.is_without_prior)
+    return posterior;
+  const PoseMeasurement measurement = withoutPrior(posterior, run.result.prior);
+  if (measurement.num_unmeasured > 0 && hasUsableMean(posterior.status) &&
+      !request.is_quiet)
+    io::tell("--export-without-prior: the clouds do not determine " +
+             std::to_string(measurement.num_unmeasured) +
+             " of 6 directions; their standard deviation is 100 times the prior's");
+  return measurement.estimate;
+}
+
 /** \return whether it can be exported */
 bool
 printExport(const Request& request, const Run& run)
@@ -87,7 +105,7 @@ printExport(const Request& request, const Run& run)
   const std::string& format = request.exports.formats.front();
   try {
     io::print(
-        exportText(format, PoseEstimate(run.result.summary), request.exports.options));
+        exportText(format, exportedEstimate(request, run), request.exports.options));
     return true;
   }
   catch (const std::invalid_argument& error) {
@@ -122,7 +140,7 @@ bool
 writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
 {
   const auto refusals =
-      addExports(request.exports, PoseEstimate(run.result.summary), folder);
+      addExports(request.exports, exportedEstimate(request, run), folder);
   const std::string complaint = addReport(request, run, folder);
   folder.add("aligned.pcd", [&](std::ostream& stream) {
     io::writeAligned(run.source, run.target, run.result.final_matrix, stream);

@@ -120,6 +120,12 @@ scaleResult(double unit, RegistrationResult& result)
   for (Chain& chain : result.chains)
     chain.draws.leftCols<3>() *= unit;
   scaleSummary(unit, result.summary);
+  Vector6d factors;
+  factors << unit, unit, unit, 1.0, 1.0, 1.0;
+  const Prior& prior = result.prior;
+  result.prior = Prior(factors.cwiseProduct(prior.mean()),
+                       factors.cwiseAbs2().cwiseProduct(prior.variance()),
+                       unit * prior.referencePoint());
 }
 
 /** \p progress, told of poses in metres; empty if it is. */
@@ -207,6 +213,7 @@ registerClouds(const Eigen::Matrix3Xf& source,
   result.icp_matrix = icp.getFinalTransformation().cast<double>();
   result.icp_fitness = icp.getFitnessScore();
   result.summary = icp.getSummary();
+  result.prior = icp.getPrior();
   result.chains = chainsOf(icp);
   result.is_final_the_mean = settings.use_mean && hasUsableMean(result.summary.status);
   result.final_matrix =

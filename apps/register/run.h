@@ -8,9 +8,11 @@
 #include "register/settings.h"
 
 #include <bayesian_icp/draws.h>
+#include <bayesian_icp/prior.h>
 #include <bayesian_icp/summary.h>
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace bayesian_icp::app {
@@ -24,6 +26,9 @@ struct RegistrationResult {
   /** Mean squared distance of the source, moved by ICP, to the target [m^2]. */
   double icp_fitness = 0.0;
   Summary summary;
+  /** With which the draws were made. */
+  Prior prior{Vector6d::Constant(std::numeric_limits<double>::quiet_NaN()),
+              PriorOptions().variance};
   /** Every chain, the diverged ones included. */
   std::vector<Chain> chains;
   Eigen::Matrix4d final_matrix = Eigen::Matrix4d::Identity();

@@ -381,7 +381,7 @@ TEST(CalibratedScans, AreNotTooSureFromAsFarAsThePriorSays)
 {
   // 1.2 standard deviations of the default prior in each coordinate: most runs keep to
   // the table's plane and leave the rest to the prior.
-  constexpr int num_scans = 6, num_orders = 3;
+  constexpr int num_scans = 12, num_orders = 3;
   int num_outside = 0;
   for (int seed = 1; seed <= num_scans; ++seed)
     for (int order = 1; order <= num_orders; ++order) {
@@ -394,9 +394,10 @@ TEST(CalibratedScans, AreNotTooSureFromAsFarAsThePriorSays)
       if (!(squaredErrorOf(summaryOf(scans, options), scans) < chi_square_999))
         ++num_outside;
     }
-  // Of Student's t with 20 degrees of freedom 0.7 % is outside: two of 18 are once in
-  // 140 tests.
-  EXPECT_LE(num_outside, 1);
+  // Of 360 runs on 60 scans, 1.9 % were outside: some end in another basin, and of the
+  // rest Student's t with 20 degrees of freedom has 0.7 % there. Four of 36 are then
+  // once in 200 tests. If 20 % were outside, fewer than four would be once in 20.
+  EXPECT_LE(num_outside, 3);
 }
 
 } // namespace

@@ -27,10 +27,10 @@ constexpr double points_to_prior = 0.2;
 /** Annealing has ended when the scale is within this factor of the residuals'. */
 constexpr double scale_tolerance = 1.001;
 
-/** Point-to-point ICP: longest step, as a part of the root mean square radius of the
- * points, greatest number of steps, and length of a step at which it ends, as a part of
- * the noise. Lengths of steps are root mean square displacements of the points. */
-constexpr double max_point_step = 0.2;
+/** Point-to-point ICP: a step moves the points at most as far as their root mean square
+ * radius, and turns them by at most so much [rad]. It ends at the greatest number of
+ * steps, or where the points move less than a part of the noise. */
+constexpr double max_point_rotation = 0.2;
 constexpr int max_point_steps = 20;
 constexpr double point_tolerance = 0.01;
 
@@ -201,9 +201,10 @@ fitPointToPoint(const SurfaceScorer& scorer,
     if (!xi.allFinite())
       break;
     const double length = std::sqrt(xi.dot(metric * xi));
-    const double radius = radiusOf(metric);
-    if (length > max_point_step * radius)
-      xi *= max_point_step * radius / length;
+    const double excess = std::max(xi.head<3>().norm() / radiusOf(metric),
+                                   xi.tail<3>().norm() / max_point_rotation);
+    if (excess > 1.0)
+      xi /= excess;
     fit.pose = movedBy(xi, centre, fit.pose);
     if (length < point_tolerance * scorer.noise())
       break;
