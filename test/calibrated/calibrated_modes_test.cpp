@@ -477,6 +477,41 @@ TEST_F(ModeWeights, RegionsThatMeetNoTargetCountAsFarAsTheyAreMany)
   EXPECT_NEAR(weightOf(16.0) / weightOf(8.0), 3.0, 1e-9);
 }
 
+TEST_F(ModeWeights, PointsThatCouldNotBeSeenAndSlightMisfitsAreNoEvidence)
+{
+  constexpr int num_missing = 200;
+  const Eigen::Index num_points = estimate_.scores.residuals.size();
+  const auto weightOf = [&](double misfit, bool are_seen) {
+    std::vector<CalibratedMode> modes(2, {estimate_, 0.0});
+    std::vector<std::vector<char>> unseen(2, std::vector<char>(num_points, false));
+    for (auto& mode : modes) {
+      auto& scores = mode.estimate.scores;
+      scores.residuals.setConstant(0.1);
+      std::fill(scores.has_patch.begin(), scores.has_patch.end(), true);
+      std::fill(scores.active.begin(), scores.active.end(), true);
+      scores.num_source_points = num_points;
+      scores.num_active = scores.num_active_of_source = static_cast<int>(num_points);
+    }
+    modes[1].estimate.cost += 1e-9;
+    auto& scores = modes[1].estimate.scores;
+    // Energies of small residuals are as their squares.
+    scores.residuals *= std::sqrt(misfit);
+    for (int i = 0; i < num_missing; ++i) {
+      scores.has_patch[i] = scores.active[i] = false;
+      scores.off_continuation[i] = 1.0;
+      unseen[1][i] = !are_seen;
+    }
+    scores.num_active -= num_missing;
+    scores.num_active_of_source -= num_missing;
+    weighModes(problem_.prior, 0.0, unseen, modes);
+    return modes[0].log_weight - modes[1].log_weight;
+  };
+  EXPECT_NEAR(weightOf(1.0, false), 0.0, 1e-9);
+  EXPECT_NEAR(weightOf(1.14, false), 0.0, 1e-9);
+  EXPECT_GT(weightOf(2.0, false), 0.1);
+  EXPECT_GT(weightOf(1.0, true), 10.0);
+}
+
 TEST_F(ModeWeights, PointsOfAModelThatAScanCannotMeetAreNoEvidence)
 {
   // Half of the points are the scan's. In one of the modes, 200 of the others miss.

@@ -46,6 +46,7 @@ public:
   explicit View(const Eigen::Matrix3Xd& points)
   : directions_(points.colwise().normalized().cast<float>())
   , ranges_(points.colwise().norm().cast<float>())
+  , max_range_(ranges_.size() > 0 ? ranges_.maxCoeff() : 0.0F)
   , rays_(directions_)
   {}
 
@@ -75,7 +76,7 @@ public:
   mayMiss(const Eigen::Vector3d& point, NeighborList& list) const
   {
     const auto range = static_cast<float>(point.norm());
-    if (range > ranges_.maxCoeff())
+    if (range > max_range_)
       return true;
     rays_.find(point.normalized().cast<float>(), num_rays, list);
     if (list.squared_distances.front() > far_ray * far_ray)
@@ -90,6 +91,7 @@ public:
 private:
   Eigen::Matrix3Xf directions_;
   Eigen::VectorXf ranges_; // [m]
+  float max_range_;        // [m]
   PointNeighbors rays_;
 };
 
