@@ -94,7 +94,8 @@ exportedEstimate(const Request& request, const Run& run)
       !request.is_quiet)
     io::tell("--export-without-prior: the clouds do not determine " +
              std::to_string(measurement.num_unmeasured) +
-             " of 6 directions; their standard deviation is 100 times the prior's");
+             " of 6 directions; their standard deviation is " +
+             io::fixedTextOf(unmeasured_deviation, 0) + " times the prior's");
   return measurement.estimate;
 }
 

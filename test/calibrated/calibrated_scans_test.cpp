@@ -216,8 +216,10 @@ TEST(CalibratedScans, StrayPointsDoNotTakeThePlaceOfSurfaces)
 }
 
 /** What a LiDAR of 20 rings sees within 8 m of a corridor, 3 m wide, with a round
- * pillar every 0.5 m, 1.4 m to the left. The noise is 1 cm. \param[in] place of the
- * sensor, along the corridor and to its left [m] \param[in] yaw [rad] */
+ * pillar every 0.5 m, 1.4 m to the left. The noise is 1 cm.
+ *
+ * \param[in] place of the sensor, along the corridor and to its left [m]
+ * \param[in] yaw of the sensor [rad] */
 Eigen::Matrix3Xf
 scanAmongPillars(const Eigen::Vector2d& place, double yaw, std::uint64_t stream)
 {
