@@ -62,7 +62,9 @@ estimateOf(const Vector6d& mean,
            const Matrix6d& covariance,
            CovarianceConvention convention);
 
-/** \brief The prior as a Gaussian about its mean, with status Ok. */
+/** \brief The prior as a Gaussian about its mean.
+ * \return status Ok; InvalidInput unless \p prior has a finite mean and positive
+ *         variances */
 BAYESIAN_ICP_EXPORT PoseEstimate
 estimateOf(const Prior& prior);
 

@@ -103,7 +103,7 @@ estimateOf(const Prior& prior)
       least_precision * Matrix6d::Identity();
   PoseEstimate estimate =
       estimateOf(prior.mean(), precision.inverse(), CovarianceConvention::LeftSE3);
-  estimate.status = Status::Ok;
+  estimate.status = isUsable(prior) ? Status::Ok : Status::InvalidInput;
   return estimate;
 }
 

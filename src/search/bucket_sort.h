@@ -11,8 +11,11 @@
 namespace bayesian_icp {
 
 /** \brief Sort \p keys into buckets of equal width, and then those.
+ *
  * \param[in] placeOf from a key to a float or double in [0, 1], in the order of the
- * keys \param[out] sorted the keys \param[in,out] buckets a buffer */
+ *            keys
+ * \param[out] sorted the keys
+ * \param[in,out] buckets a buffer */
 template <typename Key, typename Place>
 void
 sortInBuckets(const std::vector<Key>& keys,

@@ -42,18 +42,17 @@ twoDiscs(Random& random, const Vector3d& shift)
   return points.rowwise() - RowVector3d(points.row(0));
 }
 
-Matrix3d
-principalAxes(const PointRows& points)
-{
-  const PointRows centred = points.rowwise() - points.colwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(centred.transpose() * centred);
-  return solver.eigenvectors().rowwise().reverse();
-}
-
 std::optional<Layer>
 layerOf(const PointRows& points)
 {
-  return ownLayer(points, principalAxes(points));
+  const RowVector3d mean = points.colwise().mean();
+  const PointRows centred = points.rowwise() - mean;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(
+      centred.transpose() * centred / static_cast<double>(points.rows()));
+  return ownLayer(points,
+                  {mean.transpose(),
+                   solver.eigenvectors().rowwise().reverse(),
+                   solver.eigenvalues().reverse()});
 }
 
 TEST(Layers, TheFacesOfAWallAreLayers)

@@ -132,7 +132,9 @@ TEST(WithoutPrior, APriorThatIsNotFiniteIsAnInvalidInput)
     EXPECT_EQ(estimate.status, Status::InvalidInput);
     EXPECT_TRUE(estimate.mean.array().isNaN().all());
     EXPECT_TRUE(estimate.covariance(left).array().isNaN().all());
+    EXPECT_EQ(estimateOf(prior).status, Status::InvalidInput);
   }
+  EXPECT_EQ(estimateOf(Prior(some_pose, ones)).status, Status::Ok);
   posterior.mean[0] = nan;
   EXPECT_EQ(withoutPrior(posterior, Prior(some_pose, ones)).estimate.status,
             Status::InvalidInput);

@@ -42,6 +42,9 @@ constexpr std::size_t max_ways_found = 8, max_ways_followed = 16;
  * where it fits better than a step nearer or further, so many are followed. */
 constexpr int num_slides = 30;
 constexpr std::size_t max_repeats = 4;
+/** Number of slides one after another, in which a point mostly meets the same patches.
+ */
+constexpr Index slides_per_piece = 8;
 /** Residuals count at least up to this one. */
 constexpr double least_cap = 5.0;
 
@@ -219,13 +222,17 @@ repeatsAlong(const Vector3d& axis,
   // Distances count up to a step, so that no place is missed between two of them.
   const double cap = std::max(least_cap, step / scorer.noise());
   Eigen::Array<double, num_costs, 1> costs;
-  forEachPiece(num_costs, num_threads, [&](std::ptrdiff_t i) {
-    const Isometry3d pose = Eigen::Translation3d(wayTo(i)) * from.pose;
+  constexpr Index num_pieces = (num_costs + slides_per_piece - 1) / slides_per_piece;
+  forEachPiece(num_pieces, num_threads, [&](std::ptrdiff_t piece) {
+    const Index end = std::min(num_costs, slides_per_piece * (piece + 1));
     PatchHints hints;
     SurfaceScores scores;
-    scorer.evaluate(pose, pose * scorer.centroid(), 1.0, hints, scores);
-    const auto on_patch = scores.residuals.array().abs().min(cap) / cap;
-    costs[i] = (on_patch + scores.off_continuation.array()).mean();
+    for (Index i = slides_per_piece * piece; i < end; ++i) {
+      const Isometry3d pose = Eigen::Translation3d(wayTo(i)) * from.pose;
+      scorer.evaluate(pose, pose * scorer.centroid(), 0.0, hints, scores);
+      const auto on_patch = scores.residuals.array().abs().min(cap) / cap;
+      costs[i] = (on_patch + scores.off_continuation.array()).mean();
+    }
   });
   std::vector<Index> repeats;
   for (Index i = 1; i + 1 < num_costs; ++i)

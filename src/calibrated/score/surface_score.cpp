@@ -114,18 +114,14 @@ contactWith(const SurfaceModel& model,
 }
 
 void
-clear(SurfaceScores& scores, Eigen::Index num_points)
+resize(SurfaceScores& scores, Eigen::Index num_points)
 {
-  scores.residuals.setZero(num_points);
-  scores.active.assign(static_cast<std::size_t>(num_points), 0);
-  scores.has_patch.assign(static_cast<std::size_t>(num_points), 0);
-  scores.off_continuation.setZero(num_points);
-  scores.scores.setZero(6, num_points);
-  scores.jacobians.setZero(6, num_points);
-  scores.total.setZero();
-  scores.information.setZero();
-  scores.num_active = 0;
-  scores.num_active_of_source = 0;
+  scores.residuals.resize(num_points);
+  scores.active.resize(static_cast<std::size_t>(num_points));
+  scores.has_patch.resize(static_cast<std::size_t>(num_points));
+  scores.off_continuation.resize(num_points);
+  scores.scores.resize(6, num_points);
+  scores.jacobians.resize(6, num_points);
 }
 
 } // namespace
@@ -349,24 +345,21 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
                         SurfaceScores& scores) const
 {
   hints.resize(static_cast<std::size_t>(numPoints()), KdTree::none);
-  clear(scores, numPoints());
+  resize(scores, numPoints());
   scores.num_source_points = source_points_.cols();
   const Placement placement(*this, T_target_source, centre);
   const auto evaluateAt = [&](Eigen::Index i) {
     const auto index = static_cast<std::size_t>(i);
     Vector6d rates;
     const Contact contact = placement.contactOf(i, hints[index], rates);
-    if (!contact.has_patch) {
-      scores.off_continuation[i] = contact.off_continuation;
-      return;
-    }
-    scores.has_patch[index] = 1;
-    scores.residuals[i] = contact.residual;
     const double weight =
-        tukeyWeight(contact.residual / tau / SurfaceScorer::tukey_constant);
-    if (weight == 0.0)
-      return;
-    scores.active[index] = 1;
+        contact.has_patch
+            ? tukeyWeight(contact.residual / tau / SurfaceScorer::tukey_constant)
+            : 0.0;
+    scores.has_patch[index] = contact.has_patch;
+    scores.off_continuation[i] = contact.has_patch ? 0.0 : contact.off_continuation;
+    scores.residuals[i] = contact.residual;
+    scores.active[index] = weight > 0.0;
     scores.scores.col(i) = weight * contact.residual * rates;
     scores.jacobians.col(i) = std::sqrt(weight) * rates;
   };
@@ -383,6 +376,9 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
   if (static_cast<double>(num_contacts) <
       min_contacts * static_cast<double>(numPoints()))
     scores.off_continuation.setOnes();
+  scores.total.setZero();
+  scores.information.setZero();
+  scores.num_active = scores.num_active_of_source = 0;
   for (Eigen::Index i = 0; i < numPoints(); ++i) {
     if (!scores.active[static_cast<std::size_t>(i)])
       continue;

@@ -163,7 +163,8 @@ public:
 
   /** \brief Evaluate all points, with the same bits for every number of threads.
    * \param[in] T_target_source where
-   * \param[in] tau scale of the residuals in Tukey's weight; infinite: least squares
+   * \param[in] tau scale of the residuals in Tukey's weight; infinite: least squares;
+   *            0: no point is active
    * \param[in] centre of the twists, target frame [m]
    * \param[in,out] hints empty, or from an earlier call on this object
    * \param[out] scores of all points */

@@ -41,26 +41,29 @@ constexpr double ridge = 1e-9;
 /* Alternates, as k-means does, between the sets of points that two parallel planes are
  * nearest to and the parallel planes that fit these sets best. */
 std::optional<Layer>
-ownLayer(const PointRows& points, const Matrix3d& axes)
+ownLayer(const PointRows& points, const PrincipalFrame& frame)
 {
-  PointRows local = points.lazyProduct(axes);
-  const Eigen::RowVector3d mean = local.colwise().mean();
-  local.rowwise() -= mean;
-  const auto num_points = static_cast<double>(local.rows());
-  // The axes are those of the covariance.
-  const Vector3d variances = local.colwise().squaredNorm().transpose() / num_points;
+  const Vector3d& variances = frame.variances;
+  const auto num_points = static_cast<double>(points.rows());
   const double spread = variances[0] + variances[1];
+  // In the frame, from the mean.
   Layer layer = {Vector3d::UnitZ(), 0.0};
+  const auto inCloud = [&frame](const Layer& local) {
+    const Vector3d axis = frame.axes * local.axis;
+    return Layer{axis, local.threshold + frame.mean.dot(axis)};
+  };
   Vector3d step;
   double explained = 0.0;
   for (int i = 0; i < num_steps; ++i) {
+    const Layer in_cloud = inCloud(layer);
     const Eigen::VectorXd is_upper =
-        (local.lazyProduct(layer.axis).array() > layer.threshold).cast<double>();
+        (points.lazyProduct(in_cloud.axis).array() > in_cloud.threshold).cast<double>();
     const double share = is_upper.mean();
     if (!(std::min(share, 1.0 - share) > min_share))
       return std::nullopt;
-    const Vector3d upper =
-        local.transpose().lazyProduct(is_upper) / (share * num_points);
+    const Vector3d mean_of_upper =
+        points.transpose().lazyProduct(is_upper) / (share * num_points);
+    const Vector3d upper = frame.axes.transpose() * (mean_of_upper - frame.mean);
     step = upper / (1.0 - share);
     const Matrix3d between = share * (1.0 - share) * step * step.transpose();
     const Matrix3d within = Matrix3d(variances.asDiagonal()) - between;
@@ -80,9 +83,7 @@ ownLayer(const PointRows& points, const Matrix3d& axes)
         layer.axis.head<2>().norm() < max_slope &&
         (step - across).squaredNorm() < max_offset * max_offset * spread))
     return std::nullopt;
-  layer.threshold += mean.dot(layer.axis);
-  layer.axis = axes * layer.axis;
-  return layer;
+  return inCloud(layer);
 }
 
 void

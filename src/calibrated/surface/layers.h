@@ -5,12 +5,31 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <optional>
 
 namespace bayesian_icp {
 
 /** \brief One point per row, so that loops over points are vectorised. */
 using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/** \brief Principal axes of points. */
+struct PrincipalFrame {
+  /** Of the points. */
+  Eigen::Vector3d mean;
+  /** Columns: widest, second, normal. The second is zero if the cloud lies in a plane.
+   */
+  Eigen::Matrix3d axes;
+  /** Along the axes, not negative [m^2]. */
+  Eigen::Vector3d variances;
+
+  /** Standard deviation across the surface [m]. */
+  double
+  thickness() const
+  {
+    return std::sqrt(variances[2]);
+  }
+};
 
 /** \brief The layer of the origin, next to another one. */
 struct Layer {
@@ -25,9 +44,9 @@ struct Layer {
  * points' distances apart; of wide layers, less than 8.7.
  *
  * \param[in] points relative to one of them
- * \param[in] axes columns: principal axes of the points, widest first */
+ * \param[in] frame of the points */
 std::optional<Layer>
-ownLayer(const PointRows& points, const Eigen::Matrix3d& axes);
+ownLayer(const PointRows& points, const PrincipalFrame& frame);
 
 /** \brief Keep the points that are in a layer. */
 void

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -85,39 +86,33 @@ surfaceShape(const SurfaceModelOptions& options)
  * more than its parabola; F is as seldom above 4 as that of a surface is above 2.2. */
 constexpr Shape curve_shape = {true, 9, 3, 5, 8, 4.0, 1e-9};
 
-/** Principal axes of a neighbourhood. */
-struct PrincipalFrame {
-  /** Columns: widest, second, normal. The second is zero if the cloud lies in a plane.
-   */
-  Matrix3d axes;
-  /** Standard deviation across the surface [m]. */
-  double thickness;
-};
-
 /** \param[in] plane_normal as in fitPatch() */
 PrincipalFrame
 principalFrame(const PointRows& points, const Vector3d* plane_normal)
 {
-  const Eigen::RowVector3d mean = points.colwise().mean();
+  PrincipalFrame frame;
+  frame.mean = points.colwise().mean().transpose();
   Matrix3d covariance;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j)
-      covariance(i, j) = covariance(j, i) =
-          ((points.col(i).array() - mean[i]) * (points.col(j).array() - mean[j])).sum();
+      covariance(i, j) = covariance(j, i) = ((points.col(i).array() - frame.mean[i]) *
+                                             (points.col(j).array() - frame.mean[j]))
+                                                .sum();
   covariance /= static_cast<double>(points.rows());
   // The normal of the cloud's plane becomes the widest axis, and is left out.
   if (plane_normal)
     covariance += 2.0 * covariance.trace() * *plane_normal * plane_normal->transpose();
   Eigen::SelfAdjointEigenSolver<Matrix3d> solver;
   solver.computeDirect(covariance);
-  PrincipalFrame frame;
-  if (plane_normal)
-    frame.axes << solver.eigenvectors().col(1), Vector3d::Zero(),
-        solver.eigenvectors().col(0);
-  else
-    frame.axes << solver.eigenvectors().col(2), solver.eigenvectors().col(1),
-        solver.eigenvectors().col(0);
-  frame.thickness = std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
+  // Widest axis first.
+  frame.axes = solver.eigenvectors().rowwise().reverse();
+  frame.variances = solver.eigenvalues().reverse().cwiseMax(0.0);
+  if (plane_normal) {
+    frame.axes.col(0) = frame.axes.col(1);
+    frame.axes.col(1).setZero();
+    frame.variances[0] = frame.variances[1];
+    frame.variances[1] = 0.0;
+  }
   return frame;
 }
 
@@ -180,8 +175,9 @@ double
 evennessOf(const PointRows& local)
 {
   const Eigen::Index num_points = local.rows();
-  Eigen::ArrayXd x = local.col(0);
-  const auto y = local.col(1).array();
+  const double scale = 1.0 / local.leftCols<2>().cwiseAbs().maxCoeff();
+  Eigen::ArrayXf x = (scale * local.col(0)).cast<float>();
+  const Eigen::ArrayXf y = (scale * local.col(1)).cast<float>();
   // Of an ellipse that is filled evenly.
   constexpr double pi = 3.14159265358979323846;
   const double area =
@@ -191,8 +187,8 @@ evennessOf(const PointRows& local)
   double sum = 0.0;
   int count = 0;
   for (Eigen::Index i = 0; i < num_points; i += step, ++count) {
-    const double here = x[i];
-    x[i] = std::numeric_limits<double>::infinity(); // not a neighbour of itself
+    const float here = x[i];
+    x[i] = std::numeric_limits<float>::infinity(); // not a neighbour of itself
     sum += std::sqrt(((x - here).square() + (y - y[i]).square()).minCoeff());
     x[i] = here;
   }
@@ -206,60 +202,90 @@ placeOfTerm(int degree, int power_of_y)
   return degree * (degree + 1) / 2 + power_of_y;
 }
 
-/** Regression of heights on the terms of the plane up to a degree, 2 or 4. The plane is
- * scaled to the unit disc. */
-template <int degree>
+/** Regression of heights on the terms of the plane up to the fourth degree. The plane
+ * is scaled to the unit disc. The first rows of Cholesky's factor are those of the
+ * regression on the first terms alone, so one factor tests a quadric against a
+ * quartic. */
 class Regression {
 public:
-  static constexpr int num_terms = placeOfTerm(degree + 1, 0);
-  using Terms = Eigen::Matrix<double, num_terms, 1>;
+  static constexpr int degree = 4, num_terms = placeOfTerm(degree + 1, 0);
+  static constexpr int num_quadric_terms = placeOfTerm(3, 0);
 
-  /** \param[in] ridge added to the squares of the terms, for each point: a scan line
-   * leaves some terms undetermined */
-  Regression(const PointRows& local, double radius, double ridge)
+  /** \param[in] quadric_ridge as in Shape */
+  Regression(const PointRows& local, double radius, double quadric_ridge)
   {
-    Terms moments;
+    Column moments;
     fillNormalMatrix(sumOfProducts(local, radius, moments));
-    factor_.diagonal().array() += ridge * static_cast<double>(local.rows());
+    const auto num_points = static_cast<double>(local.rows());
+    for (int k = 0; k < num_terms; ++k)
+      factor_(k, k) += num_points * (k < num_quadric_terms ? quadric_ridge : ridge);
     decompose();
     reduced_moments_ = reduced(moments);
   }
 
-  /** NaN if the points do not determine it. */
-  Terms
-  solution() const
+  /** The coefficients of the quadric. NaN if the points do not determine them. */
+  Vector6d
+  quadric() const
   {
-    return factor_.template triangularView<Eigen::Lower>().transpose().solve(
-        reduced_moments_);
+    return factor_.topLeftCorner<num_quadric_terms, num_quadric_terms>()
+        .triangularView<Eigen::Lower>()
+        .transpose()
+        .solve(reduced_moments_.head<num_quadric_terms>());
   }
 
-  /** Sum of the squared heights that the terms explain. */
+  /** Sum of the squared heights that the first terms explain. */
   double
-  explained() const
+  explainedBy(int count) const
   {
-    return reduced_moments_.squaredNorm();
+    return reduced_moments_.head(count).squaredNorm();
   }
 
-  /** Variance of a coefficient, for unit noise. */
+  /** Variance of a coefficient of the quadric, for unit noise. */
   double
   varianceOf(int term) const
   {
-    return reduced(Terms::Unit(term)).squaredNorm();
+    return reduced(Column::Unit(term)).head<num_quadric_terms>().squaredNorm();
   }
 
 private:
+  /** A scan line leaves terms of a quartic undetermined. */
+  static constexpr double ridge = 1e-9;
   static constexpr int num_product_terms = placeOfTerm(2 * degree + 1, 0);
-  using ProductTerms = Eigen::Matrix<double, num_product_terms, 1>;
+  /** Columns are filled up, so that all have one number of vectors. */
+  static constexpr int column_size = num_terms + 1;
+  using Column = Eigen::Matrix<double, column_size, 1>;
+  /** The last one is zero, for places that fill columns up. */
+  using ProductTerms = Eigen::Matrix<double, num_product_terms + 1, 1>;
+
+  static constexpr Eigen::Index num_lanes = 4;
+
+  /** Add every fourth number. */
+  template <typename Numbers, typename Sums>
+  static void
+  addLanes(const Numbers& numbers, Sums&& sums)
+  {
+    Eigen::Array<double, num_lanes, 1> lanes = sums;
+    for (Eigen::Index i = 0; i < numbers.size(); i += num_lanes)
+      lanes += numbers.template segment<num_lanes>(i);
+    sums = lanes;
+  }
+
+  template <typename Array>
+  static constexpr auto&
+  at(Array& array, int place)
+  {
+    return array[static_cast<std::size_t>(place)];
+  }
 
   /** Products of two terms: those up to twice the degree. Points are taken a block at a
    * time, so that the loops over them are vectorised. */
   static ProductTerms
-  sumOfProducts(const PointRows& local, double radius, Terms& moments)
+  sumOfProducts(const PointRows& local, double radius, Column& moments)
   {
     constexpr Eigen::Index block_size = 32;
     using Block = Eigen::Array<double, block_size, 1>;
-    Eigen::Array<double, num_lanes, num_product_terms> sums;
-    Eigen::Array<double, num_lanes, num_terms> moment_sums;
+    Eigen::Array<double, num_lanes, num_product_terms + 1> sums;
+    Eigen::Array<double, num_lanes, column_size> moment_sums;
     sums.setZero();
     moment_sums.setZero();
     const double scale = 1.0 / radius;
@@ -289,65 +315,60 @@ private:
     return sums.colwise().sum().transpose();
   }
 
-  static constexpr Eigen::Index num_lanes = 4;
-
-  /** Add every fourth number. */
-  template <typename Numbers, typename Sums>
-  static void
-  addLanes(const Numbers& numbers, Sums&& sums)
+  /** For each entry of the normal matrix, the place of its product of terms. */
+  static constexpr auto
+  placesOfProducts()
   {
-    Eigen::Array<double, num_lanes, 1> lanes = sums;
-    for (Eigen::Index i = 0; i < numbers.size(); i += num_lanes)
-      lanes += numbers.template segment<num_lanes>(i);
-    sums = lanes;
-  }
-
-  template <typename Array>
-  static auto&
-  at(Array& array, int place)
-  {
-    return array[static_cast<std::size_t>(place)];
+    std::array<std::uint8_t, column_size * num_terms> places{};
+    for (int p = 0; p <= degree; ++p)
+      for (int j = 0; j <= p; ++j) {
+        const int column = column_size * placeOfTerm(p, j);
+        for (int q = 0; q <= degree; ++q)
+          for (int k = 0; k <= q; ++k)
+            at(places, column + placeOfTerm(q, k)) =
+                static_cast<std::uint8_t>(placeOfTerm(p + q, j + k));
+        at(places, column + num_terms) = num_product_terms;
+      }
+    return places;
   }
 
   void
   fillNormalMatrix(const ProductTerms& sums)
   {
-    for (int p = 0; p <= degree; ++p)
-      for (int q = 0; q <= degree; ++q)
-        for (int j = 0; j <= p; ++j)
-          for (int k = 0; k <= q; ++k)
-            factor_(placeOfTerm(p, j), placeOfTerm(q, k)) =
-                sums[placeOfTerm(p + q, j + k)];
+    static constexpr auto places = placesOfProducts();
+    std::transform(places.begin(), places.end(), factor_.data(), [&](int place) {
+      return sums[place];
+    });
   }
 
   /** Cholesky's factor, in the lower triangle. If the terms are not independent, a
-   * pivot makes all that follows NaN or infinite, variances, too. */
+   * pivot makes all that follows NaN or infinite, variances, too. What is above the
+   * diagonal is of no use, but one length for all columns is faster. */
   void
   decompose()
   {
-    for (int k = 0; k < num_terms; ++k) {
-      const int below = num_terms - k - 1;
-      factor_(k, k) = std::sqrt(factor_(k, k));
-      factor_.col(k).tail(below) /= factor_(k, k);
-      for (int j = k + 1; j < num_terms; ++j)
-        factor_.col(j).tail(num_terms - j) -=
-            factor_(j, k) * factor_.col(k).tail(num_terms - j);
+    for (int j = 0; j < num_terms; ++j) {
+      Column column = factor_.col(j);
+      for (int k = 0; k < j; ++k)
+        column -= factor_(j, k) * factor_.col(k);
+      factor_.col(j) = column / std::sqrt(column[j]);
     }
   }
 
   /** L^-1 x. */
-  Terms
-  reduced(Terms x) const
+  Column
+  reduced(Column x) const
   {
+    Column result = Column::Zero();
     for (int k = 0; k < num_terms; ++k) {
-      x[k] /= factor_(k, k);
-      x.tail(num_terms - k - 1) -= x[k] * factor_.col(k).tail(num_terms - k - 1);
+      result[k] = x[k] / factor_(k, k);
+      x -= result[k] * factor_.col(k);
     }
-    return x;
+    return result;
   }
 
-  Eigen::Matrix<double, num_terms, num_terms> factor_;
-  Terms reduced_moments_;
+  Eigen::Matrix<double, column_size, num_terms> factor_;
+  Column reduced_moments_;
 };
 
 /** Whether a quadric is good enough, however exact the points are. */
@@ -357,20 +378,21 @@ isExact(double radius, double sigma)
   return sigma < negligible_misfit * radius;
 }
 
-/** F statistic of the quartic's extra terms. */
+/** F statistic of the quartic's extra terms.
+ * \param[in] rss of the quadric */
 double
-misfit(const PointRows& local,
+misfit(const Regression& regression,
        const Shape& shape,
-       double radius,
+       double num_points,
        double squared_heights,
-       double quadric_rss)
+       double rss)
 {
-  constexpr double ridge = 1e-9, least_rss = 1e-18;
-  const Regression<4> quartic(local, radius, ridge);
-  const double rss = std::max(least_rss, squared_heights - quartic.explained());
+  constexpr double least_rss = 1e-18;
+  const double quartic_rss = std::max(
+      least_rss, squared_heights - regression.explainedBy(Regression::num_terms));
   const double extra_terms = shape.num_quartic_terms - shape.num_quadric_terms;
-  return (quadric_rss - rss) / extra_terms /
-         (rss / static_cast<double>(local.rows() - shape.num_quartic_terms));
+  return (rss - quartic_rss) / extra_terms /
+         (quartic_rss / (num_points - shape.num_quartic_terms));
 }
 
 /** Make a patch the quadric of the neighbours in its frame, if they lie on one. */
@@ -383,28 +405,27 @@ fitQuadric(const PointRows& local,
 {
   const double centroid_offset = local.leftCols<2>().colwise().mean().norm();
   if (!(aspect >= min_aspect &&
-        centroid_offset < options.max_centroid_offset * patch.radius))
+        centroid_offset < options.max_centroid_offset * patch.radius &&
+        (shape.is_curve || evennessOf(local) > min_evenness)))
     return;
   const auto num_points = static_cast<double>(local.rows());
-  const Regression<2> quadric(local, patch.radius, shape.quadric_ridge);
+  const Regression regression(local, patch.radius, shape.quadric_ridge);
   const double squared_heights = local.col(2).squaredNorm();
-  const double rss = std::max(0.0, squared_heights - quadric.explained());
+  const double rss = std::max(
+      0.0, squared_heights - regression.explainedBy(Regression::num_quadric_terms));
   const double sigma = std::sqrt(rss / (num_points - shape.num_quadric_terms));
   const double slope_variance =
-      num_points *
-      std::max(quadric.varianceOf(1), shape.is_curve ? 0.0 : quadric.varianceOf(2));
-  // The costliest tests are last.
+      num_points * std::max(regression.varianceOf(1),
+                            shape.is_curve ? 0.0 : regression.varianceOf(2));
   const bool is_quadric =
       slope_variance < max_slope_variance &&
       patch.radius > options.min_radius_to_noise * sigma &&
-      (isExact(patch.radius, sigma) || local.rows() >= shape.min_points) &&
-      (shape.is_curve || evennessOf(local) > min_evenness) &&
       (isExact(patch.radius, sigma) ||
-       misfit(local, shape, patch.radius, squared_heights, rss) < shape.max_misfit);
-  if (!is_quadric)
-    return;
-  const Vector6d solution = quadric.solution();
-  if (!solution.allFinite())
+       (local.rows() >= shape.min_points &&
+        misfit(regression, shape, num_points, squared_heights, rss) <
+            shape.max_misfit));
+  const Vector6d solution = regression.quadric();
+  if (!is_quadric || !solution.allFinite())
     return;
   const double r = 1.0 / patch.radius;
   patch.quadric = {solution[0],
@@ -475,8 +496,8 @@ gatherNeighbors(const PointNeighbors& cloud,
   const PrincipalFrame frame = principalFrame(ball, plane_normal);
   Matrix3d axes = frame.axes;
   const double radius = std::sqrt(double(workspace.nearest.squared_distances.back()));
-  const std::optional<Layer> layer = radius < max_radius_of_layers * frame.thickness
-                                         ? ownLayer(ball, axes)
+  const std::optional<Layer> layer = radius < max_radius_of_layers * frame.thickness()
+                                         ? ownLayer(ball, frame)
                                          : std::nullopt;
   if (layer) {
     const auto num_both = static_cast<double>(ball.rows());
@@ -531,7 +552,8 @@ fitPatch(const PointNeighbors& cloud,
     patch.axes = frame.axes;
     patch.radius = std::sqrt(local.leftCols<2>().rowwise().squaredNorm().maxCoeff());
     const bool is_too_wide = patch.radius > max_radius;
-    const bool is_thick = patch.radius < options.min_radius_to_noise * frame.thickness;
+    const bool is_thick =
+        patch.radius < options.min_radius_to_noise * frame.thickness();
     const bool is_narrow = aspect < wanted_aspect;
     const int next = 2 * growth;
     if (!is_too_wide && (is_thick || is_narrow) && next <= max_growth &&
@@ -540,7 +562,7 @@ fitPatch(const PointNeighbors& cloud,
     const auto& squared_distances = workspace.nearest.squared_distances;
     spacing =
         squared_distances.size() > 1 ? std::sqrt(double(squared_distances[1])) : 0.0;
-    fitPlane(local, frame.thickness, aspect, patch);
+    fitPlane(local, frame.thickness(), aspect, patch);
     if (is_too_wide || (shape.is_curve && is_thick))
       patch.kind = PatchKind::None;
     else if (neighbors.rows() > shape.num_quadric_terms && patch.radius > 0.0)
