@@ -71,8 +71,10 @@ constexpr int information_degrees_of_freedom = 20;
 /** Where the data leave a motion to the prior, the mode moves to the posterior mean if
  * the mean is further away than min_distance_of_mean prior standard deviations, at most
  * max_moves times. It does not move if less than min_support_after_move of the active
- * points would stay active. */
+ * points would stay active, or if it would fit worse by more than max_loss_of_move of
+ * its cost. */
 constexpr double min_distance_of_mean = 0.5, min_support_after_move = 0.5;
+constexpr double max_loss_of_move = 0.2;
 constexpr int max_moves = 2;
 
 /** Further away than max_distance_to_radius of the source's root mean square radius,
@@ -380,16 +382,6 @@ isFarFromMean(const CalibratedEstimate& e)
           contactsOf(cappedResiduals(e.scores)).share < max_overlap_before_far_move);
 }
 
-/** Mean misfit of the points that have a patch at a pose. */
-double
-misfitAt(const SurfaceScorer& scorer, const Isometry3d& pose)
-{
-  PatchHints hints;
-  SurfaceScores scores;
-  scorer.evaluate(pose, pose * scorer.centroid(), 1.0, hints, scores);
-  return contactsOf(cappedResiduals(scores)).misfit;
-}
-
 /** Move the estimate to the mode nearest to the mean. In the \p last move the free
  * directions stay at the mean, because the fit slides back along a motion that is held
  * falsely, and the other motions are wrong there. \return whether it has moved */
@@ -407,9 +399,13 @@ moveToMean(const SurfaceScorer& scorer,
                      prior,
                      movedBy(e.mean, e.centre, e.mode),
                      last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
-  e.num_queries += leading.numPoints() * mode.num_evaluations;
-  if (!isMeanWithinReach(e) && !(contactsOf(mode.residuals).misfit <
-                                 max_misfit_after_far_move * misfitAt(leading, e.mode)))
+  const RobustFit before = fitAt(leading, prior, e.mode);
+  e.num_queries +=
+      leading.numPoints() * (mode.num_evaluations + before.num_evaluations);
+  if (isClearlyWorse(mode, before, max_loss_of_move) ||
+      (!isMeanWithinReach(e) &&
+       !(contactsOf(mode.residuals).misfit <
+         max_misfit_after_far_move * contactsOf(before.residuals).misfit)))
     return false;
   CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
   next.num_queries += e.num_queries;

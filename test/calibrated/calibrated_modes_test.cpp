@@ -357,6 +357,24 @@ TEST(CalibratedModes, AFirstEstimateThatWentAstrayHidesNone)
             test::chi_square_999);
 }
 
+TEST(CalibratedModes, AFirstEstimateThatFitsBadlyHidesNoBetterOne)
+{
+  const Clouds clouds = cloudsOf(onMug, 0.3);
+  const test::Problem problem = problemOf(clouds, 0.35);
+  const CalibratedEstimate right = problem.estimate();
+  // Deviations that are so large that they reach to the right pose.
+  CalibratedEstimate wide = right;
+  wide.mode.translation().x() += 0.02;
+  wide.information.setIdentity();
+  wide.information.diagonal().array() /= 0.02 * 0.02;
+  wide.scores.total.setZero();
+  const ModeSearch search = findModes(problem.scorer, problem.prior, wide);
+  EXPECT_TRUE(
+      std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
+        return mode.estimate.mode.isApprox(right.mode, 1e-3);
+      }));
+}
+
 TEST(CalibratedModes, AHopFindsABoxWhoseBoardsLieOnTheirOtherFaces)
 {
   Clouds clouds = cloudsOf(onVisibleOpenBox, 0.03);

@@ -57,6 +57,9 @@ constexpr double icp_part = 0.5, sight = 0.1;
  * first distance is for ends on a few points, the second for estimates. */
 constexpr double cost_margin = 0.35;
 constexpr double min_squared_distance = 200.0, min_squared_distance_of_modes = 100.0;
+/** A mode does not hide an end that costs less by this fraction: the deviations of a
+ * mode that fits badly are so large that they may reach to a better one. */
+constexpr double hiding_margin = 0.05;
 
 /** The first estimate is ignored if its cost is above the best end's by this fraction.
  * It then went astray, for example to where few points meet the target. There it leaves
@@ -195,16 +198,24 @@ hopsFrom(const Isometry3d& pose,
   return starts;
 }
 
-bool
-isKnown(const Isometry3d& pose,
-        const std::vector<ProductCoordinates>& known,
-        double squared_distance)
-{
-  return std::any_of(known.begin(), known.end(), [&](const auto& coordinates) {
-    return 2.0 * coordinates.linearEnergy(coordinates.heldPart(pose)) <
-           squared_distance;
-  });
-}
+/** An estimate of a mode, and how well a few points fit there. */
+struct KnownMode {
+  ProductCoordinates coordinates;
+  Isometry3d pose;
+  RobustFit fit;
+
+  KnownMode(const CalibratedEstimate& estimate, const RobustFit& there)
+  : coordinates(estimate)
+  , pose(estimate.mode)
+  , fit(there)
+  {}
+
+  double
+  squaredDistanceTo(const Isometry3d& other) const
+  {
+    return 2.0 * coordinates.linearEnergy(coordinates.heldPart(other));
+  }
+};
 
 /** Whether a path along motions that the prior alone holds leads from one mode to the
  * other on the surface. Their own axes cannot tell: they are not exact, and far along
@@ -235,15 +246,6 @@ areConnected(const SurfaceScorer& subset,
       return false;
   }
   return true;
-}
-
-/** The fit at a pose that stays where it is. */
-RobustFit
-asItIs(const SurfaceScorer& subset, const HeldPrior& prior, const Isometry3d& pose)
-{
-  RobustFitOptions fit;
-  fit.max_steps = 0;
-  return fitRobustly(subset, prior, pose, fit);
 }
 
 /** Where starts end. */
@@ -342,7 +344,7 @@ betterFitOf(const SurfaceScorer& scorer,
                    {isometryOf(prior.mean()), estimate.mode},
                    options.estimate.num_threads);
   const auto best = std::min_element(ends.begin(), ends.end(), costsLess);
-  if (!isClearlyWorse(asItIs(subset, prior, estimate.mode), *best, astray_margin))
+  if (!isClearlyWorse(fitAt(subset, prior, estimate.mode), *best, astray_margin))
     return 0.0;
   return squaredDeviations(subset, prior, best->pose);
 }
@@ -381,7 +383,7 @@ endsOfCloud(const SurfaceScorer& leading,
             long& num_queries)
 {
   const SurfaceScorer subset = leading.ofFirst(options.num_points);
-  CloudEnds ends = {subset, asItIs(subset, prior, first.mode), {}};
+  CloudEnds ends = {subset, fitAt(subset, prior, first.mode), {}};
   std::vector<RobustFit>& others = ends.others;
   num_queries += subset.numPoints() * ends.first.num_evaluations;
   if (mayHaveSeveralModes(scorer, prior, first))
@@ -424,23 +426,37 @@ addModes(const SurfaceScorer& scorer,
          ModeSearch& search)
 {
   const double max_cost = (1.0 + cost_margin) * ends.leastCost();
-  std::vector<ProductCoordinates> known;
+  std::vector<KnownMode> known;
   for (const CalibratedMode& mode : search.modes)
-    known.emplace_back(mode.estimate);
+    known.emplace_back(mode.estimate, fitAt(ends.subset, prior, mode.estimate.mode));
   for (const RobustFit& end : ends.others) {
-    if (end.cost > max_cost || static_cast<int>(known.size()) >= options.max_modes)
+    if (end.cost > max_cost ||
+        static_cast<int>(search.modes.size()) >= options.max_modes)
       break;
-    if (isKnown(end.pose, known, min_squared_distance))
+    if (std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
+          return mode.squaredDistanceTo(end.pose) < min_squared_distance &&
+                 !isClearlyWorse(mode.fit, end, hiding_margin);
+        }))
       continue;
     const CalibratedEstimate estimate =
         estimateCalibrated(scorer, prior, options.estimate, &end.pose, leading);
     search.num_queries += estimate.num_queries;
-    if (isKnown(estimate.mode, known, min_squared_distance_of_modes) ||
+    const KnownMode found(estimate, end);
+    const bool is_known =
+        std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
+          return mode.squaredDistanceTo(estimate.mode) <
+                     min_squared_distance_of_modes &&
+                 (found.squaredDistanceTo(mode.pose) < min_squared_distance_of_modes ||
+                  !isClearlyWorse(mode.fit, end, hiding_margin));
+        });
+    if (is_known)
+      known.push_back(found);
+    if (is_known ||
         std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
           return areConnected(ends.subset, prior, mode.estimate, estimate, max_cost);
         }))
       continue;
-    known.emplace_back(estimate);
+    known.push_back(found);
     search.modes.push_back({estimate, 0.0});
   }
 }

@@ -135,6 +135,14 @@ fitRobustly(const SurfaceScorer& scorer,
   return fit;
 }
 
+RobustFit
+fitAt(const SurfaceScorer& scorer, const HeldPrior& prior, const Isometry3d& pose)
+{
+  RobustFitOptions fit;
+  fit.max_steps = 0;
+  return fitRobustly(scorer, prior, pose, fit);
+}
+
 double
 relativeCost(const RobustFit& a, const RobustFit& b)
 {

@@ -45,6 +45,12 @@ fitRobustly(const SurfaceScorer& scorer,
             const Eigen::Isometry3d& start,
             const RobustFitOptions& options);
 
+/** \brief How well a pose fits: the fit that stays there. */
+RobustFit
+fitAt(const SurfaceScorer& scorer,
+      const HeldPrior& prior,
+      const Eigen::Isometry3d& pose);
+
 /** \brief Cost of \p a in units of the cost of \p b, two fits of the same points.
  *
  * Only the points that have a patch at both are compared, if these distinguish the fits
