@@ -427,15 +427,20 @@ addModes(const SurfaceScorer& scorer,
 {
   const double max_cost = (1.0 + cost_margin) * ends.leastCost();
   std::vector<KnownMode> known;
-  for (const CalibratedMode& mode : search.modes)
+  for (const CalibratedMode& mode : search.modes) {
     known.emplace_back(mode.estimate, fitAt(ends.subset, prior, mode.estimate.mode));
+    search.num_queries += ends.subset.numPoints();
+  }
   for (const RobustFit& end : ends.others) {
     if (end.cost > max_cost ||
         static_cast<int>(search.modes.size()) >= options.max_modes)
       break;
+    const auto isWorse = [&end](const KnownMode& mode) {
+      return isClearlyWorse(mode.fit, end, hiding_margin);
+    };
     if (std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
           return mode.squaredDistanceTo(end.pose) < min_squared_distance &&
-                 !isClearlyWorse(mode.fit, end, hiding_margin);
+                 !isWorse(mode);
         }))
       continue;
     const CalibratedEstimate estimate =
@@ -444,20 +449,18 @@ addModes(const SurfaceScorer& scorer,
     const KnownMode found(estimate, end);
     const bool is_known =
         std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
-          return mode.squaredDistanceTo(estimate.mode) <
-                     min_squared_distance_of_modes &&
-                 (found.squaredDistanceTo(mode.pose) < min_squared_distance_of_modes ||
-                  !isClearlyWorse(mode.fit, end, hiding_margin));
+          constexpr double limit = min_squared_distance_of_modes;
+          return mode.squaredDistanceTo(estimate.mode) < limit &&
+                 (found.squaredDistanceTo(mode.pose) < limit || !isWorse(mode));
         });
-    if (is_known)
-      known.push_back(found);
-    if (is_known ||
+    if (!is_known &&
         std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
           return areConnected(ends.subset, prior, mode.estimate, estimate, max_cost);
         }))
       continue;
     known.push_back(found);
-    search.modes.push_back({estimate, 0.0});
+    if (!is_known)
+      search.modes.push_back({estimate, 0.0});
   }
 }
 
