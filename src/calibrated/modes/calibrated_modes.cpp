@@ -416,7 +416,8 @@ endsOfCloud(const SurfaceScorer& leading,
 }
 
 /** Add an estimate of the mode at each of the ends, unless it is known.
- * \param[in] leading as in estimateCalibrated() */
+ * \param[in] leading as in estimateCalibrated()
+ * \param[in,out] search has no mode but the first estimate */
 void
 addModes(const SurfaceScorer& scorer,
          const SurfaceScorer* leading,
@@ -427,10 +428,8 @@ addModes(const SurfaceScorer& scorer,
 {
   const double max_cost = (1.0 + cost_margin) * ends.leastCost();
   std::vector<KnownMode> known;
-  for (const CalibratedMode& mode : search.modes) {
-    known.emplace_back(mode.estimate, fitAt(ends.subset, prior, mode.estimate.mode));
-    search.num_queries += ends.subset.numPoints();
-  }
+  for (const CalibratedMode& mode : search.modes)
+    known.emplace_back(mode.estimate, ends.first);
   for (const RobustFit& end : ends.others) {
     if (end.cost > max_cost ||
         static_cast<int>(search.modes.size()) >= options.max_modes)

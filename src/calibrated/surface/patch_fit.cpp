@@ -424,8 +424,10 @@ fitQuadric(const PointRows& local,
        (local.rows() >= shape.min_points &&
         misfit(regression, shape, num_points, squared_heights, rss) <
             shape.max_misfit));
+  if (!is_quadric)
+    return;
   const Vector6d solution = regression.quadric();
-  if (!is_quadric || !solution.allFinite())
+  if (!solution.allFinite())
     return;
   const double r = 1.0 / patch.radius;
   patch.quadric = {solution[0],
