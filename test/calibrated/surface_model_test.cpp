@@ -630,6 +630,21 @@ TEST(SurfaceModel, TheLevelsOfAQuantisedSensorAreNotExact)
   EXPECT_LT(model.medianSigma(), 0.002);
 }
 
+TEST(SurfaceModel, ASmallNoisyObjectIsNotOneNeighbourhood)
+{
+  // 3.75 times the noise would ask for 560 neighbours, and those of 480 are too wide
+  // for a patch, at 0.28 m. An eighth of the points are within 0.2 m.
+  constexpr double noise = 0.08;
+  Random random(86, 0);
+  Matrix3Xd points(3, 2000);
+  for (Index i = 0; i < points.cols(); ++i)
+    points.col(i) << random.uniform(), random.uniform(), noise * random.normal();
+  const SurfaceModel model(points);
+  // Those that are 0.2 m from a border.
+  EXPECT_GT(model.usableFraction(), 0.6 * 0.6);
+  EXPECT_NEAR(model.medianSigma(), noise, 0.1 * noise);
+}
+
 TEST(SurfaceModel, ThinningADenseSurfaceKeepsItsNoiseAndItsPlace)
 {
   // 20 points on a square as wide as the noise: cubes that hold one point each of those

@@ -22,6 +22,9 @@ namespace {
 /** A neighbourhood grows until it is wide enough for its noise and has wanted_aspect,
  * but at most to this multiple of num_neighbors. */
 constexpr int max_growth = 16;
+/** For its thickness, a neighbourhood grows to at most one in so many of the cloud's
+ * points. With more, it would reach around the edges of a small object. */
+constexpr int points_to_neighborhood = 8;
 /** Smallest aspectOf() at which a neighbourhood stops growing. */
 constexpr double wanted_aspect = 0.35;
 /** Narrower neighbourhoods are lines. */
@@ -557,9 +560,11 @@ fitPatch(const PointNeighbors& cloud,
     const bool is_thick =
         patch.radius < options.min_radius_to_noise * frame.thickness();
     const bool is_narrow = aspect < wanted_aspect;
-    const int next = 2 * growth;
-    if (!is_too_wide && (is_thick || is_narrow) && next <= max_growth &&
-        next * shape.num_neighbors <= num_points)
+    const int next = 2 * growth, next_count = next * shape.num_neighbors;
+    const bool can_flatten =
+        is_thick && points_to_neighborhood * next_count <= num_points;
+    if (!is_too_wide && (can_flatten || is_narrow) && next <= max_growth &&
+        next_count <= num_points)
       continue;
     const auto& squared_distances = workspace.nearest.squared_distances;
     spacing =
