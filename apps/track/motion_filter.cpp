@@ -35,13 +35,6 @@ rightJacobian(const Vector6d& xi)
   return sum;
 }
 
-template <typename Matrix>
-Matrix
-symmetric(const Matrix& matrix)
-{
-  return 0.5 * (matrix + matrix.transpose());
-}
-
 } // namespace
 
 MotionFilter::MotionFilter(const MotionModel& model)
@@ -58,6 +51,18 @@ MotionFilter::doubtVelocity()
   covariance_.block<6, 6>(of_velocity, of_velocity) += model_.velocity_covariance;
 }
 
+/** F P F^T; \p multiply makes F X of a matrix X. */
+template <typename Multiply>
+void
+MotionFilter::propagate(const Multiply& multiply)
+{
+  for (int side = 0; side < 2; ++side) {
+    multiply(covariance_);
+    covariance_.transposeInPlace();
+  }
+  covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
+}
+
 void
 MotionFilter::predict(double seconds)
 {
@@ -70,11 +75,13 @@ MotionFilter::predict(double seconds)
   const Vector6d motion = velocity_ * seconds;
   const Eigen::Matrix4d step = expSE3(motion);
   scan_in_target_ = scan_in_target_ * step;
-  State F = State::Identity();
-  F.block<6, 6>(of_scan, of_scan) = adjointOf(step.inverse());
-  F.block<6, 6>(of_scan, of_velocity) = seconds * rightJacobian(motion);
-  F.block<6, 6>(noise_of_scan, noise_of_scan).setZero(); // it is another scan
-  covariance_ = symmetric(State(F * covariance_ * F.transpose()));
+  const Matrix6d of_errors = adjointOf(step.inverse());
+  const Matrix6d of_velocities = seconds * rightJacobian(motion);
+  propagate([&](State& rows) {
+    rows.middleRows<6>(of_scan) = of_errors * rows.middleRows<6>(of_scan) +
+                                  of_velocities * rows.middleRows<6>(of_velocity);
+    rows.middleRows<6>(noise_of_scan).setZero(); // it is another scan
+  });
   covariance_.block<6, 6>(noise_of_scan, noise_of_scan).setIdentity();
   scan_noise_.setZero();
 }
@@ -114,27 +121,28 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   velocity_ += correction.segment<6>(of_velocity);
   target_noise_ += correction.segment<6>(noise_of_target);
   scan_noise_ += correction.segment<6>(noise_of_scan);
-  // Joseph's form stays positive semi-definite. Errors are then about the new poses.
-  State about_new = State::Identity();
-  for (const Eigen::Index part : {of_target, of_scan})
-    about_new.block<6, 6>(part, part) = rightJacobian(correction.segment<6>(part));
-  const State rest = about_new * (State::Identity() - gain * H);
-  const Eigen::Matrix<double, num_errors, 6> taken = about_new * gain;
-  covariance_ = symmetric(
-      State(rest * covariance_ * rest.transpose() + taken * own * taken.transpose()));
+  // Joseph's form stays positive semi-definite.
+  propagate([&](State& rows) { rows -= gain * (H * rows); });
+  covariance_ += gain * own * gain.transpose();
+  // Errors are then about the new poses.
+  propagate([&](State& rows) {
+    for (const Eigen::Index part : {of_target, of_scan})
+      rows.middleRows<6>(part) =
+          rightJacobian(correction.segment<6>(part)) * rows.middleRows<6>(part);
+  });
   return squared_innovation;
 }
 
 void
 MotionFilter::makeScanTheTarget()
 {
-  State F = State::Identity();
-  F.block<6, 6>(of_target, of_target) = adjointOf(scan_in_target_.inverse());
-  F.block<6, 6>(of_target, of_scan).setIdentity();
-  F.block<6, 6>(of_scan, of_scan).setZero();
-  F.block<6, 6>(noise_of_target, noise_of_target).setZero();
-  F.block<6, 6>(noise_of_target, noise_of_scan).setIdentity();
-  covariance_ = symmetric(State(F * covariance_ * F.transpose()));
+  const Matrix6d of_errors = adjointOf(scan_in_target_.inverse());
+  propagate([&](State& rows) {
+    rows.middleRows<6>(of_target) =
+        of_errors * rows.middleRows<6>(of_target) + rows.middleRows<6>(of_scan);
+    rows.middleRows<6>(of_scan).setZero();
+    rows.middleRows<6>(noise_of_target) = rows.middleRows<6>(noise_of_scan);
+  });
   target_ = target_ * scan_in_target_;
   scan_in_target_.setIdentity();
   target_noise_ = scan_noise_;

@@ -74,6 +74,10 @@ private:
   using Errors = Eigen::Matrix<double, num_errors, 1>;
   using State = Eigen::Matrix<double, num_errors, num_errors>;
 
+  template <typename Multiply>
+  void
+  propagate(const Multiply& multiply);
+
   MotionModel model_;
   bool has_moved_ = false;
   Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();
