@@ -18,19 +18,32 @@ constexpr int num_noises = 6 + 6 + num_common;
 constexpr int num_iterations = 5;
 
 /** J with exp(xi + d) = exp(xi) exp(J d) to first order in d: the sum of
- * (-ad(xi))^k / (k + 1)! (Barfoot 2017, eq. 7.77). */
+ * (-ad(xi))^k / (k + 1)!, for large angles in closed form (Barfoot 2017, eq. 7.77). */
 Matrix6d
 rightJacobian(const Vector6d& xi)
 {
-  constexpr int max_terms = 100;
   Matrix6d minus_ad = Matrix6d::Zero();
   minus_ad.topLeftCorner<3, 3>() = minus_ad.bottomRightCorner<3, 3>() =
       -crossMatrix(xi.tail<3>());
   minus_ad.topRightCorner<3, 3>() = -crossMatrix(xi.head<3>());
+  const double a = xi.tail<3>().norm();
   Matrix6d term = Matrix6d::Identity(), sum = term;
-  for (int k = 1; k < max_terms && term.norm() > 1e-17 * sum.norm(); ++k) {
-    term = term * minus_ad / double(k + 1);
-    sum += term;
+  if (a < 1.0) {
+    constexpr int max_terms = 100;
+    for (int k = 1; k < max_terms && term.norm() > 1e-17 * sum.norm(); ++k) {
+      term = term * minus_ad / double(k + 1);
+      sum += term;
+    }
+    return sum;
+  }
+  const double sine = std::sin(a), cosine = std::cos(a), square = a * a;
+  for (const double coefficient :
+       {(4.0 - a * sine - 4.0 * cosine) / (2.0 * square),
+        (4.0 * a - 5.0 * sine + a * cosine) / (2.0 * square * a),
+        (2.0 - a * sine - 2.0 * cosine) / (2.0 * square * square),
+        (2.0 * a - 3.0 * sine + a * cosine) / (2.0 * square * square * a)}) {
+    term = term * minus_ad;
+    sum += coefficient * term;
   }
   return sum;
 }
@@ -66,12 +79,14 @@ MotionFilter::propagate(const Multiply& multiply)
 void
 MotionFilter::predict(double seconds)
 {
-  Vector6d noise = Vector6d::Zero();
-  if (has_moved_)
-    noise << Eigen::Vector3d::Constant(model_.acceleration * seconds),
-        Eigen::Vector3d::Constant(model_.angular_acceleration * seconds);
-  has_moved_ = true;
-  covariance_.block<6, 6>(of_velocity, of_velocity).diagonal() += noise.cwiseAbs2();
+  if (last_seconds_ > 0.0) {
+    const double between_middles = 0.5 * (last_seconds_ + seconds);
+    Vector6d change;
+    change << Eigen::Vector3d::Constant(model_.acceleration * between_middles),
+        Eigen::Vector3d::Constant(model_.angular_acceleration * between_middles);
+    covariance_.block<6, 6>(of_velocity, of_velocity).diagonal() += change.cwiseAbs2();
+  }
+  last_seconds_ = seconds;
   const Vector6d motion = velocity_ * seconds;
   const Eigen::Matrix4d step = expSE3(motion);
   scan_in_target_ = scan_in_target_ * step;
@@ -121,15 +136,14 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   velocity_ += correction.segment<6>(of_velocity);
   target_noise_ += correction.segment<6>(noise_of_target);
   scan_noise_ += correction.segment<6>(noise_of_scan);
-  // Joseph's form stays positive semi-definite.
-  propagate([&](State& rows) { rows -= gain * (H * rows); });
-  covariance_ += gain * own * gain.transpose();
-  // Errors are then about the new poses.
-  propagate([&](State& rows) {
-    for (const Eigen::Index part : {of_target, of_scan})
-      rows.middleRows<6>(part) =
-          rightJacobian(correction.segment<6>(part)) * rows.middleRows<6>(part);
-  });
+  // Joseph's form stays positive semi-definite. Errors are then about the new poses.
+  State about_new = State::Identity();
+  for (const Eigen::Index part : {of_target, of_scan})
+    about_new.block<6, 6>(part, part) = rightJacobian(correction.segment<6>(part));
+  const State rest = about_new * (State::Identity() - gain * H);
+  const Eigen::Matrix<double, num_errors, 6> taken = about_new * gain;
+  propagate([&](State& rows) { rows = rest * rows; });
+  covariance_ += taken * own * taken.transpose();
   return squared_innovation;
 }
 

@@ -15,7 +15,8 @@ struct MotionModel {
   Vector6d velocity = Vector6d::Zero();
   Matrix6d velocity_covariance = Matrix6d::Zero();
   /** Standard deviations of the acceleration along and about each axis of the scan, one
-   * draw for each interval between two scans but the first [m/s^2, rad/s^2]. */
+   * draw for each interval between two scans but the first [m/s^2, rad/s^2]. It lasts
+   * from the middle of the interval before to that of this one. */
   double acceleration = 1.0;
   double angular_acceleration = 1.0;
 };
@@ -79,7 +80,8 @@ private:
   propagate(const Multiply& multiply);
 
   MotionModel model_;
-  bool has_moved_ = false;
+  /** The interval before the last scan, 0 before there is one. */
+  double last_seconds_ = 0.0;
   Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();
   Eigen::Matrix4d scan_in_target_ = Eigen::Matrix4d::Identity();
   Vector6d velocity_;

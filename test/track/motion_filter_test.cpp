@@ -66,7 +66,7 @@ struct RunOfTrack {
 
 /** Truth from the model, registrations from their covariance, of which they have
  * \p shared in common: to the scan before, or to every third; scans 4, 5 and 11 cannot
- * be registered. */
+ * be registered, and scan 8 comes late. */
 RunOfTrack
 runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
 {
@@ -82,13 +82,16 @@ runOf(std::uint64_t seed, int scans_on_target, const app::SharedNoise& shared)
   Vector6d noise_of_target = random.normal6();
   RunOfTrack run;
   int num_on_target = 0;
+  double last_interval = 0.0;
   for (int scan = 1; scan <= num_steps; ++scan) {
     Vector6d acceleration = scan > 1 ? random.normal6() : Vector6d(Vector6d::Zero());
     acceleration.head<3>() *= given.acceleration;
     acceleration.tail<3>() *= given.angular_acceleration;
-    velocity += seconds * acceleration;
-    truth = truth * expSE3(seconds * velocity);
-    filter.predict(seconds);
+    const double interval = scan == 8 ? 4.0 * seconds : seconds;
+    velocity += 0.5 * (last_interval + interval) * acceleration;
+    last_interval = interval;
+    truth = truth * expSE3(interval * velocity);
+    filter.predict(interval);
     if (scan == 4 || scan == 5 || scan == 11)
       continue;
     // Along x the registration says what the prediction says, as withoutPrior() does.
@@ -149,23 +152,46 @@ TEST(MotionFilter, CarriesTheVelocitysErrorAsTheMotionDoes)
   MotionModel turning = model();
   turning.velocity << 3.0, -2.0, 1.0, 4.0, -6.0, 7.0; // 1 rad in 0.1 s
   turning.velocity_covariance = registrationCovariance();
-  const auto motion = [&](const Vector6d& velocity) {
-    return expSE3(seconds * velocity);
-  };
-  Matrix6d J;
-  for (int k = 0; k < 6; ++k) {
-    const Vector6d h = step * Vector6d::Unit(k);
-    J.col(k) =
-        logSE3(motion(turning.velocity - h).inverse() * motion(turning.velocity + h)) /
-        (2.0 * step);
+  for (const double interval : {seconds, 80.0}) { // the longer one turns 128 times
+    const auto motion = [&](const Vector6d& velocity) {
+      return expSE3(interval * velocity);
+    };
+    Matrix6d J;
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d h = step * Vector6d::Unit(k);
+      J.col(k) = logSE3(motion(turning.velocity - h).inverse() *
+                        motion(turning.velocity + h)) /
+                 (2.0 * step);
+    }
+    const Matrix6d expected = J * turning.velocity_covariance * J.transpose();
+    MotionFilter filter(turning), doubtful(turning);
+    filter.predict(interval);
+    EXPECT_TRUE(filter.pose().covariance.isApprox(expected, 1e-6)) << interval;
+    doubtful.doubtVelocity();
+    doubtful.predict(interval);
+    EXPECT_TRUE(doubtful.pose().covariance.isApprox(2.0 * expected, 1e-6)) << interval;
   }
-  const Matrix6d expected = J * turning.velocity_covariance * J.transpose();
-  MotionFilter filter(turning), doubtful(turning);
-  filter.predict(seconds);
-  EXPECT_TRUE(filter.pose().covariance.isApprox(expected, 1e-6));
-  doubtful.doubtVelocity();
-  doubtful.predict(seconds);
-  EXPECT_TRUE(doubtful.pose().covariance.isApprox(2.0 * expected, 1e-6));
+}
+
+TEST(MotionFilter, IsPositiveDefiniteAfterALongInterval)
+{
+  // Of an hour, after which a registration takes back 10^23 times its own variance.
+  MotionModel resting = model();
+  resting.velocity.setZero();
+  MotionFilter filter(resting);
+  Matrix6d covariance = registrationCovariance();
+  covariance(0, 0) = 1e-5;
+  covariance *= 1e-2;
+  const Vector6d rest = Vector6d::Zero();
+  for (const double interval : {0.1, 3600.0, 0.1, 0.1}) {
+    filter.predict(interval);
+    filter.update({rest, covariance}, app::independent_noise);
+    const Matrix6d stated = filter.poseInTarget().covariance;
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6d>(stated).eigenvalues().minCoeff(),
+              0.0)
+        << interval;
+    filter.makeScanTheTarget();
+  }
 }
 
 TEST(MotionFilter, GivesBackTheRegistrationWhereNothingElseIsKnown)
