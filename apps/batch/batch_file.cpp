@@ -171,6 +171,18 @@ BatchFile::remaining() const
   return positions;
 }
 
+std::vector<std::size_t>
+BatchFile::registered() const
+{
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const auto found = statuses_.find(pairs_[i].name);
+    if (found != statuses_.end() && found->second != error_status)
+      positions.push_back(i);
+  }
+  return positions;
+}
+
 bool
 BatchFile::areAllOk() const
 {

@@ -35,6 +35,10 @@ public:
   std::vector<std::size_t>
   remaining() const;
 
+  /** \brief Positions of the pairs whose line says that they were registered. */
+  std::vector<std::size_t>
+  registered() const;
+
   /** \brief Number of lines that were removed because files have changed. */
   int
   numChanged() const

@@ -59,7 +59,7 @@ private:
   {
     Settings settings = pair.settings;
     if (!pair.guess_file.empty())
-      settings.guess = io::readMotion("guess", pair.guess_file);
+      settings.guess = io::readMotionFile(pair.guess_file);
     Run run = readRun(pair.source_file, pair.target_file, settings);
     registerClouds([this](const Progress&) { return !isStopped(); }, run);
     return run;

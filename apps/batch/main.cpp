@@ -208,18 +208,17 @@ shareOf(const Ranks& ranks,
 void
 tellMissingFiles(const Request& request,
                  const std::vector<BatchPair>& pairs,
-                 const std::vector<std::size_t>& remaining)
+                 const std::vector<std::size_t>& registered)
 {
   if (request.output_folder.empty())
     return;
   std::error_code error;
-  std::size_t num_missing = 0;
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    num_missing +=
-        !std::binary_search(remaining.begin(), remaining.end(), k) &&
-        !std::filesystem::exists(std::filesystem::path(request.output_folder) /
-                                     pairs[k].name / "posterior.json",
-                                 error);
+  const auto num_missing =
+      std::count_if(registered.begin(), registered.end(), [&](std::size_t k) {
+        return !std::filesystem::exists(std::filesystem::path(request.output_folder) /
+                                            pairs[k].name / "posterior.json",
+                                        error);
+      });
   if (num_missing > 0)
     io::tell(io::textOf(num_missing) + " pairs have a line in " + request.results_file +
              " but no files in " + request.output_folder +
@@ -244,7 +243,7 @@ runToFile(const Request& request,
     if (file->numChanged() > 0)
       io::tell(io::textOf(file->numChanged()) +
                " pairs are registered again, because their files have changed");
-    tellMissingFiles(request, pairs, file->remaining());
+    tellMissingFiles(request, pairs, file->registered());
   }
   const auto share = shareOf(ranks, ranks.broadcast(positions), pairs);
   std::optional<io::LineFile> part;

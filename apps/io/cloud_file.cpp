@@ -249,6 +249,8 @@ movedCloud(const CloudFile& cloud, const Eigen::Matrix4d& motion)
   result.num_finite = 0;
   result.largest_coordinate = 0.0;
   copyPoints(*blob, xyz, result);
+  if (result.num_finite < cloud.num_finite)
+    throw std::runtime_error("the motion takes points further than a float can say");
   moveViewpoint(move, result);
   result.blob = blob;
   return result;

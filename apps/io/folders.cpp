@@ -38,26 +38,41 @@ makeFolder(const std::string& folder)
 
 namespace {
 
-/** The name of a file without its extension and the whole number that it ends in. */
-std::pair<std::string, std::string>
-numberedName(const std::string& file)
-{
-  const std::string name = fs::path(file).stem().string();
-  const std::size_t last = name.find_last_not_of("0123456789");
-  const std::size_t first = last == std::string::npos ? 0 : last + 1;
-  return {name.substr(0, first), name.substr(first)};
-}
+/** The whole number in a name in which it differs from others, and what is around it.
+ */
+struct NumberedName {
+  std::string before, number, after;
+
+  /** \param[in] first place of the first difference */
+  NumberedName(const std::string& name, std::size_t first)
+  {
+    constexpr const char* digits = "0123456789";
+    const std::size_t last = name.substr(0, first).find_last_not_of(digits);
+    const std::size_t begin = last == std::string::npos ? 0 : last + 1;
+    const std::size_t end =
+        std::min(name.find_first_not_of(digits, begin), name.size());
+    before = name.substr(0, begin);
+    number = name.substr(begin, end - begin);
+    after = name.substr(end);
+  }
+};
 
 /** Of the same name but for the number, which is smaller. Decimals of a number are
  * none.
  */
 bool
-isNumberedBefore(const std::string& a, const std::string& b)
+isNumberedBefore(const std::string& file, const std::string& other_file)
 {
-  const auto [name_a, number_a] = numberedName(a);
-  const auto [name_b, number_b] = numberedName(b);
-  const bool has_decimals = !name_a.empty() && name_a.back() == '.';
-  return !has_decimals && name_a == name_b && number_a.size() < number_b.size();
+  const std::string a = fs::path(file).stem().string();
+  const std::string b = fs::path(other_file).stem().string();
+  const std::size_t shorter = std::min(a.size(), b.size());
+  const auto first = static_cast<std::size_t>(
+      std::mismatch(a.begin(), a.begin() + std::ptrdiff_t(shorter), b.begin()).first -
+      a.begin());
+  const NumberedName name(a, first), other(b, first);
+  const bool has_decimals = !name.before.empty() && name.before.back() == '.';
+  return !has_decimals && name.after == other.after && !name.number.empty() &&
+         name.number.size() < other.number.size();
 }
 
 } // namespace

@@ -55,6 +55,18 @@ complaintAboutMotion(const Eigen::Matrix4d& matrix)
 }
 
 Eigen::Matrix4d
+readMotionFile(const std::string& file)
+{
+  if (std::filesystem::path(file).extension() != ".json")
+    return readMatrixFile(file);
+  const Eigen::Matrix4d mean = matrixOf(readPosterior(file).mean);
+  const std::string complaint = complaintAboutMotion(mean);
+  if (!complaint.empty())
+    throw FileError(file, "posterior.mean: " + complaint);
+  return mean;
+}
+
+Eigen::Matrix4d
 readMotion(const std::string& option, const std::string& text)
 {
   if (Vector6d pose; readNumbers(text, pose)) {
@@ -67,13 +79,7 @@ readMotion(const std::string& option, const std::string& text)
     throw UsageError("--" + option + ": " + io::inQuotes(text) +
                      " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad] nor "
                      "a file");
-  if (std::filesystem::path(text).extension() != ".json")
-    return readMatrixFile(text);
-  const Eigen::Matrix4d mean = matrixOf(readPosterior(text).mean);
-  const std::string complaint = complaintAboutMotion(mean);
-  if (!complaint.empty())
-    throw FileError(text, "posterior.mean: " + complaint);
-  return mean;
+  return readMotionFile(text);
 }
 
 } // namespace bayesian_icp::io

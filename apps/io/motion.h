@@ -20,8 +20,14 @@ complaintAboutMotion(const Eigen::Matrix4d& matrix);
 Eigen::Matrix4d
 readMatrixFile(const std::string& file);
 
-/** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], of a file as readMatrixFile()
- * takes it, or of the mean of a posterior.json (a name that ends in .json).
+/** \brief The matrix of a file as readMatrixFile() takes it, or of the mean of a
+ * posterior.json (a name that ends in .json).
+ * \throws FileError if the file has something else */
+Eigen::Matrix4d
+readMotionFile(const std::string& file);
+
+/** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], or of a file as
+ * readMotionFile() takes it.
  * \param[in] option its name in errors, without the dashes
  * \throws UsageError if it is none of them or not finite, FileError if the file has
  * something else */

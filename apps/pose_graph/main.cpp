@@ -12,6 +12,7 @@
 #include "plot/gnuplot.h"
 #include "pose_graph/graph_command.h"
 #include "pose_graph/graph_report.h"
+#include "register/cloud_notes.h"
 
 #include <filesystem>
 #include <optional>
@@ -103,6 +104,8 @@ makeGraph(const GraphCommand& command)
   if (folder_of_file)
     folder_of_file->fileOf(file.filename().string());
   bool is_good = true;
+  if (!command.is_quiet)
+    tellNotesOfFirst(command.request.scans.front(), command.request.settings);
   io::catchInterrupt();
   const ScanGraph graph =
       registerScans(command.request, [&](bool is_ok, const std::string& line) {

@@ -5,6 +5,7 @@
 #include "io/numbers.h"
 #include "io/program.h"
 #include "plot/gnuplot.h"
+#include "register/cloud_notes.h"
 #include "register/command_line.h"
 #include "register/export_files.h"
 #include "register/posterior_files.h"
@@ -15,48 +16,10 @@
 
 #include <bayesian_icp/measurement.h>
 
-#include <cmath>
 #include <optional>
 
 namespace bayesian_icp::app {
 namespace {
-
-/** A hint where the source is larger than any LiDAR scan, and the default prior the
- * only one: its rotation moves such points hundreds of times as far as its translation.
- * Empty if all is plausible. */
-std::string
-noteOfSize(const Run& run)
-{
-  constexpr double implausible = 500.0; // [m]
-  if (run.settings.options.prior.variance != PriorOptions().variance)
-    return "";
-  const Eigen::Matrix3Xd points = io::finitePoints(run.source).cast<double>();
-  const Eigen::Vector3d centroid = points.rowwise().mean();
-  const double radius =
-      (points.colwise() - centroid).norm() / std::sqrt(double(points.cols()));
-  if (radius <= implausible)
-    return "";
-  return run.source.file + ": note: the points are " + io::fixedTextOf(radius, 0) +
-         " m from their centroid (root mean square), for which the default prior of "
-         "0.35 m and 0.35 rad is hardly meant. If the clouds are in millimetres, scale "
-         "them: pcl_transform_point_cloud IN OUT -scale 0.001,0.001,0.001. If they are "
-         "in metres, state --prior-variance.";
-}
-
-/** Drivers put returns without a range at the sensor. */
-std::string
-noteOfZeros(const io::CloudFile& cloud)
-{
-  constexpr double noticeable = 0.01;
-  const auto num_zeros = (cloud.points.array() == 0.0F).colwise().all().count();
-  if (!(static_cast<double>(num_zeros) >
-        noticeable * static_cast<double>(cloud.num_finite)))
-    return "";
-  return cloud.file + ": note: " + std::to_string(num_zeros) +
-         " points are at 0 0 0, as returns without a range are. ICP pairs them with "
-         "one another, which takes long and draws its result to no motion. Preset "
-         "calibrated counts them as one point. Remove them, or set them to NaN.";
-}
 
 Run
 runRegistration(const Request& request)
@@ -69,7 +32,7 @@ runRegistration(const Request& request)
                                     io::noteOfLostDigits(run.target),
                                     noteOfZeros(run.source),
                                     noteOfZeros(run.target),
-                                    noteOfSize(run)})
+                                    noteOfSize(run.source, run.settings)})
       io::tell(note);
   ProgressBar bar(!request.is_quiet);
   io::catchInterrupt();

@@ -9,6 +9,7 @@
 #include "io/output_folder.h"
 #include "io/program.h"
 #include "plot/gnuplot.h"
+#include "register/cloud_notes.h"
 #include "track/track_command.h"
 #include "track/track_line.h"
 #include "track/track_report.h"
@@ -116,6 +117,8 @@ makeTrack(const TrackCommand& command)
     io::tell(io::textOf(track.size() - 1) + " of " +
              io::textOf(request.scans.size() - 1) + " steps are in " + edges +
              " already");
+  if (!command.is_quiet)
+    tellNotesOfFirst(request.scans.front(), request.settings);
   io::catchInterrupt();
   Tracker tracker(request, track);
   while (track.size() < static_cast<int>(request.scans.size()) &&

@@ -80,6 +80,10 @@ timeOf(std::string_view seconds, const std::string& where)
   if (!(time >= 0.0 && time < io::time_limit))
     throw io::FileError(
         where, "the time " + io::textOf(time) + " s is not from 0 to below 2^31 s");
+  constexpr std::size_t num_decimals = 9;
+  const std::size_t point = seconds.find('.');
+  if (point != seconds.npos && seconds.find_first_not_of("0123456789.") == seconds.npos)
+    seconds = seconds.substr(0, point + 1 + num_decimals);
   std::int64_t exact = io::nanosecondsOf(time);
   io::readSeconds(seconds, exact);
   return exact;

@@ -307,6 +307,25 @@ class BatchResume(BatchTest):
         for name in ("source", "gone"):
             self.assertEqual(again[name], first[name])
 
+    def test_pairs_that_failed_miss_no_files(self):
+        self.small_pair()
+        pairs = [{"name": n, "source": n, "target": "target.pcd"} for n in ("source.pcd", "none")]
+        manifest = self.manifest(pairs)
+        self.resumed(manifest, *FAST)
+        words = [manifest, *FAST, "--results", self.results, "-o", self.folder / "output"]
+        self.assertIn("1 pairs have a line", run_batch(*words, "--quiet").stderr)
+
+    def test_a_guess_in_words_is_a_file_name(self):
+        """In whatever folder the manifest is."""
+        self.small_pair()
+        pair = {"name": "a", "source": "source.pcd", "target": "target.pcd"}
+        manifest = self.manifest([{**pair, "guess": "0,0,0,0,0,0"}])
+        for name, options in ((manifest, {}), (manifest.name, {"cwd": self.folder})):
+            result = call(BATCH, name, *FAST, **options)
+            self.assertEqual(result.returncode, 1)
+            (line,) = results_of(result.stdout).values()
+            self.assertIn("0,0,0,0,0,0: no such file", line["message"])
+
     def test_results_of_something_else(self):
         manifest = self.seeds(2)
         self.resumed(manifest, *FAST)

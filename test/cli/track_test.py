@@ -9,7 +9,7 @@ from numpy.linalg import inv
 
 import cloud_files
 from cli_tool import call, strict_json
-from faults import EVALUATE, TRACK, TRACKED
+from faults import EVALUATE, POSE_GRAPH, TRACK, TRACKED
 from trajectories import (
     CHI2_HIGH,
     STUDENT_HIGH,
@@ -175,6 +175,9 @@ class TrackOfSimulatedScans(TrackTest):
         self.assert_refused(3, result, "edges.jsonl", "scan 2 is another file here")
         (scans / "scan_3.pcd").rename(scans / "scan_10.pcd")
         self.assert_refused(3, self.run_track(scans), "scan_4.pcd", "by number")
+        for scan in scans.iterdir():
+            scan.rename(scans / f"{scan.stem.split('_')[1]}_scan.pcd")
+        self.assert_refused(3, self.run_track(scans), "_scan.pcd", "by number")
 
 
 class TrackWithUnseenMotions(TrackTest):
@@ -256,6 +259,15 @@ class TrackWithBadScans(TrackTest):
 
 
 class TrackUsage(TrackTest):
+    def test_hardly_in_metres(self):
+        """Said of scan 0, by all programs that register many scans."""
+        points = [[6000 * c for c in p] for p in cloud_files.box_surface(seed=1)]
+        scans = [self.file(f"{k}.pcd", cloud_files.pcd_bytes(points)) for k in (0, 1)]
+        for result in (self.run_track(*scans), call(POSE_GRAPH, *scans, "-o", self.folder / "graph.g2o")):
+            self.assertRegex(result.stderr, r"0.pcd: note: the points are .* in millimetres")
+            self.assertNotIn("1.pcd: note", result.stderr)
+        self.assertNotIn("note", self.run_track(*scans, "--quiet").stderr)
+
     def test_times_from_names(self):
         source, target = self.small_pair()
         first = target.rename(self.folder / "17.25.pcd")
@@ -263,9 +275,9 @@ class TrackUsage(TrackTest):
         result = self.run_track(first, second, "--times", "names")
         self.assertIn(result.returncode, (0, 1), result.stderr)
         self.assertEqual(self.times(), [17.25, 17.5])
-        # As they went in, though numbers of 64 bits are 240 ns apart there.
+        # As they went in, though numbers of 64 bits are 240 ns apart there; nine decimals.
         first = first.rename(self.folder / "1700000000.25.pcd")
-        second = second.rename(self.folder / "1700000000.250000042.pcd")
+        second = second.rename(self.folder / "1700000000.2500000429.pcd")
         self.track = self.folder / "of_today"
         self.assertIn(self.run_track(first, second, "--times", "names").returncode, (0, 1))
         for name in ("trajectory_tum.txt", "trajectory_covariance.txt"):

@@ -161,6 +161,13 @@ class TransformMotion(TransformTest):
         doubles = self.file("double.pcd", cloud_files.pcd_bytes([(1, 2, 3)] * 3, fields))
         self.assert_done(transform(doubles, output, "--pose", "500000,5000000,0,0,0,0"))
 
+    def test_places_beyond_a_float_are_refused(self):
+        for name in ("out.pcd", "out.ply"):
+            output = self.folder / name
+            result = transform(self.cloud(), output, "--pose", "1e39,0,0,0,0,0")
+            self.assert_refused(3, result, name, "further than a float can say")
+            self.assertFalse(output.exists())
+
 
 class TransformRefusals(TransformTest):
     def test_input_is_not_overwritten_unless_asked_for(self):
