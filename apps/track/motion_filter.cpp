@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 
 namespace bayesian_icp::app {
@@ -16,6 +17,10 @@ constexpr int num_noises = 6 + 6 + num_common;
 
 /** Times that an update is linearised. */
 constexpr int num_iterations = 5;
+
+/** Largest standard deviation of what an interval adds to the motion [m, rad], so that
+ * registrations after a pause of hours are not lost in its rounding. */
+constexpr double max_deviation = 1e6;
 
 /** J with exp(xi + d) = exp(xi) exp(J d) to first order in d: the sum of
  * (-ad(xi))^k / (k + 1)!, for large angles in closed form (Barfoot 2017, eq. 7.77). */
@@ -81,9 +86,12 @@ MotionFilter::predict(double seconds)
 {
   if (last_seconds_ > 0.0) {
     const double between_middles = 0.5 * (last_seconds_ + seconds);
+    const double largest = max_deviation / seconds;
     Vector6d change;
-    change << Eigen::Vector3d::Constant(model_.acceleration * between_middles),
-        Eigen::Vector3d::Constant(model_.angular_acceleration * between_middles);
+    change << Eigen::Vector3d::Constant(
+        std::min(model_.acceleration * between_middles, largest)),
+        Eigen::Vector3d::Constant(
+            std::min(model_.angular_acceleration * between_middles, largest));
     covariance_.block<6, 6>(of_velocity, of_velocity).diagonal() += change.cwiseAbs2();
   }
   last_seconds_ = seconds;

@@ -92,13 +92,19 @@ timeOf(std::string_view seconds, const std::string& where)
 void
 requireIncreasing(const std::vector<std::int64_t>& times, const std::string& where)
 {
-  for (std::size_t k = 1; k < times.size(); ++k)
-    if (times[k] <= times[k - 1])
+  constexpr double longest = 1e5; // [s]; the motion in between is anybody's guess
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    const auto complain = [&](const std::string& what) {
       throw io::FileError(where,
                           "the time of scan " + io::textOf(k) + ", " +
-                              io::textOf(io::secondsOf(times[k])) +
-                              " s, is not after that of scan " + io::textOf(k - 1) +
-                              " by 1 ns");
+                              io::textOf(io::secondsOf(times[k])) + " s, is " + what +
+                              " that of scan " + io::textOf(k - 1));
+    };
+    if (times[k] <= times[k - 1])
+      complain("not at least 1 ns after");
+    if (io::secondsOf(times[k] - times[k - 1]) > longest)
+      complain("more than 100000 s after");
+  }
 }
 
 std::vector<std::int64_t>

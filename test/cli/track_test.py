@@ -318,7 +318,8 @@ class TrackUsage(TrackTest):
             (3, [*two, "--period", 2147483648], "not from 0 to below 2^31 s"),
             (3, [*two, "--times", "names"], "'target' is not a number"),
             (3, [*two, "--times", self.file("short.txt", "1\n")], "has 1 times for 2 scans"),
-            (3, [*two, "--times", self.file("back.txt", "2 1")], "is not after"),
+            (3, [*two, "--times", self.file("back.txt", "2 1")], "is not at least 1 ns after"),
+            (3, [*two, "--period", 100001], "scan 1, 100001 s, is more than 100000 s after"),
             (3, [self.folder / "empty"], "fewer than two"),
             (3, [self.folder / "none"], "none: no such folder"),
         ):
