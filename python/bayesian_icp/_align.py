@@ -66,8 +66,9 @@ def align(
         Everything else. The keywords above come before it; it is not changed.
     progress : bool or callable, optional
         True shows a bar on standard error. A callable gets ``(steps, total_steps,
-        pose)`` some times a second, in the calling thread, zeros while no draw is
-        made; if it returns False, the run is cancelled.
+        pose)`` some times a second, in the calling thread; if it returns False, the
+        run is cancelled. While no draw is made, both numbers are 0 and the pose is
+        NaN.
 
     Returns
     -------
@@ -132,6 +133,8 @@ def align(
 
 
 def _numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name} is {value!r}, but none of its numbers may be masked")
     try:
         return np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Callable
 
 import numpy as np
@@ -19,7 +20,7 @@ def _each_quantity(function: Callable[[Array], float], draws: ArrayLike) -> Arra
     values = np.asarray(draws, dtype=np.float64)
     if values.ndim < 2:
         raise ValueError(f"draws has the shape {values.shape}, but must have (chains, draws, ...)")
-    columns = values.reshape(*values.shape[:2], -1)
+    columns = values.reshape(*values.shape[:2], math.prod(values.shape[2:]))
     results = [function(columns[:, :, k].T) for k in range(columns.shape[2])]
     return np.array(results).reshape(values.shape[2:])
 
@@ -89,13 +90,7 @@ def convert_covariance(covariance: ArrayLike, mean: ArrayLike, source: str, targ
     >>> bool(np.isclose(convert_covariance(body, turned, "right_se3", "left_se3")[1, 1], 4))
     True
     """
-    step = 1e-5
-    centre = np.asarray(mean, dtype=np.float64)
-
-    def moved(error: Array) -> Array:
-        return _core.pose_error(_core.pose_from_error(error, centre, source), centre, target)
-
-    columns = [(moved(e) - moved(-e)) / (2 * step) for e in step * np.eye(6)]
-    jacobian: Array = np.array(columns).T
-    converted: Array = jacobian @ np.asarray(covariance, dtype=np.float64) @ jacobian.T
-    return converted
+    given = np.asarray(covariance, dtype=np.float64)
+    if given.shape != (6, 6):
+        raise ValueError(f"covariance has the shape {given.shape}, but must have (6, 6)")
+    return _core.convert_covariance(given, mean, source, target)

@@ -51,7 +51,7 @@ def simulate(scene: str, *, seed: int = 1, **options: Any) -> ScanPair:
     arguments = [f"--scene={scene}", f"--seed={seed}", "--output=none"]
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
-        if isinstance(value, bool):
+        if isinstance(value, (bool, np.bool_)):
             arguments += [option] if value else []
         elif np.ndim(value):
             arguments.append(option + "=" + ",".join(repr(float(number)) for number in value))

@@ -3,6 +3,7 @@
 
 #include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/exports.h>
+#include <bayesian_icp/measurement.h>
 #include <bayesian_icp/ros_messages.h>
 
 #include <string>
@@ -124,6 +125,19 @@ bindPoses(py::module_& module)
              py::arg("draws"),
              py::arg("convention") = CovarianceConvention::Parameters,
              "6x6 second moment of the errors of (n, 6) draws about a mean.");
+  module.def(
+      "convert_covariance",
+      [](const Matrix6d& covariance,
+         const Vector6d& mean,
+         CovarianceConvention source,
+         CovarianceConvention target) {
+        return Matrix6d(estimateOf(mean, covariance, source).covariance(target));
+      },
+      py::arg("covariance"),
+      py::arg("mean"),
+      py::arg("source"),
+      py::arg("target"),
+      "6x6 covariance about a mean, from one convention to another.");
   module.def(
       "exp_se3", &expSE3, py::arg("twist"), "4x4 matrix of a twist (v, w) [m, rad].");
   module.def(

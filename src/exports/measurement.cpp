@@ -6,16 +6,20 @@
 
 namespace bayesian_icp {
 
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
 namespace {
 
 /** Of a prior that is infinitely wide [1/m^2, 1/rad^2]. */
 constexpr double least_precision = 1e-12;
 
-/** Derivative of the error about \p mean in one convention by that in another. */
+/** Derivative of the error about \p mean in one convention by that in another, by
+ * differences. */
 Matrix6d
-derivativeBetween(const Vector6d& mean,
-                  CovarianceConvention from,
-                  CovarianceConvention to)
+differencesBetween(const Vector6d& mean,
+                   CovarianceConvention from,
+                   CovarianceConvention to)
 {
   constexpr double step = 1e-5;
   Matrix6d derivative;
@@ -27,6 +31,58 @@ derivativeBetween(const Vector6d& mean,
     derivative.col(k) = (errorOf(error) - errorOf(-error)) / (2.0 * step);
   }
   return derivative;
+}
+
+/** Twists about \p offset, seen from the point that twists without it are about. */
+Matrix6d
+twistsAbout(const Vector3d& offset)
+{
+  Matrix6d derivative = Matrix6d::Identity();
+  derivative.topRightCorner<3, 3>() = -crossMatrix(offset);
+  return derivative;
+}
+
+/** Derivative of a twist of the target's axes about a point of the source by one of the
+ * source's about its origin. */
+Matrix6d
+aboutPoint(const Isometry3d& T_target_source, const Vector3d& source_point)
+{
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() =
+      T_target_source.linear();
+  return turn * twistsAbout(source_point);
+}
+
+/** Derivative of an R3xSO3 error, a twist about the mean position, by that of another
+ * kind of twists. */
+Matrix6d
+r3xSO3By(const Vector6d& mean, CovarianceConvention from)
+{
+  Matrix6d derivative = Matrix6d::Identity();
+  if (from == CovarianceConvention::LeftSE3)
+    derivative = twistsAbout(mean.head<3>());
+  if (from == CovarianceConvention::RightSE3)
+    derivative = aboutPoint(isometryOf(mean), Vector3d::Zero());
+  return derivative;
+}
+
+/** Derivative of the error about \p mean in one convention by that in another. */
+Matrix6d
+derivativeBetween(const Vector6d& mean,
+                  CovarianceConvention from,
+                  CovarianceConvention to)
+{
+  constexpr auto parameters = CovarianceConvention::Parameters;
+  constexpr auto between = CovarianceConvention::R3xSO3;
+  if (from == to)
+    return Matrix6d::Identity();
+  const Matrix6d first = from == parameters
+                             ? differencesBetween(mean, parameters, between)
+                             : r3xSO3By(mean, from);
+  if (to == parameters)
+    return differencesBetween(mean, between, parameters) * first;
+  const Matrix6d second = r3xSO3By(mean, to);
+  return second.inverse() * first;
 }
 
 bool
@@ -59,14 +115,18 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
 {
   PoseMeasurement measurement;
   measurement.estimate.status = posterior.status;
-  const Matrix6d& covariance = posterior.covariance(CovarianceConvention::LeftSE3);
-  if (!posterior.mean.allFinite() || !covariance.allFinite() || !isUsable(prior)) {
+  const Matrix6d& of_source = posterior.covariance(CovarianceConvention::RightSE3);
+  if (!posterior.mean.allFinite() || !of_source.allFinite() || !isUsable(prior)) {
     if (hasUsableMean(posterior.status))
       measurement.estimate.status = Status::InvalidInput;
     return measurement;
   }
-  const TwistPrior near_mean =
-      twistPrior(prior, isometryOf(posterior.mean), Eigen::Vector3d::Zero());
+  // Twists about the prior's point, which is near the source wherever the origins are.
+  const Isometry3d pose = isometryOf(posterior.mean);
+  const TwistPrior near_mean = twistPrior(prior, pose, pose * prior.referencePoint());
+  const Matrix6d to_point = aboutPoint(pose, prior.referencePoint());
+  const Matrix6d from_point = to_point.inverse();
+  const Matrix6d covariance = to_point * of_source * to_point.transpose();
   // In units of the prior's the variance along an axis is 1 / (1 + lambda), lambda the
   // information of the clouds.
   const PrincipalAxes shares(
@@ -87,10 +147,11 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
   const Vector6d shift =
       directions * gains.cwiseProduct(directions.transpose() * near_mean.gradient);
   const Status status = measurement.estimate.status;
-  measurement.estimate =
-      estimateOf(poseFromError(shift, posterior.mean, CovarianceConvention::LeftSE3),
-                 directions * variances.asDiagonal() * directions.transpose(),
-                 CovarianceConvention::LeftSE3);
+  const Matrix6d axes = from_point * directions;
+  measurement.estimate = estimateOf(
+      poseFromError(from_point * shift, posterior.mean, CovarianceConvention::RightSE3),
+      axes * variances.asDiagonal() * axes.transpose(),
+      CovarianceConvention::RightSE3);
   measurement.estimate.status = status;
   return measurement;
 }
@@ -98,11 +159,15 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
 PoseEstimate
 estimateOf(const Prior& prior)
 {
+  const Isometry3d pose = isometryOf(prior.mean());
   const Matrix6d precision =
-      twistPrior(prior, isometryOf(prior.mean()), Eigen::Vector3d::Zero()).precision +
+      twistPrior(prior, pose, pose * prior.referencePoint()).precision +
       least_precision * Matrix6d::Identity();
+  const Matrix6d from_point = aboutPoint(pose, prior.referencePoint()).inverse();
   PoseEstimate estimate =
-      estimateOf(prior.mean(), precision.inverse(), CovarianceConvention::LeftSE3);
+      estimateOf(prior.mean(),
+                 from_point * precision.inverse() * from_point.transpose(),
+                 CovarianceConvention::RightSE3);
   estimate.status = isUsable(prior) ? Status::Ok : Status::InvalidInput;
   return estimate;
 }

@@ -12,6 +12,7 @@
 #include <Eigen/Cholesky>
 
 #include <numeric>
+#include <utility>
 
 namespace bayesian_icp {
 namespace {
@@ -142,9 +143,8 @@ TEST(WithoutPrior, APriorThatIsNotFiniteIsAnInvalidInput)
 
 TEST(WithoutPrior, AnInfinitePriorChangesNothing)
 {
-  PoseEstimate posterior;
-  posterior.mean = some_pose;
-  posterior.covariances.fill(1e-4 * Matrix6d::Identity());
+  const PoseEstimate posterior =
+      estimateOf(some_pose, 1e-4 * Matrix6d::Identity(), left);
   const double infinite = std::numeric_limits<double>::infinity();
   const PoseMeasurement measurement =
       withoutPrior(posterior, Prior(Vector6d::Zero(), Vector6d::Constant(infinite)));
@@ -152,6 +152,55 @@ TEST(WithoutPrior, AnInfinitePriorChangesNothing)
   EXPECT_LT((measurement.estimate.mean - some_pose).norm(), 1e-8);
   EXPECT_TRUE(measurement.estimate.covariance(left).isApprox(
       1e-4 * Matrix6d::Identity(), 1e-6));
+}
+
+TEST(WithoutPrior, IsTheSameWhereverTheTargetsFrameIs)
+{
+  // As in UTM coordinates, which are kept to a nanometre.
+  const Matrix6d covariance = test::someCovariance(1e-4);
+  const Vector6d variance = Vector6d::Constant(4e-8);
+  const Eigen::Vector3d point(0.3, -0.2, 0.5);
+  const auto at = [&](const Vector6d& pose) {
+    Vector6d prior_mean = pose;
+    prior_mean[0] += 1e-4;
+    const Prior prior(prior_mean, variance, point);
+    return std::pair(withoutPrior(estimateOf(pose, covariance, right), prior),
+                     estimateOf(prior));
+  };
+  Vector6d far = some_pose;
+  far.head<3>() += Eigen::Vector3d(5e5, 5e6, 100.0);
+  const auto [measurement, prior] = at(some_pose);
+  const auto [far_measurement, far_prior] = at(far);
+  EXPECT_EQ(far_measurement.num_unmeasured, measurement.num_unmeasured);
+  EXPECT_LT(test::relativeDifference(far_measurement.estimate.covariance(right),
+                                     measurement.estimate.covariance(right)),
+            1e-4);
+  EXPECT_LT(
+      test::relativeDifference(far_prior.covariance(right), prior.covariance(right)),
+      1e-6);
+  const Vector6d shift = poseError(measurement.estimate.mean, some_pose, right);
+  const Vector6d far_shift = poseError(far_measurement.estimate.mean, far, right);
+  EXPECT_LT((far_shift - shift).norm(), 1e-8);
+}
+
+TEST(Estimate, InOtherConventionsIsThatOfTheAdjoint)
+{
+  Vector6d far = some_pose;
+  far.head<3>() += Eigen::Vector3d(1e5, 1e5, 0.0);
+  for (const Vector6d& pose : {some_pose, far}) {
+    const Matrix6d covariance = test::someCovariance(1e-3);
+    const Eigen::Matrix4d T = matrixOf(pose);
+    const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+    Matrix6d adjoint;
+    adjoint << R, crossMatrix(T.topRightCorner<3, 1>()) * R, Eigen::Matrix3d::Zero(), R;
+    const Matrix6d of_left = adjoint * covariance * adjoint.transpose();
+    EXPECT_LT(test::relativeDifference(
+                  estimateOf(pose, covariance, right).covariance(left), of_left),
+              1e-9);
+    EXPECT_LT(test::relativeDifference(
+                  estimateOf(pose, of_left, left).covariance(right), covariance),
+              1e-2);
+  }
 }
 
 /** A robot above a table: odometry N(0, 1 / odometry) about some_pose, and clouds that
@@ -188,11 +237,9 @@ protected:
   {
     const Vector6d seen = truth + 0.002 * random.normal6();
     const Vector6d mean = posterior_information_.inverse() * (clouds_ * seen);
-    PoseEstimate posterior;
+    PoseEstimate posterior = estimateOf(
+        poseFromError(mean, some_pose, left), posterior_information_.inverse(), left);
     posterior.status = Status::Ok;
-    posterior.mean = poseFromError(mean, some_pose, left);
-    posterior.covariances[static_cast<std::size_t>(left)] =
-        posterior_information_.inverse();
     return posterior;
   }
 
