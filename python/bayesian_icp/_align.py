@@ -133,7 +133,7 @@ def align(
 
 
 def _numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    if np.ma.is_masked(value):
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
         raise ValueError(f"{name} is {value!r}, but none of its numbers may be masked")
     try:
         return np.asarray(value, dtype=np.float64)

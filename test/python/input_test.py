@@ -67,6 +67,7 @@ def test_points_that_are_not_finite(value):
     ({"prior_std": np.ones(3)}, ValueError, r"prior_std has the shape \(3,\)"),
     ({"prior_std": (0.1, -0.2)}, ValueError, r"prior_std is \(0.1, -0.2\), but must be positive"),
     ({"prior_std": (np.inf, 1)}, ValueError, "variance"),
+    ({"prior_std": np.ma.masked_array(np.ones(6), [0, 1, 0, 0, 0, 0])}, ValueError, "masked"),
     ({"prior_std": (1, 1), "prior_variance": (1, 1)}, ValueError, "both given"),
     ({"prior_frame": "middle"}, ValueError, "frame: 'middle' is none of .'origin', 'source-centroid', 'automatic'"),
     ({"preset": "best"}, ValueError, "preset: 'best' is none of .'paper', 'exact', 'calibrated'"),

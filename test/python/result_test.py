@@ -23,6 +23,8 @@ def test_covariance_is_that_of_the_draws(result, convention):
 def test_covariances_convert(result, convention):
     converted = bayesian_icp.convert_covariance(result.covariance(), result.mean, "parameters", convention)
     assert np.allclose(converted, result.covariance(convention), rtol=0.05, atol=1e-8)
+    with pytest.raises(ValueError, match=r"\(6, 6\)"):
+        bayesian_icp.convert_covariance(np.ones(6), result.mean, "parameters", convention)
     back = bayesian_icp.convert_covariance(converted, result.mean, convention, "parameters")
     assert np.allclose(back, result.covariance(), rtol=1e-5, atol=1e-12)
 
@@ -87,6 +89,7 @@ def test_diagnostics_are_those_of_the_result(result):
     assert bayesian_icp.rhat(errors[:, :, 0]).shape == ()
     assert bayesian_icp.mcse(errors).shape == (6,)
     assert np.isnan(bayesian_icp.rhat(np.zeros((2, 3))))
+    assert np.isnan(bayesian_icp.rhat(np.zeros((0, 0, 6)))).sum() == 6
     with pytest.raises(ValueError, match="kind is 'all'"):
         bayesian_icp.ess(errors, "all")
     with pytest.raises(ValueError, match=r"draws has the shape \(6,\)"):
