@@ -151,7 +151,8 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   const State rest = about_new * (State::Identity() - gain * H);
   const Eigen::Matrix<double, num_errors, 6> taken = about_new * gain;
   propagate([&](State& rows) { rows = rest * rows; });
-  covariance_ += taken * own * taken.transpose();
+  const State noise = taken * own * taken.transpose();
+  covariance_ += 0.5 * (noise + noise.transpose());
   return squared_innovation;
 }
 

@@ -90,9 +90,9 @@ timeOf(std::string_view seconds, const std::string& where)
 }
 
 void
-requireIncreasing(const std::vector<std::int64_t>& times, const std::string& where)
+requireIntervals(const std::vector<std::int64_t>& times, const std::string& where)
 {
-  constexpr double longest = 1e5; // [s]; the motion in between is anybody's guess
+  constexpr int longest = 100'000; // [s]; the motion in between is anybody's guess
   for (std::size_t k = 1; k < times.size(); ++k) {
     const auto complain = [&](const std::string& what) {
       throw io::FileError(where,
@@ -103,7 +103,7 @@ requireIncreasing(const std::vector<std::int64_t>& times, const std::string& whe
     if (times[k] <= times[k - 1])
       complain("not at least 1 ns after");
     if (io::secondsOf(times[k] - times[k - 1]) > longest)
-      complain("more than 100000 s after");
+      complain("more than " + io::textOf(longest) + " s after");
   }
 }
 
@@ -131,7 +131,7 @@ readTimes(const TimeOptions& options, const std::vector<std::string>& scans)
     throw io::FileError(where,
                         "has " + io::textOf(times.size()) + " times for " +
                             io::textOf(scans.size()) + " scans");
-  requireIncreasing(times, where);
+  requireIntervals(times, where);
   return times;
 }
 

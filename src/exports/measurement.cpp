@@ -33,7 +33,8 @@ differencesBetween(const Vector6d& mean,
   return derivative;
 }
 
-/** Twists about \p offset, seen from the point that twists without it are about. */
+/** Derivative of a twist about the point at \p offset by the same twist about the
+ * origin: v' = v + w x offset. */
 Matrix6d
 twistsAbout(const Vector3d& offset)
 {
