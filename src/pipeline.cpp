@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -46,26 +47,6 @@ translationLimit(const Prior& prior,
   return limit.head<3>().array() + size.norm();
 }
 
-/** What is wrong with the input; the status is NotRun if nothing is. */
-PosteriorEstimate
-checkInput(const Eigen::Matrix3Xd& source_points,
-           const CorrespondenceSearch& search,
-           const Vector6d& initial_pose,
-           const Options& options)
-{
-  PosteriorEstimate checked = checkArguments(source_points, initial_pose, options);
-  if (checked.summary.status != Status::NotRun)
-    return checked;
-  const std::size_t found = countCorrespondences(source_points, search, initial_pose);
-  if (found < min_correspondences)
-    return failure(Status::TooFewCorrespondences,
-                   "only " + std::to_string(found) + " of " +
-                       std::to_string(source_points.cols()) +
-                       " source points have a target point within the maximum "
-                       "correspondence distance at the initial guess");
-  return checked;
-}
-
 PosteriorEstimate
 estimate(const Eigen::Matrix3Xd& source_points,
          const CorrespondenceSearch& search,
@@ -74,9 +55,15 @@ estimate(const Eigen::Matrix3Xd& source_points,
          const Options& options,
          const ProgressCallback& progress)
 {
-  PosteriorEstimate checked = checkInput(source_points, search, initial_pose, options);
-  if (checked.summary.status != Status::NotRun)
-    return checked;
+  if (auto refusal = refusalOf(source_points, initial_pose, options))
+    return std::move(*refusal);
+  const std::size_t found = countCorrespondences(source_points, search, initial_pose);
+  if (found < min_correspondences)
+    return failure(Status::TooFewCorrespondences,
+                   "only " + std::to_string(found) + " of " +
+                       std::to_string(source_points.cols()) +
+                       " source points have a target point within the maximum "
+                       "correspondence distance at the initial guess");
   const Prior prior = priorOf(options, initial_pose, source_points);
   const Eigen::Vector3d limit = translationLimit(prior, initial_pose, source_points);
   const auto has_diverged = [&prior, &limit](const Vector6d& pose) {

@@ -106,7 +106,7 @@ runCalibrated(const CoverageCase& problem)
   const CalibratedEstimate estimate = registration.estimate();
   MethodResult result = resultOf(estimate);
   result.notes = notesOf(dataReportOf(estimate, registration.scorer.noise()));
-  result.num_queries = estimate.num_queries;
+  result.num_queries = registration.scorer.numQueries();
   return result;
 }
 

@@ -157,7 +157,6 @@ private:
     secants.differences.col(direction) = points.scores.rowwise().sum();
     secants.noise[static_cast<std::size_t>(direction)] =
         clusteredCovariance(points, Matrix6d::Zero(), options) / quantile_to_debit;
-    secants.num_evaluations += 2;
   }
 
   const BaselineProblem& problem_;

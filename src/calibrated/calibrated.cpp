@@ -16,23 +16,6 @@ namespace bayesian_icp {
 
 namespace {
 
-/** Check the arguments. The status is NotRun if they are valid. */
-PosteriorEstimate
-checkInput(const Eigen::Matrix3Xd& source_points,
-           const Vector6d& initial_pose,
-           const Options& options)
-{
-  PosteriorEstimate checked = checkArguments(source_points, initial_pose, options);
-  if (checked.summary.status != Status::NotRun)
-    return checked;
-  if (source_points.cols() < min_calibrated_points)
-    return failure(Status::InvalidInput,
-                   "the source has " + std::to_string(source_points.cols()) +
-                       " finite points, but preset calibrated needs " +
-                       std::to_string(min_calibrated_points));
-  return checked;
-}
-
 /** Report progress of unknown length. Returns whether the user cancels. */
 bool
 isCancelled(const ProgressCallback& progress)
@@ -119,9 +102,13 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
                             const Options& options,
                             const ProgressCallback& progress)
 {
-  PosteriorEstimate checked = checkInput(source_points, initial_pose, options);
-  if (checked.summary.status != Status::NotRun)
-    return checked;
+  if (auto refusal = refusalOf(source_points, initial_pose, options))
+    return std::move(*refusal);
+  if (source_points.cols() < min_calibrated_points)
+    return failure(Status::InvalidInput,
+                   "the source has " + std::to_string(source_points.cols()) +
+                       " finite points, but preset calibrated needs " +
+                       std::to_string(min_calibrated_points));
   if (isCancelled(progress))
     return failure(Status::Cancelled, "interrupted before the first draw");
   // 1: both clouds as surfaces.

@@ -90,9 +90,7 @@ constexpr double max_overlap_before_far_move = 0.9, max_misfit_after_far_move = 
 
 /** Ends of the two starts. The better one leads to the mode. */
 struct Ends {
-  RobustFit best;
-  RobustFit other;
-  long num_queries = 0;
+  RobustFit best, other;
 };
 
 /** Initial tau, at which a start sees all of the target that the prior allows. It is at
@@ -113,30 +111,25 @@ followStarts(const SurfaceScorer& scorer,
              const Isometry3d* start)
 {
   const SurfaceScorer subset = scorer.ofFirst(options.num_mode_points);
-  const Index num_points = subset.numPoints();
   RobustFitOptions fit;
   fit.tolerance = start_tolerance * scorer.noise();
   Ends ends;
   if (start) {
     ends.best = ends.other = fitRobustly(subset, prior, *start, fit);
-    ends.num_queries = num_points * ends.best.num_evaluations;
     return ends;
   }
   const Isometry3d prior_mean = isometryOf(prior.mean());
   fit.start_scale = startScale(prior, subset);
-  RobustFit icp;
   forEachPiece(2, options.num_threads, [&](std::ptrdiff_t i) {
     if (i == 0) {
       ends.best = fitRobustly(subset, prior, prior_mean, fit);
       return;
     }
-    icp = fitPointToPoint(subset, prior, prior_mean);
+    const RobustFit icp = fitPointToPoint(subset, prior, prior_mean);
     RobustFitOptions from_icp = fit;
     from_icp.start_scale *= icp_to_prior_scale;
     ends.other = fitRobustly(subset, prior, icp.pose, from_icp);
   });
-  ends.num_queries = num_points * (ends.best.num_evaluations + icp.num_evaluations +
-                                   ends.other.num_evaluations);
   return ends;
 }
 
@@ -158,10 +151,6 @@ fitOnAllPoints(const SurfaceScorer& scorer,
 void
 followEnds(const SurfaceScorer& scorer, const HeldPrior& prior, Ends& ends)
 {
-  const auto follow = [&](RobustFit& end) {
-    end = fitOnAllPoints(scorer, prior, end.pose);
-    ends.num_queries += scorer.numPoints() * end.num_evaluations;
-  };
   const auto putBetterFirst = [&ends] {
     if (relativeCost(ends.other, ends.best) < 1.0)
       std::swap(ends.best, ends.other);
@@ -172,12 +161,12 @@ followEnds(const SurfaceScorer& scorer, const HeldPrior& prior, Ends& ends)
       twistBetween(ends.best.pose, ends.other.pose, ends.best.pose * scorer.centroid());
   const bool are_apart =
       way.dot(displacementMetric(scorer, ends.best.pose) * way) > noise * noise;
-  follow(ends.best);
+  ends.best = fitOnAllPoints(scorer, prior, ends.best.pose);
   if (!are_apart) {
     ends.other = ends.best;
     return;
   }
-  follow(ends.other);
+  ends.other = fitOnAllPoints(scorer, prior, ends.other.pose);
   putBetterFirst();
 }
 
@@ -214,15 +203,6 @@ withUnheldNoise(const Matrix6d& score_covariance,
   return J;
 }
 
-/** The secants of the last round, and the information that remains after their debit.
- */
-struct Curvature {
-  Secants secants;
-  DebitedInformation debited;
-  /** Evaluations of all points. */
-  int num_evaluations = 0;
-};
-
 /** Set everything that follows from J, the curvature and the directions. */
 void
 finish(CalibratedEstimate& e)
@@ -255,20 +235,19 @@ atMode(const SurfaceScorer& scorer, const HeldPrior& prior, const RobustFit& mod
   return e;
 }
 
-/** Debit the noise of the secants, and set covariance and score_covariance. */
-DebitedInformation
+/** Debit the noise of the secants, and set keep, covariance and score_covariance. */
+void
 debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
 {
-  DebitedInformation debited;
   e.score_covariance = J;
   for (int pass = 0; pass < 2; ++pass) {
-    debited = debitedInformation(
+    const DebitedInformation debited = debitedInformation(
         secants, e.score_covariance, e.prior.precision, smallest_information_share);
+    e.keep = debited.keep;
     e.covariance = (debited.information + e.prior.precision).inverse();
     if (pass == 0)
       e.score_covariance = withUnheldNoise(J, secants, debited, e.covariance);
   }
-  return debited;
 }
 
 /** J of the points of \p scorer at an estimate's mode. Scores are exactly zero along
@@ -289,8 +268,9 @@ scoreCovarianceAt(const CalibratedEstimate& e,
   return J;
 }
 
-/** Measure rounds of secants, each along the axes found by the round before. */
-Curvature
+/** Measure rounds of secants, each along the axes found by the round before. \return
+ * those of the last round, whose noise is debited */
+Secants
 measureCurvature(const SurfaceScorer& scorer,
                  const Matrix6d& J,
                  const EstimateOptions& options,
@@ -298,19 +278,17 @@ measureCurvature(const SurfaceScorer& scorer,
 {
   const double noise = scorer.noise(), tau = e.residual_scale;
   e.covariance = firstCovariance(e, noise);
-  Curvature curvature;
+  Secants secants;
   for (int round = 0; round < options.num_rounds; ++round) {
     const SecantPlan plan = {e.covariance,
                              e.displacement_metric,
                              e.prior.precision,
                              min_step_to_noise * noise,
                              options.num_threads};
-    curvature.secants =
-        measureSecants(scorer, e.mode, e.scores, tau, plan, curvature.secants);
-    curvature.num_evaluations += curvature.secants.num_evaluations;
-    curvature.debited = debit(curvature.secants, J, e);
+    secants = measureSecants(scorer, e.mode, e.scores, tau, plan, secants);
+    debit(secants, J, e);
   }
-  return curvature;
+  return secants;
 }
 
 /** The estimate about one mode. */
@@ -330,19 +308,17 @@ estimateAt(const SurfaceScorer& scorer,
   CalibratedEstimate of_first = atMode(first, prior, mode);
   const ScoreCovariance J_first =
       scoreCovarianceAt(of_first, first, prior, options.num_threads);
-  const Curvature curvature =
+  const Secants secants =
       measureCurvature(first, J_first.covariance, options, of_first);
   const double num_ratio =
       double(e.scores.num_active) / std::max(1, of_first.scores.num_active);
   e.score_covariance =
       J.covariance + num_ratio * J.kappa / J_first.kappa *
                          (of_first.score_covariance - J_first.covariance);
-  e.curvature = num_ratio * curvature.secants.curvature;
-  e.keep = curvature.debited.keep;
-  e.num_queries =
-      scorer.numPoints() + first.numPoints() * (1 + curvature.num_evaluations);
+  e.curvature = num_ratio * secants.curvature;
+  e.keep = of_first.keep;
   for (int k = 0; k < 6; ++k) {
-    const Vector6d step = curvature.secants.steps.col(k);
+    const Vector6d step = secants.steps.col(k);
     e.directions.col(k) = step / std::sqrt(step.dot(e.displacement_metric * step));
   }
   turnFreeDirections(first,
@@ -400,21 +376,16 @@ moveToMean(const SurfaceScorer& scorer,
                      movedBy(e.mean, e.centre, e.mode),
                      last ? holdOfFree(e, tolerance) : Matrix6d::Zero());
   const RobustFit before = fitAt(leading, prior, e.mode);
-  e.num_queries +=
-      leading.numPoints() * (mode.num_evaluations + before.num_evaluations);
   if (isClearlyWorse(mode, before, max_loss_of_move) ||
       (!isMeanWithinReach(e) &&
        !(contactsOf(mode.residuals).misfit <
          max_misfit_after_far_move * contactsOf(before.residuals).misfit)))
     return false;
   CalibratedEstimate next = estimateAt(scorer, prior, options, mode);
-  next.num_queries += e.num_queries;
   const bool moves =
       next.scores.num_active >= min_support_after_move * e.scores.num_active;
   if (moves)
     e = std::move(next);
-  else
-    e.num_queries = next.num_queries;
   return moves;
 }
 
@@ -510,7 +481,6 @@ estimateCalibrated(const SurfaceScorer& scorer,
   followEnds(lead.ofFirst(options.num_curvature_points), prior, ends);
   const RobustFit mode = fitOnAllPoints(lead, prior, ends.best.pose);
   CalibratedEstimate e = estimateAt(scorer, prior, options, mode);
-  e.num_queries += ends.num_queries + lead.numPoints() * mode.num_evaluations;
   for (int move = 0; move < max_moves && isFarFromMean(e); ++move)
     if (!moveToMean(scorer, lead, prior, options, move + 1 == max_moves, e))
       break;

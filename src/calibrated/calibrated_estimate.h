@@ -66,8 +66,6 @@ struct CalibratedEstimate {
    * pose at which the clouds meet clearly better than at the mode. 0 if none was found
    * or looked for. */
   double better_fit = 0.0;
-  /** Nearest-neighbour queries used. */
-  long num_queries = 0;
 };
 
 /** \brief Numbers of points and rounds of the estimate. */

@@ -53,8 +53,6 @@ turnDirection(int k,
     ends[static_cast<std::size_t>(i)] = fitRobustly(scorer, prior, start, options);
   });
   for (const RobustFit& end : ends)
-    e.num_queries += scorer.numPoints() * end.num_evaluations;
-  for (const RobustFit& end : ends)
     if (!(contactsOf(end.residuals).misfit <= max_misfit * misfit))
       return false;
   const Vector6d way = twistBetween(e.mode, ends[0].pose, e.centre) -

@@ -154,19 +154,6 @@ PoseEnergy::energy(const Vector6d& theta, EnergyWorkspace& workspace) const
 }
 
 Vector6d
-PoseEnergy::energyGradient(const Vector6d& theta) const
-{
-  EnergyWorkspace workspace = makeWorkspace();
-  const Vector6d phi = toPhi(theta);
-  Vector6d gradient =
-      batchTerms(phi, allPoints(), BatchTerms::Gradient, residual_, workspace).gradient;
-  // phi's translation is theta's plus R c - c.
-  const Eigen::Vector3d Rc = rotationOf(theta) * centroid_;
-  gradient.tail<3>() += rotationAxes(theta) * Rc.cross(gradient.head<3>());
-  return weight_ * gradient + prior_.energyGradient(theta);
-}
-
-Vector6d
 PoseEnergy::toTheta(const Vector6d& phi) const
 {
   Vector6d theta = phi;

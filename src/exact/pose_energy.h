@@ -70,17 +70,14 @@ public:
   double
   energy(const Vector6d& theta, EnergyWorkspace& workspace) const;
 
-  /** \brief dU / dtheta at fixed correspondences, over all source points. */
-  Vector6d
-  energyGradient(const Vector6d& theta) const;
-
   Vector6d
   toTheta(const Vector6d& phi) const;
 
   Vector6d
   toPhi(const Vector6d& theta) const;
 
-  /** \brief Likelihood terms of a batch at the centred pose \p phi.
+  /** \brief Likelihood terms of a batch at the centred pose \p phi. Derivatives are at
+   * fixed correspondences.
    * \param[in] phi centred pose [m, rad]
    * \param[in] indices source points of the batch, at least one
    * \param[in] extras what to compute besides the energy

@@ -117,10 +117,10 @@ addDoubts(const std::vector<std::string>& doubts, Summary& summary)
     summary.message += (i > 0 ? "; " : is_lowered ? ", but " : "; also ") + doubts[i];
 }
 
-PosteriorEstimate
-checkArguments(const Eigen::Matrix3Xd& source_points,
-               const Vector6d& initial_pose,
-               const Options& options)
+std::optional<PosteriorEstimate>
+refusalOf(const Eigen::Matrix3Xd& source_points,
+          const Vector6d& initial_pose,
+          const Options& options)
 {
   const std::string complaint = options.validate();
   if (!complaint.empty())
@@ -129,7 +129,7 @@ checkArguments(const Eigen::Matrix3Xd& source_points,
     return failure(Status::InvalidInput, "the initial guess is not finite");
   if (!source_points.allFinite())
     return failure(Status::InvalidInput, "the source has non-finite points");
-  return PosteriorEstimate();
+  return std::nullopt;
 }
 
 } // namespace bayesian_icp

@@ -8,6 +8,7 @@
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/prior.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,11 +36,10 @@ estimateOf(ChainSet chain_set, const Prior& prior);
 void
 addDoubts(const std::vector<std::string>& doubts, Summary& summary);
 
-/** \brief What is wrong with the options, the guess or the source; the status is NotRun
- * if nothing is. */
-PosteriorEstimate
-checkArguments(const Eigen::Matrix3Xd& source_points,
-               const Vector6d& initial_pose,
-               const Options& options);
+/** \brief What is wrong with the options, the guess or the source, if anything is. */
+std::optional<PosteriorEstimate>
+refusalOf(const Eigen::Matrix3Xd& source_points,
+          const Vector6d& initial_pose,
+          const Options& options);
 
 } // namespace bayesian_icp

@@ -153,9 +153,16 @@ TEST(Gradients, OfEveryResidualAndKernelAgreeWithFiniteDifferences)
       const TreeTarget target = treeTargetFor(options, scan.tree);
       const FixedMatches fixed(target, pose);
       const PoseEnergy energy(scan.source, fixed, prior, 1000.0, options);
-      const Vector6d gradient = energy.energyGradient(pose);
+      const Vector6d phi = energy.toPhi(pose);
+      EnergyWorkspace workspace = energy.makeWorkspace();
+      const BatchTerms terms = energy.batchTerms(
+          phi, energy.allPoints(), BatchTerms::Gradient, options, workspace);
+      const Vector6d gradient =
+          energy.weight() * terms.gradient + energy.priorGradient(phi);
       const Vector6d numerical = test::centralDifferences(
-          [&](const Vector6d& p) { return energy.energy(p); }, pose, 1e-3);
+          [&](const Vector6d& p) { return energy.energy(energy.toTheta(p)); },
+          phi,
+          1e-3);
       // Coordinates are single precision: 1e-7 m of 0.05 m residuals, step 1e-3, and
       // the curvature of the energy over that step.
       const double tolerance = 0.01 * gradient.norm() + 0.01;

@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace bayesian_icp {
 
@@ -120,7 +119,6 @@ public:
   {
     evaluateAt(step, forward_);
     evaluateAt(-step, backward_);
-    num_evaluations_ += 2;
     Secant secant;
     secant.step = step;
     secant.difference = 0.5 * (forward_.total - backward_.total);
@@ -145,7 +143,7 @@ public:
       const double rate = at_mode_.jacobians.col(i).dot(step), weight = rate * rate;
       const Eigen::Vector3d arm = mode_ * points_.col(i) - centre_;
       const double motion = (step.head<3>() + step.tail<3>().cross(arm)).norm();
-      const SurfacePatch& patch = scorer_.patchOf(i, patches_[index]);
+      const SurfacePatch& patch = scorer_.modelOf(i).patches()[patches_[index]];
       sum += weight;
       sum_of_squares += weight * weight;
       motions += weight * motion / patch.radius;
@@ -164,12 +162,6 @@ public:
       holders.on_curves = on_curves / sum;
     }
     return holders;
-  }
-
-  int
-  numEvaluations() const
-  {
-    return num_evaluations_;
   }
 
 private:
@@ -227,7 +219,6 @@ private:
   SurfaceScores backward_{};
   /** At the mode, without robust weights. */
   SurfaceScores linear_{};
-  int num_evaluations_ = 0;
 };
 
 /** Square of the restoring part of a secant in units of its variance; 0 if it does not
@@ -382,16 +373,12 @@ measureSecants(const SurfaceScorer& scorer,
   const PrincipalAxes principal(plan.covariance, plan.displacement_metric);
   const SecantMaker about_mode(scorer, mode, at_mode, tau);
   Secants secants = previous;
-  std::array<int, 6> num_evaluations;
   forEachPiece(6, plan.num_threads, [&](std::ptrdiff_t piece) {
     const int k = static_cast<int>(piece);
     SecantMaker maker = about_mode;
     measureDirection(k, principal, plan, previous, maker, secants);
     secants.trust[k] = trustIn(maker, secants.steps.col(k), k);
-    num_evaluations[static_cast<std::size_t>(k)] = maker.numEvaluations();
   });
-  secants.num_evaluations =
-      std::accumulate(num_evaluations.begin(), num_evaluations.end(), 0);
   secants.curvature = curvatureOf(secants);
   return secants;
 }

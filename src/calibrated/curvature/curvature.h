@@ -53,8 +53,6 @@ struct Secants {
   Vector6d trust = Vector6d::Ones();
   /** H: symmetric, in the twists' coordinates. */
   Matrix6d curvature = Matrix6d::Zero();
-  /** Number of evaluations of all points. */
-  int num_evaluations = 0;
 };
 
 /** \brief Length of the longest step along an axis of unit displacement [m]: the least

@@ -107,13 +107,24 @@ isWide(const SurfaceScorer& scorer, const HeldPrior& prior)
   return std::any_of(wide.begin(), wide.end(), [](bool is_wide) { return is_wide; });
 }
 
-/** Deviations from the prior's mean: a Latin hypercube in the wide coordinates, draws
- * in the others. */
-Matrix6Xd
-startDeviations(const std::array<bool, 6>& wide,
-                const HeldPrior& prior,
-                int num_starts,
-                Random& random)
+/** The pose of a deviation (as in Prior::deviation()) from the prior's mean. */
+Isometry3d
+poseAt(const Vector6d& deviation, const HeldPrior& prior)
+{
+  Vector6d pose = prior.mean() + deviation;
+  const Eigen::Vector3d reference = isometryOf(prior.mean()) * prior.referencePoint();
+  pose.head<3>() =
+      reference + deviation.head<3>() - rotationOf(pose) * prior.referencePoint();
+  return isometryOf(pose);
+}
+
+/** Starts over the prior: a Latin hypercube in the wide coordinates, draws in the
+ * others. */
+std::vector<Isometry3d>
+startsOver(const HeldPrior& prior,
+           const std::array<bool, 6>& wide,
+           int num_starts,
+           Random& random)
 {
   Matrix6Xd deviations(6, num_starts);
   for (int k = 0; k < 6; ++k) {
@@ -130,18 +141,10 @@ startDeviations(const std::array<bool, 6>& wide,
                                                            : sd * random.normal();
     }
   }
-  return deviations;
-}
-
-/** The pose of a deviation (as in Prior::deviation()) from the prior's mean. */
-Isometry3d
-poseAt(const Vector6d& deviation, const HeldPrior& prior)
-{
-  Vector6d pose = prior.mean() + deviation;
-  const Eigen::Vector3d reference = isometryOf(prior.mean()) * prior.referencePoint();
-  pose.head<3>() =
-      reference + deviation.head<3>() - rotationOf(pose) * prior.referencePoint();
-  return isometryOf(pose);
+  std::vector<Isometry3d> starts;
+  for (const auto deviation : deviations.colwise())
+    starts.push_back(poseAt(deviation, prior));
+  return starts;
 }
 
 /** Whether the prior's rotation is very wide. */
@@ -149,20 +152,6 @@ bool
 mayBeLost(const HeldPrior& prior)
 {
   return std::sqrt(prior.variance().tail<3>().maxCoeff()) > lost_angle;
-}
-
-/** Starts over the prior. */
-std::vector<Isometry3d>
-startsOver(const HeldPrior& prior,
-           const std::array<bool, 6>& wide,
-           int num_starts,
-           Random& random)
-{
-  const Matrix6Xd deviations = startDeviations(wide, prior, num_starts, random);
-  std::vector<Isometry3d> starts;
-  for (const auto deviation : deviations.colwise())
-    starts.push_back(poseAt(deviation, prior));
-  return starts;
 }
 
 /** Starts where the target may look much as it does at \p pose: slides, since many
@@ -271,9 +260,7 @@ followStarts(const SurfaceScorer& subset,
   forEachPiece(num_starts, num_threads, [&](std::ptrdiff_t i) {
     const auto start = static_cast<std::size_t>(i);
     const RobustFit icp = fitPointToPoint(icp_points, prior, starts[start]);
-    RobustFit& end = ends[start];
-    end = fitRobustly(subset, prior, icp.pose, fit);
-    end.num_evaluations += static_cast<int>(std::ceil(icp_part * icp.num_evaluations));
+    ends[start] = fitRobustly(subset, prior, icp.pose, fit);
   });
   return ends;
 }
@@ -379,18 +366,14 @@ endsOfCloud(const SurfaceScorer& leading,
             const SurfaceScorer& scorer,
             const HeldPrior& prior,
             const CalibratedEstimate& first,
-            const ModeSearchOptions& options,
-            long& num_queries)
+            const ModeSearchOptions& options)
 {
   const SurfaceScorer subset = leading.ofFirst(options.num_points);
   CloudEnds ends = {subset, fitAt(subset, prior, first.mode), {}};
   std::vector<RobustFit>& others = ends.others;
-  num_queries += subset.numPoints() * ends.first.num_evaluations;
   if (mayHaveSeveralModes(scorer, prior, first))
     others = endsOfStarts(
         subset, prior, wideCoordinates(scorer, prior), ends.first, options);
-  for (const RobustFit& end : others)
-    num_queries += subset.numPoints() * end.num_evaluations;
   const auto add = [&](const std::vector<RobustFit>& found) {
     others.insert(others.end(), found.begin(), found.end());
     std::stable_sort(others.begin(), others.end(), costsLess);
@@ -400,9 +383,8 @@ endsOfCloud(const SurfaceScorer& leading,
                                                                    : others.front();
   };
   const int num_threads = options.estimate.num_threads;
-  add(endsAtRepeats(
-      subset, prior, best(), weakTranslations(first), num_threads, num_queries));
-  add(endsOnParallelFaces(leading, subset, prior, best(), num_threads, num_queries));
+  add(endsAtRepeats(subset, prior, best(), weakTranslations(first), num_threads));
+  add(endsOnParallelFaces(leading, subset, prior, best(), num_threads));
   const double max_squared = std::max(
       max_squared_deviations, squaredDeviations(scorer, prior, ends.first.pose));
   others.erase(std::remove_if(others.begin(),
@@ -417,22 +399,21 @@ endsOfCloud(const SurfaceScorer& leading,
 
 /** Add an estimate of the mode at each of the ends, unless it is known.
  * \param[in] leading as in estimateCalibrated()
- * \param[in,out] search has no mode but the first estimate */
+ * \param[in,out] modes none but the first estimate */
 void
 addModes(const SurfaceScorer& scorer,
          const SurfaceScorer* leading,
          const HeldPrior& prior,
          const CloudEnds& ends,
          const ModeSearchOptions& options,
-         ModeSearch& search)
+         std::vector<CalibratedMode>& modes)
 {
   const double max_cost = (1.0 + cost_margin) * ends.leastCost();
   std::vector<KnownMode> known;
-  for (const CalibratedMode& mode : search.modes)
+  for (const CalibratedMode& mode : modes)
     known.emplace_back(mode.estimate, ends.first);
   for (const RobustFit& end : ends.others) {
-    if (end.cost > max_cost ||
-        static_cast<int>(search.modes.size()) >= options.max_modes)
+    if (end.cost > max_cost || static_cast<int>(modes.size()) >= options.max_modes)
       break;
     const auto isWorse = [&end](const KnownMode& mode) {
       return isClearlyWorse(mode.fit, end, hiding_margin);
@@ -444,7 +425,6 @@ addModes(const SurfaceScorer& scorer,
       continue;
     const CalibratedEstimate estimate =
         estimateCalibrated(scorer, prior, options.estimate, &end.pose, leading);
-    search.num_queries += estimate.num_queries;
     const KnownMode found(estimate, end);
     const bool is_known =
         std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
@@ -452,14 +432,13 @@ addModes(const SurfaceScorer& scorer,
           return mode.squaredDistanceTo(estimate.mode) < limit &&
                  (found.squaredDistanceTo(mode.pose) < limit || !isWorse(mode));
         });
-    if (!is_known &&
-        std::any_of(search.modes.begin(), search.modes.end(), [&](const auto& mode) {
+    if (!is_known && std::any_of(modes.begin(), modes.end(), [&](const auto& mode) {
           return areConnected(ends.subset, prior, mode.estimate, estimate, max_cost);
         }))
       continue;
     known.push_back(found);
     if (!is_known)
-      search.modes.push_back({estimate, 0.0});
+      modes.push_back({estimate, 0.0});
   }
 }
 
@@ -474,19 +453,18 @@ addModesOfTarget(const SurfaceScorer& scorer,
                  const CalibratedEstimate& first,
                  double least_cost,
                  const ModeSearchOptions& options,
-                 ModeSearch& search)
+                 std::vector<CalibratedMode>& modes)
 {
   const bool is_target_compared = scorer.numPoints() > scorer.sourcePoints().cols();
   if (first.cost < doubtful_cost || !is_target_compared)
     return false;
   const SurfaceScorer target = scorer.ofTarget();
-  CloudEnds ends =
-      endsOfCloud(target, scorer, prior, first, options, search.num_queries);
+  CloudEnds ends = endsOfCloud(target, scorer, prior, first, options);
   if (ends.leastCost() > max_cost_to_lead * least_cost)
     return false;
   ends.others.push_back(ends.first);
   std::stable_sort(ends.others.begin(), ends.others.end(), costsLess);
-  addModes(scorer, &target, prior, ends, options, search);
+  addModes(scorer, &target, prior, ends, options, modes);
   return true;
 }
 
@@ -500,26 +478,25 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
   return first.cost > doubtful_cost || isWide(scorer, prior);
 }
 
-ModeSearch
+std::vector<CalibratedMode>
 findModes(const SurfaceScorer& scorer,
           const HeldPrior& prior,
           const CalibratedEstimate& first,
           const ModeSearchOptions& options)
 {
-  ModeSearch search;
-  const CloudEnds ends =
-      endsOfCloud(scorer, scorer, prior, first, options, search.num_queries);
-  if (!addModesOfTarget(scorer, prior, first, ends.leastCost(), options, search)) {
+  std::vector<CalibratedMode> modes;
+  const CloudEnds ends = endsOfCloud(scorer, scorer, prior, first, options);
+  if (!addModesOfTarget(scorer, prior, first, ends.leastCost(), options, modes)) {
     if (ends.others.empty() || first.keep.minCoeff() > 0.0 ||
         !isClearlyWorse(ends.first, ends.others.front(), astray_margin))
-      search.modes.push_back({first, 0.0});
-    addModes(scorer, nullptr, prior, ends, options, search);
+      modes.push_back({first, 0.0});
+    addModes(scorer, nullptr, prior, ends, options, modes);
   }
   weighModes(prior,
              mayBeLost(prior) ? region_of_cloud : 0.0,
-             unseenPoints(scorer, search.modes),
-             search.modes);
-  return search;
+             unseenPoints(scorer, modes),
+             modes);
+  return modes;
 }
 
 std::vector<CalibratedMode>
@@ -539,7 +516,7 @@ calibratedModes(const SurfaceScorer& scorer,
 {
   const CalibratedEstimate first = estimateCalibrated(scorer, prior, options.estimate);
   std::vector<CalibratedMode> modes =
-      significantModes(findModes(scorer, prior, first, options).modes);
+      significantModes(findModes(scorer, prior, first, options));
   CalibratedEstimate& heaviest = modes.front().estimate;
   if (!isWide(scorer, prior) && doesPriorHold(heaviest))
     heaviest.better_fit = betterFitOf(scorer, prior, heaviest, options);

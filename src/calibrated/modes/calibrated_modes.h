@@ -25,15 +25,6 @@ struct ModeSearchOptions {
   EstimateOptions estimate;
 };
 
-/** \brief Modes, and the cost of finding them. */
-struct ModeSearch {
-  /** At least one mode, heaviest first. A difference in fit counts only as far as it is
-   * above its own noise. */
-  std::vector<CalibratedMode> modes;
-  /** Nearest-neighbour queries beyond those of the first estimate. */
-  long num_queries = 0;
-};
-
 /** \brief Whether there may be other modes: the prior is wide, or many points do not
  * fit at \p first. A prior is wide if a standard deviation is above 0.2 rad, or above a
  * quarter of the diagonal of the source's bounding box. */
@@ -49,8 +40,10 @@ mayHaveSeveralModes(const SurfaceScorer& scorer,
  * look for faces takes some 4000 to 20 000 queries, and to follow hops at most about
  * 200 000. If many points of the source do not fit at \p first, all this is repeated
  * with points of the target, which lead if they fit far better: a scan leads where the
- * source is its model. Each mode that is found takes one estimate. */
-ModeSearch
+ * source is its model. Each mode that is found takes one estimate.
+ * \return at least one mode, heaviest first. A difference in fit counts only as far as
+ *         it is above its own noise. */
+std::vector<CalibratedMode>
 findModes(const SurfaceScorer& scorer,
           const HeldPrior& prior,
           const CalibratedEstimate& first,

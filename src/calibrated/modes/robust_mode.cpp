@@ -111,7 +111,6 @@ fitRobustly(const SurfaceScorer& scorer,
   for (int step = 0; step < options.max_steps; ++step) {
     const Vector3d centre = fit.pose * scorer.centroid();
     scorer.evaluate(fit.pose, centre, no_weights, hints, linear);
-    ++fit.num_evaluations;
     fit.residual_scale = residualScale(linear);
     const double tau = std::max(fit.residual_scale, scale);
     const bool is_annealing = tau > scale_tolerance * fit.residual_scale;
@@ -128,7 +127,6 @@ fitRobustly(const SurfaceScorer& scorer,
       break;
   }
   scorer.evaluate(fit.pose, fit.pose * scorer.centroid(), no_weights, hints, linear);
-  ++fit.num_evaluations;
   fit.residuals = cappedResiduals(linear);
   fit.cost = costOf(linear);
   fit.residual_scale = residualScale(linear);
@@ -181,6 +179,7 @@ fitPointToPoint(const SurfaceScorer& scorer,
     const Vector3d centre = fit.pose * scorer.centroid();
     const TwistPrior pull = twistPrior(prior, fit.pose, centre);
     Vector6d gradient = pull.gradient;
+    scorer.countQueries(scorer.numPoints());
     for (Index i = 0; i < scorer.numPoints(); ++i) {
       const SurfaceModel& model = scorer.modelOf(i);
       const Vector3d point = scorer.placeOf(i, fit.pose);
@@ -200,7 +199,6 @@ fitPointToPoint(const SurfaceScorer& scorer,
       gradient.head<3>() += point_weight * residual;
       gradient.tail<3>() += point_weight * arm.cross(residual);
     }
-    ++fit.num_evaluations;
     const Matrix6d metric = displacementMetric(scorer, fit.pose);
     const Matrix6d matrix =
         point_weight * static_cast<double>(scorer.numPoints()) * metric +

@@ -32,8 +32,6 @@ struct RobustFit {
   /** cappedResiduals() and costOf() at the end. */
   Eigen::VectorXd residuals;
   double cost = 0.0;
-  /** Number of evaluations of all points. */
-  int num_evaluations = 0;
 };
 
 /** \brief Fit by iteratively re-weighted least squares of the distances to the surface,

@@ -78,7 +78,7 @@ public:
   /** The commonest ways from the places of the source's points, along the normals of
    * their patches, target frame [m]. */
   std::vector<Vector3d>
-  find(const Isometry3d& T_target_source)
+  find(const Isometry3d& T_target_source) const
   {
     PatchHints hints;
     SurfaceScores scores;
@@ -87,7 +87,6 @@ public:
                      std::numeric_limits<double>::infinity(),
                      hints,
                      scores);
-    num_queries_ += scorer_.numPoints();
     std::vector<Vector3d> ways;
     int num_points = 0;
     for (Index i = 0; i < scorer_.numPoints(); ++i) {
@@ -108,12 +107,6 @@ public:
     return commonest(std::move(ways), min_share_of_points * num_points);
   }
 
-  long
-  numQueries() const
-  {
-    return num_queries_;
-  }
-
 private:
   /** Add the way from \p place to the first parallel patch along \p normal. */
   void
@@ -121,7 +114,7 @@ private:
          const Vector3d& place,
          const Vector3d& normal,
          std::uint32_t hint,
-         std::vector<Vector3d>& ways)
+         std::vector<Vector3d>& ways) const
   {
     const auto gate = static_cast<float>(max_length_ * max_length_);
     // No patch is nearer than the nearest one, so steps of its distance miss none.
@@ -129,7 +122,7 @@ private:
       const Vector3d here = place + length * normal;
       const KdTree::Neighbor nearest =
           model.tree().nearest(here.cast<float>(), gate, hint);
-      ++num_queries_;
+      scorer_.countQueries(1);
       if (nearest.index == KdTree::none)
         return;
       hint = nearest.index;
@@ -189,7 +182,6 @@ private:
 
   const SurfaceScorer& scorer_;
   double min_length_, max_length_;
-  long num_queries_ = 0;
 };
 
 /** Add \p found and the opposite ways to \p ways, unless they are known or there are
@@ -249,15 +241,14 @@ repeatsAlong(const Vector3d& axis,
 }
 
 /** \param[in] start_scale as in RobustFitOptions
- * \param[in,out] num_queries is increased by the queries of the fits */
+ */
 std::vector<RobustFit>
 followHops(const SurfaceScorer& scorer,
            const HeldPrior& prior,
            const Isometry3d& from,
            const std::vector<Vector3d>& ways,
            double start_scale,
-           int num_threads,
-           long& num_queries)
+           int num_threads)
 {
   RobustFitOptions fit;
   fit.start_scale = start_scale;
@@ -269,8 +260,6 @@ followHops(const SurfaceScorer& scorer,
     const auto way = static_cast<std::size_t>(i);
     ends[way] = fitRobustly(scorer, prior, Eigen::Translation3d(ways[way]) * from, fit);
   });
-  for (const RobustFit& end : ends)
-    num_queries += scorer.numPoints() * end.num_evaluations;
   return ends;
 }
 
@@ -281,11 +270,10 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
                     const SurfaceScorer& subset,
                     const HeldPrior& prior,
                     const RobustFit& from,
-                    int num_threads,
-                    long& num_queries)
+                    int num_threads)
 {
   const SurfaceScorer looked_at = scorer.ofFirst(num_points_looked_at);
-  FaceFinder finder(looked_at, maxLength(scorer, prior, from.pose));
+  const FaceFinder finder(looked_at, maxLength(scorer, prior, from.pose));
   std::vector<RobustFit> ends;
   std::vector<Vector3d> ways;
   RobustFit best = from;
@@ -294,7 +282,7 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
     addToKnown(finder.find(best.pose), ways);
     is_better = false;
     for (RobustFit& end :
-         followHops(subset, prior, best.pose, ways, 0.0, num_threads, num_queries)) {
+         followHops(subset, prior, best.pose, ways, 0.0, num_threads)) {
       ends.push_back(std::move(end));
       if (ends.back().cost < best.cost) {
         best = ends.back();
@@ -302,7 +290,6 @@ endsOnParallelFaces(const SurfaceScorer& scorer,
       }
     }
   }
-  num_queries += finder.numQueries();
   ends.erase(std::remove_if(ends.begin(),
                             ends.end(),
                             [&](const RobustFit& end) {
@@ -317,22 +304,15 @@ endsAtRepeats(const SurfaceScorer& subset,
               const HeldPrior& prior,
               const RobustFit& from,
               const std::vector<Vector3d>& axes,
-              int num_threads,
-              long& num_queries)
+              int num_threads)
 {
   const double step = maxLength(subset, prior, from.pose) / num_slides;
   std::vector<RobustFit> ends;
   for (const Vector3d& axis : axes) {
     const std::vector<Vector3d> ways =
         repeatsAlong(axis, step, subset, from, num_threads);
-    num_queries += (2 * num_slides + 1) * subset.numPoints();
-    for (RobustFit& end : followHops(subset,
-                                     prior,
-                                     from.pose,
-                                     ways,
-                                     step / subset.noise(),
-                                     num_threads,
-                                     num_queries))
+    for (RobustFit& end :
+         followHops(subset, prior, from.pose, ways, step / subset.noise(), num_threads))
       if (end.cost < max_relative_cost * from.cost)
         ends.push_back(std::move(end));
   }

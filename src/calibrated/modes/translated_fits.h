@@ -20,15 +20,13 @@ namespace bayesian_icp {
  * \param[in] subset of its points, which fits compare
  * \param[in] from a fit of the subset
  * \param[in] num_threads 0: as OpenMP would
- * \param[in,out] num_queries is increased by the number of nearest-neighbour queries
  * \return ends that cost at most a fifth more than the best of them and \p from */
 std::vector<RobustFit>
 endsOnParallelFaces(const SurfaceScorer& scorer,
                     const SurfaceScorer& subset,
                     const HeldPrior& prior,
                     const RobustFit& from,
-                    int num_threads,
-                    long& num_queries);
+                    int num_threads);
 
 /** \brief Slide the source from \p from along some axes, and follow the places where it
  * fits better than beside them: those of another pillar, parked car or shelf. Slides
@@ -41,7 +39,6 @@ endsAtRepeats(const SurfaceScorer& subset,
               const HeldPrior& prior,
               const RobustFit& from,
               const std::vector<Eigen::Vector3d>& axes,
-              int num_threads,
-              long& num_queries);
+              int num_threads);
 
 } // namespace bayesian_icp

@@ -294,6 +294,7 @@ SurfaceScorer::SurfaceScorer(const SurfaceScorer& all,
 , centroid_(all.centroid_)
 , model_(all.model_)
 , num_threads_(all.num_threads_)
+, num_queries_(all.num_queries_)
 , target_points_(target_points)
 , source_model_(all.source_model_)
 , min_sigma_(all.min_sigma_)
@@ -347,6 +348,7 @@ SurfaceScorer::evaluate(const Isometry3d& T_target_source,
   hints.resize(static_cast<std::size_t>(numPoints()), KdTree::none);
   resize(scores, numPoints());
   scores.num_source_points = source_points_.cols();
+  countQueries(numPoints());
   const Placement placement(*this, T_target_source, centre);
   const auto evaluateAt = [&](Eigen::Index i) {
     const auto index = static_cast<std::size_t>(i);

@@ -10,7 +10,9 @@
 
 #include <Eigen/Geometry>
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace bayesian_icp {
@@ -161,6 +163,21 @@ public:
   SurfaceScorer
   ofFirstOfBoth(Eigen::Index num_points) const;
 
+  /** \brief Nearest-neighbour queries so far, of this scorer and of all that were made
+   * from one. Those of batchScore() do not count. */
+  long
+  numQueries() const
+  {
+    return *num_queries_;
+  }
+
+  /** \brief Count queries of the clouds that were made without evaluate(). */
+  void
+  countQueries(Eigen::Index num_queries) const
+  {
+    *num_queries_ += num_queries;
+  }
+
   /** \brief Evaluate all points, with the same bits for every number of threads.
    * \param[in] T_target_source where
    * \param[in] tau scale of the residuals in Tukey's weight; infinite: least squares;
@@ -210,16 +227,8 @@ public:
     return source_points_.cols() > 0 ? source_points_ : pointsAt(T_target_source);
   }
 
-  /** \brief A patch of the surface that a point is compared with.
-   * \param[in] point in the order of SurfaceScores
-   * \param[in] patch index from the hint of the point */
-  const SurfacePatch&
-  patchOf(Eigen::Index point, std::uint32_t patch) const
-  {
-    return modelOf(point).patches()[patch];
-  }
-
-  /** \brief The surface that a point is compared with. */
+  /** \brief The surface that a point is compared with.
+   * \param[in] point in the order of SurfaceScores */
   const SurfaceModel&
   modelOf(Eigen::Index point) const
   {
@@ -250,13 +259,6 @@ public:
     return target_points_;
   }
 
-  /** \brief The target's surface. */
-  const SurfaceModel&
-  model() const
-  {
-    return model_;
-  }
-
   /** \brief Unit of lengths: the target's median noise, or that of the source where the
    * target is far cleaner [m]. */
   double
@@ -284,6 +286,8 @@ private:
   Eigen::Vector3d centroid_;
   const SurfaceModel& model_;
   int num_threads_;
+  std::shared_ptr<std::atomic<long>> num_queries_ =
+      std::make_shared<std::atomic<long>>(0);
   Eigen::Matrix3Xd target_points_;
   const SurfaceModel* source_model_ = nullptr;
   /** Smallest sigma of the target's and of the source's patches [m]. */
