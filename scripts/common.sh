@@ -4,12 +4,13 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$root/build
 
-# Parallel compile jobs: one per processor, if there are 2 GB of free memory for each.
+# Parallel jobs: CMAKE_BUILD_PARALLEL_LEVEL, or else one per processor, if there are 2 GB
+# of free memory for each.
 num_jobs() {
   local processors memory
   processors=$(nproc)
   memory=$(awk '/^MemAvailable:/ { print int($2 / 2000000) }' /proc/meminfo)
-  echo $((memory < 1 ? 1 : memory < processors ? memory : processors))
+  echo "${CMAKE_BUILD_PARALLEL_LEVEL:-$((memory < 1 ? 1 : memory < processors ? memory : processors))}"
 }
 
 # Configures build/. Arguments go to CMake; an existing build folder keeps its generator.

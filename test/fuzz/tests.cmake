@@ -9,7 +9,8 @@ if(NOT CLANGXX)
 endif()
 
 script_test(fuzz.build COMMAND sanitize address --fuzzers
-            PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers TIMEOUT 1800)
+            PROPERTIES LABELS fuzz FIXTURES_SETUP fuzzers
+                       RESOURCE_LOCK asan_build TIMEOUT 1800 COST 1000)
 
 # fuzz_test(<name> <label> <fuzzer> <option of libFuzzer> ...)
 function(fuzz_test name label fuzzer)

@@ -15,7 +15,8 @@ names_in_tree >"$work/before"
 # Otherwise Python sets LC_CTYPE where the locale is C, and the compiler cache finds nothing.
 export PYTHONCOERCECLOCALE=0
 export CCACHE_BASEDIR=$work
-export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2} MAKEFLAGS=-j2
+export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2}
+export MAKEFLAGS=-j$CMAKE_BUILD_PARALLEL_LEVEL
 cd "$work"
 # As the tests' build, of which the compiler cache has everything.
 colcon --log-base "$work/log" build --base-paths "$tree" \
