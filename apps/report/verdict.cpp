@@ -132,12 +132,12 @@ goodOpening(const DataReport& data, Preset preset)
       std::count_if(data.directions.begin(),
                     data.directions.end(),
                     [](const DataDirection& direction) {
-                      return direction.observability == Observability::PriorOnly;
+                      return direction.observability != Observability::Observed;
                     });
   if (num_unobserved > 0)
     return {Tone::Caution,
             "Reliable, but " + io::textOf(num_unobserved) +
-                " of 6 motions cannot be observed"};
+                " of 6 motions cannot be observed well"};
   return {Tone::Good, "The pose and its ± can be relied on"};
 }
 

@@ -93,11 +93,23 @@ TEST(Verdict, MotionsThatCannotBeObservedAreNamedAndTakeAwayTheGoodTone)
                              direction(Observability::PriorOnly, "rotation about z")};
   const Verdict verdict = verdictOf(summary, Preset::Calibrated);
   EXPECT_EQ(verdict.tone, html::Tone::Caution);
-  EXPECT_EQ(verdict.heading, "Reliable, but 1 of 6 motions cannot be observed");
+  EXPECT_EQ(verdict.heading, "Reliable, but 2 of 6 motions cannot be observed well");
   EXPECT_EQ(plain(verdict.sentence),
             std::string(pose_text) +
                 "; not observable in these clouds, held by the prior alone: rotation "
                 "about z; hardly observable: rotation about y.");
+}
+
+TEST(Verdict, MotionThatIsHardlyObservableTakesAwayTheGoodToneByItself)
+{
+  Summary summary = summaryWith(Status::Ok);
+  summary.data.is_available = true;
+  summary.data.directions.assign(5, direction(Observability::Observed, "a motion"));
+  EXPECT_EQ(verdictOf(summary, Preset::Calibrated).tone, html::Tone::Good);
+  summary.data.directions.push_back(direction(Observability::Weak, "a turn"));
+  const Verdict verdict = verdictOf(summary, Preset::Calibrated);
+  EXPECT_EQ(verdict.tone, html::Tone::Caution);
+  EXPECT_EQ(verdict.heading, "Reliable, but 1 of 6 motions cannot be observed well");
 }
 
 TEST(Verdict, FlagsAreNamed)

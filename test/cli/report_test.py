@@ -128,7 +128,7 @@ class ReportPage(ReportTest):
         # With one seed of ten the noise of the clouds holds the turn a little.
         _, text = self.report_of(*scans("can"), *CALIBRATED)
         verdict = self.verdict_of(text)
-        self.assertIn("1 of 6 motions cannot be observed", verdict)
+        self.assertIn("1 of 6 motions cannot be observed well", verdict)
         self.assertIn("held by the prior alone: rotation about", verdict)
 
 
