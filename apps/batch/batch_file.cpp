@@ -52,7 +52,7 @@ addPosterior(const Run& run, ordered_json& line)
   const RegistrationResult& result = run.result;
   line["mean"] = meanJson(result.summary.mean);
   line["covariances"] = covariancesOf(result.summary);
-  line["final_transformation"] = finalTransformationJson(result);
+  line["final_transformation"] = finalTransformationJson(run);
   line["icp"] = icpJson(result);
   line["draws"] = result.summary.num_draws;
   line["source"] = cloudJson(run.source);

@@ -139,7 +139,7 @@ clouds determine the pose in each direction. Along directions that they do not
 determine, the posterior is the prior, which has to be finite.
 )" + aboutSgdIcp() +
               R"(
-Exit codes:
+Exit codes, which are about the posterior, not about ICP's result:
   0    the posterior can be trusted
   1    the registration failed, the chains have not mixed or are in several
        modes, the result is doubtful, or an export is not possible
@@ -177,7 +177,7 @@ describeOptions(Request& request)
     ("no-report", "With --output: do not write report.html.")
     ("json", io::flag(request.is_json),
      "Print the content of posterior.json instead of the table.")
-    ("quiet", io::flag(request.is_quiet), "Print errors only, and show no progress bar.");
+    ("quiet", io::flag(request.is_quiet), "Print errors and warnings only, and show no progress bar.");
   // clang-format on
   po::options_description all;
   all.add(general).add(describeExportOptions(request.exports));

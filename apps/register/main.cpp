@@ -145,10 +145,10 @@ report(const Request& request, const Run& run)
   // The table has the status and the note already.
   if (run.result.summary.status != Status::Ok && !has_table)
     io::tell(statusText(run.result.summary));
-  if (!has_table && !request.is_quiet && !request.output_folder.empty()) {
+  if (!has_table && !request.output_folder.empty()) {
     const std::string note = icpNote(run);
     if (!note.empty())
-      io::tell("note: " + note);
+      io::tell("warning: " + note);
   }
   return is_exported;
 }

@@ -207,10 +207,18 @@ timeJson(const Run& run)
 }
 
 ordered_json
-finalTransformationJson(const RegistrationResult& result)
+finalTransformationJson(const Run& run)
 {
-  return {{"is", result.is_final_the_mean ? "posterior mean" : "ICP's result"},
-          {"T_target_source", jsonOf(result.final_matrix)}};
+  ordered_json json = {
+      {"is", run.result.is_final_the_mean ? "posterior mean" : "ICP's result"},
+      {"T_target_source", jsonOf(run.result.final_matrix)},
+      {"is_within_posterior", nullptr},
+      {"distance_from_mean_m", nullptr}};
+  if (const auto place = finalPlace(run)) {
+    json["is_within_posterior"] = place->is_within_posterior;
+    json["distance_from_mean_m"] = place->distance_from_mean;
+  }
+  return json;
 }
 
 ordered_json
@@ -238,7 +246,7 @@ posteriorJson(const Run& run)
       {"status",
        {{"name", toString(result.summary.status)},
         {"message", result.summary.message}}},
-      {"final_transformation", finalTransformationJson(result)},
+      {"final_transformation", finalTransformationJson(run)},
       {"icp", icpJson(result)},
       {"posterior", posteriorOf(result)},
       {"data", dataJson(result.summary.data)},

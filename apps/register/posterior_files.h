@@ -27,7 +27,7 @@ icpJson(const RegistrationResult& result);
 nlohmann::ordered_json
 meanJson(const Vector6d& mean);
 nlohmann::ordered_json
-finalTransformationJson(const RegistrationResult& result);
+finalTransformationJson(const Run& run);
 nlohmann::ordered_json
 covarianceJson(CovarianceConvention convention, const Matrix6d& matrix);
 nlohmann::ordered_json

@@ -6,8 +6,6 @@
 
 #include <bayesian_icp/pose.h>
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -184,32 +182,17 @@ icpText(const RegistrationResult& result)
 std::string
 icpNote(const Run& run)
 {
-  // Squared Mahalanobis distance: chi-square with 6 degrees of freedom, 99.99 %.
-  constexpr double excluded = 27.9;
   const RegistrationResult& result = run.result;
-  const Summary& summary = result.summary;
-  const bool is_reliable =
-      summary.status == Status::Ok || summary.status == Status::Doubtful;
-  if (!result.has_icp || result.is_final_the_mean || !is_reliable)
+  if (!result.has_icp || result.is_final_the_mean)
     return "";
-  const Vector6d error = poseError(bayesian_icp::poseOf(result.icp_matrix),
-                                   summary.mean,
-                                   CovarianceConvention::RightSE3);
-  const bool is_excluded =
-      !(error.dot(
-            summary.covariance(CovarianceConvention::RightSE3).ldlt().solve(error)) <
-        excluded);
-  if (result.icp_has_converged && !is_excluded)
+  const auto place = finalPlace(run);
+  if (!place || (result.icp_has_converged && place->is_within_posterior))
     return "";
-  const Eigen::Matrix4d difference = result.icp_matrix - matrixOf(summary.mean);
-  const Eigen::Matrix4Xd points =
-      io::finitePoints(run.source).cast<double>().colwise().homogeneous();
-  const double distance =
-      (difference * points).norm() / std::sqrt(static_cast<double>(points.cols()));
   return std::string("the final transformation is ICP's result") +
          (result.icp_has_converged ? "" : ", and ICP did not converge") +
-         (is_excluded ? "; the posterior excludes it" : "") + "; it moves the points " +
-         io::textOf(millimetres * distance, 3) +
+         (place->is_within_posterior ? "" : "; the posterior excludes it") +
+         "; it moves the points " +
+         io::textOf(millimetres * place->distance_from_mean, 3) +
          " mm away from the posterior mean (root mean square); --mean takes the mean";
 }
 

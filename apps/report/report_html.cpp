@@ -39,14 +39,18 @@ verdictHtml(const Run& run)
 {
   const Verdict verdict = verdictOf(run.result.summary, run.settings.options.preset);
   const std::string note = icpNote(run);
+  const std::string warning = "The pose above is the posterior mean, but " + note + '.';
   return html::boxHtml(
              verdict.tone, verdict.heading, html::paragraphHtml(verdict.sentence)) +
+         (note.empty() ? ""
+                       : html::boxHtml(html::Tone::Caution,
+                                       "Use the final transformation with care",
+                                       html::paragraphHtml(warning))) +
          html::paragraphHtml(
              "The pose maps source points into the target frame; ± is one standard "
              "deviation. " +
              verdict.scale_note) +
-         html::paragraphHtml("Status: " + statusText(run.result.summary)) +
-         html::paragraphHtml(note.empty() ? "" : "Note: " + note);
+         html::paragraphHtml("Status: " + statusText(run.result.summary));
 }
 
 std::string

@@ -10,7 +10,7 @@ import numpy as np
 
 import cloud_files
 import robot_formats
-from cli_tool import DATA, FAST, TOOL, ToolTest, run, strict_json
+from cli_tool import DATA, FAST, TOOL, ToolTest, run, scans, strict_json
 
 NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
 
@@ -165,6 +165,36 @@ class AlignedCloud(ToolTest):
             self.assertEqual(final, expected["T_target_source"])
 
 
+class FinalTransformation(ToolTest):
+    def final_of(self, *options):
+        """final_transformation, and the rms distance [m] of what it and the mean move."""
+        _, document = self.run_to_files(*scans("mug"), *options, "--no-report")
+        final = document["final_transformation"]
+        difference = np.subtract(
+            final["T_target_source"], document["posterior"]["mean"]["T_target_source"]
+        )
+        _, rows = cloud_files.read_pcd(DATA / "mug" / "source.pcd")
+        points = np.array([cloud_files.numbers(row, *"xyz") for row in rows])
+        points = points[np.isfinite(points).all(axis=1)]
+        moved = points @ difference[:3, :3].T + difference[:3, 3]
+        return final, math.sqrt((moved**2).sum(axis=1).mean())
+
+    def test_says_where_it_is_in_the_posterior(self):
+        wide = ["--preset=exact", "--sigma=0.005", "--effective-points=300"]
+        # Without pairs within 0.1 mm, ICP stays at the guess.
+        for options, is_within in ((wide, True), (["-d0.0001"], False), (["--mean"], True)):
+            with self.subTest(options=options):
+                final, distance = self.final_of(*options)
+                self.assertIs(final["is_within_posterior"], is_within)
+                self.assertAlmostEqual(final["distance_from_mean_m"], distance, delta=1e-9)
+                self.assertEqual(distance == 0, options == ["--mean"])
+
+    def test_says_nothing_without_a_posterior_to_rely_on(self):
+        final, _ = self.final_of(*FAST)
+        self.assertIsNone(final["is_within_posterior"])
+        self.assertIsNone(final["distance_from_mean_m"])
+
+
 class Printed(ToolTest):
     def test_a_result_of_icp_that_the_posterior_excludes_is_told(self):
         # Without pairs within 0.1 mm, ICP stays at the guess.
@@ -174,8 +204,11 @@ class Printed(ToolTest):
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertIn(words, " ".join(result.stdout.split()))
         files = ["-d", "0.0001", "-o", self.folder / "output", "--no-report"]
-        self.assertIn(words, run(*pair, *files, "--json").stderr)
-        self.assertEqual(run(*pair, *files, "--quiet").stderr, "")
+        for option in ("--json", "--quiet"):
+            result = run(*pair, *files, option)
+            self.assertEqual(result.returncode, 0)
+            self.assertRegex(result.stderr, f"^pcl_bayesian_icp: warning: .*{words}.*\n$")
+        self.assertEqual(run(*pair, *files, "--quiet", "--mean").stderr, "")
         self.assertNotIn("Note:", run(*pair, "-d", "0.0001", "--mean").stdout)
 
     def test_table_has_units_status_and_matrices(self):

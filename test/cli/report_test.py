@@ -131,6 +131,15 @@ class ReportPage(ReportTest):
         self.assertIn("1 of 6 motions cannot be observed well", verdict)
         self.assertIn("held by the prior alone: rotation about", verdict)
 
+    def test_a_result_of_icp_that_the_posterior_excludes_is_a_warning(self):
+        # Without pairs within 0.1 mm, ICP stays at the guess.
+        pattern = '<div class="box caution">.*?Use the final transformation with care(.*?)</div>'
+        _, text = self.report_of(*scans("mug"), "-d0.0001")
+        self.assertTrue(self.verdict_of(text).startswith('good"'))
+        self.assertIn("posterior excludes it", re.search(pattern, text, re.S).group(1))
+        _, text = self.report_of(*scans("mug"), "-d0.0001", "--mean")
+        self.assertNotIn("with care", text)
+
 
 class ReportOrNot(ReportTest):
     OTHERS = ["aligned.pcd", "posterior.json", "samples.csv"]
