@@ -197,6 +197,17 @@ icpNote(const Run& run)
 }
 
 std::string
+scaleNote(Preset preset)
+{
+  if (preset == Preset::Calibrated)
+    return "";
+  return std::string("Preset ") + toString(preset) +
+         " takes the scale of the standard deviations from the number of effective "
+         "points and the sigma in its options. It is not estimated from the clouds; "
+         "preset calibrated estimates it.";
+}
+
+std::string
 statusText(const Summary& summary)
 {
   std::string name = toString(summary.status);
@@ -269,9 +280,11 @@ reportText(const Run& run)
             dataText(summary.data);
   text += "\n" + wrapped("Status: " + statusText(summary)) +
           "ICP:    " + icpText(result) + '\n';
-  const std::string note = icpNote(run);
-  if (!note.empty())
-    text += wrapped("Note:   " + note);
+  for (const std::string& note :
+       {icpNote(run),
+        summary.num_draws > 0 ? scaleNote(run.settings.options.preset) : ""})
+    if (!note.empty())
+      text += wrapped("Note: " + note);
   text += "\nMatrices row by row, for pcl_transform_point_cloud in.pcd out.pcd -matrix "
           "...\n";
   if (summary.num_draws > 0)

@@ -44,6 +44,11 @@ icpText(const RegistrationResult& result);
 std::string
 icpNote(const Run& run);
 
+/** \brief Where the scale of the standard deviations is from; empty for preset
+ * calibrated, which estimates it. */
+std::string
+scaleNote(Preset preset);
+
 /** \brief "not mixed: the chains ..." */
 std::string
 statusText(const Summary& summary);

@@ -175,17 +175,6 @@ opening(const Summary& summary, Preset preset)
   }
 }
 
-std::string
-scaleNote(Preset preset)
-{
-  if (preset == Preset::Calibrated)
-    return "";
-  return std::string("Preset ") + toString(preset) +
-         " takes the scale of the ± from the number of effective points and the sigma "
-         "in its options. It is not estimated from the clouds; preset calibrated "
-         "estimates it.";
-}
-
 } // namespace
 
 std::string

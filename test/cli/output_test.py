@@ -211,6 +211,11 @@ class Printed(ToolTest):
         self.assertEqual(run(*pair, *files, "--quiet", "--mean").stderr, "")
         self.assertNotIn("Note:", run(*pair, "-d", "0.0001", "--mean").stdout)
 
+    def test_presets_with_a_stated_scale_say_so(self):
+        words = "Note: Preset paper takes the scale of the standard deviations from"
+        self.assertIn(words, run(*self.small_pair(), *FAST).stdout)
+        self.assertNotIn("takes the scale", run(*scans("mug")).stdout)
+
     def test_table_has_units_status_and_matrices(self):
         pair = self.small_pair()
         text = run(*pair, *FAST).stdout
