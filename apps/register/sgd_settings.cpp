@@ -146,7 +146,8 @@ own, --iterations ()"
            << (optimizer == SgdOptimizer::RmsProp ? "; adadelta has none" : ", ");
   text << R"(). Other
 options are errors. The exit code is 0 if the descent came to rest, else 1. If
-no step was made, only sgd_icp.json is written, and an older aligned.pcd removed.
+no step was made, only sgd_icp.json is written, and an older aligned.pcd is
+removed.
 )";
   return text.str();
 }

@@ -14,6 +14,10 @@ class Usage(ToolTest):
             self.assertIn("Usage: pcl_bayesian_icp SOURCE TARGET", result.stdout)
         self.assertRegex(run("--version").stdout, r"^pcl_bayesian_icp \d+\.\d+\.\d+\n$")
 
+    def test_help_fits_a_terminal(self):
+        for line in run("--help").stdout.splitlines():
+            self.assertLessEqual(len(line), 80, line)
+
     def test_help_has_the_default_of_every_kind_of_value(self):
         text = " ".join(run("--help").stdout.split())
         for name, default in (
