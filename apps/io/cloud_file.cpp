@@ -168,8 +168,8 @@ silencePcl()
 CloudFile
 readCloud(const std::string& name)
 {
-  const CloudFormat format = formatOf(name);
   InputFile file = openInput(name);
+  const CloudFormat format = formatOf(name);
   const std::uint64_t num_points =
       format == CloudFormat::Pcd ? checkPcd(file) : checkPly(file);
 

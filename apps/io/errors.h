@@ -19,7 +19,7 @@ struct UsageError : std::runtime_error {
  */
 struct FileError : std::runtime_error {
   FileError(const std::string& file, const std::string& reason)
-  : std::runtime_error(file + ": " + reason)
+  : std::runtime_error((file.empty() ? "empty file name" : file) + ": " + reason)
   {}
 };
 

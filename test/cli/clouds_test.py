@@ -37,6 +37,9 @@ class BrokenClouds(ToolTest):
         self.refuse("folder.pcd", None, "is a directory")
         (self.folder / "null.pcd").symlink_to("/dev/null")
         self.refuse("null.pcd", None, "is not a regular file")
+        # As a process substitution of the shell.
+        (self.folder / "63").symlink_to("/dev/null")
+        self.refuse("63", None, "is not a regular file")
 
     def test_no_cloud(self):
         self.refuse("text.pcd", "Dear reader,\nthis is no cloud.\n", "has no PCD header")
@@ -256,6 +259,12 @@ class DegenerateClouds(ToolTest):
         self.assertRegex(result.stderr, r"cloud.pcd: note: the points are [0-9]+ m from .* -scale")
         for words in (["--prior-variance", "100"], ["--quiet"]):
             self.assertNotIn("-scale", run(path, path, *FAST, *words).stderr)
+
+    def test_coordinates_too_large_to_register(self):
+        path = self.file("huge.pcd", pcd_bytes([tuple(1e30 * a for a in p) for p in POINTS]))
+        result = run(path, path, *FAST)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("finite coordinates below 1e18 m", " ".join(result.stdout.split()))
 
     def test_nothing_within_the_distance(self):
         far = [tuple(a + 100 for a in p) for p in POINTS]

@@ -37,6 +37,7 @@ class Usage(ToolTest):
         for clouds in ([], ["a.pcd"]):
             self.assert_refused(2, run(*clouds), "expected a source and a target cloud")
         self.assert_refused(2, run("a.pcd", "b.pcd", "c.pcd"), "third file: 'c.pcd'")
+        self.assert_refused(3, run("", "b.pcd"), "empty file name: no such file")
 
     def test_unknown_and_incomplete_options(self):
         self.assert_refused(2, run("a.pcd", "b.pcd", "--sample", "9"), "'--sample'")

@@ -452,7 +452,11 @@ protected:
     }
     if (!is_target_usable ||
         usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
-      fail(output, guess, true, "fewer finite points than the registration needs");
+      fail(output,
+           guess,
+           true,
+           "fewer points with finite coordinates below 1e18 m than the registration "
+           "needs");
       return;
     }
 
