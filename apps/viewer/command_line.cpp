@@ -159,7 +159,8 @@ describeOptions(Request& request)
      "in view, from the sensor if it is away from the target, else obliquely from "
      "above)")
     ("multiview", value("0|1", oneOf("0", false, "1", true), view.is_multiview, "0 or 1"),
-     "Show four pictures: before, after, likely poses, deviations. (default 0)");
+     "Show four pictures: before, after, likely poses, deviations. Excludes --show. "
+     "(default 0)");
   own.add_options()
     ("show",
      io::taken("LAYERS",

@@ -270,6 +270,7 @@ class ViewerUsage(ViewerTest):
             self.assertIn("-" + word.lstrip("-") + " ", text)
         for word in ("deviation", "rotation", "--preset", "--live", "--screenshot", "Exit codes"):
             self.assertIn(word, text)
+        self.assertRegex(text, r"Excludes\s+--show")
         self.assertRegex(view("--version").stdout, r"^pcl_bayesian_icp_viewer \d+\.\d+\.\d+\n$")
 
     def test_bad_values(self):
