@@ -1,7 +1,6 @@
 #include "viewer/annotations.h"
 
 #include "io/coordinates.h"
-#include "io/numbers.h"
 
 #include <pcl/visualization/pcl_visualizer.h>
 
@@ -10,6 +9,7 @@
 #include <vtkRendererCollection.h>
 #include <vtkScalarBarActor.h>
 #include <vtkSmartPointer.h>
+#include <vtkTextActor.h>
 #include <vtkTextProperty.h>
 
 #include <algorithm>
@@ -18,41 +18,95 @@ namespace bayesian_icp::viewer {
 
 namespace {
 
+/** Of text in a panel [pixels]. */
 int
-fontSizeFor(const Eigen::Vector2i& size)
+fontSizeIn(const Window& window)
 {
-  return std::clamp(size.y() / 48, 11, 40);
+  const Eigen::Vector2i size = window.panelSize();
+  return std::clamp(std::min(size.x() / 64, size.y() / 48), 11, 40);
 }
 
-/** Writes at the left of a panel, \p y pixels above its lower edge. */
-void
-write(
-    const LegendLine& line, int y, const std::string& id, int viewport, Window& window)
+/** From one line of text to the next [pixels]. */
+int
+lineHeightIn(const Window& window)
 {
-  const int font_size = fontSizeFor(window.panelSize());
-  const auto [red, green, blue] = line.color;
-  window.visualizer().addText(
-      line.text, font_size, y, font_size, red, green, blue, id, viewport);
+  return 3 * fontSizeIn(window) / 2;
+}
+
+/** Of a colour bar with its numbers [pixels]. */
+int
+barWidthIn(const Window& window)
+{
+  return 8 * fontSizeIn(window);
+}
+
+/** Writes at the left of a panel, the first line \p y pixels above its lower edge,
+ * under names that begin with \p prefix. */
+void
+write(const std::vector<LegendLine>& lines,
+      int y,
+      const std::string& prefix,
+      int viewport,
+      Window& window)
+{
+  const int font_size = fontSizeIn(window);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto [red, green, blue] = lines[i].color;
+    window.visualizer().addText(lines[i].text,
+                                font_size,
+                                y,
+                                font_size,
+                                red,
+                                green,
+                                blue,
+                                prefix + std::to_string(i),
+                                viewport);
+    y -= lineHeightIn(window);
+  }
+}
+
+void
+addActor(vtkActor2D* actor, const std::string& id, int viewport, Window& window)
+{
+  auto& visualizer = window.visualizer();
+  auto* renderers = visualizer.getRendererCollection().Get();
+  vtkRenderer::SafeDownCast(renderers->GetItemAsObject(viewport))->AddActor2D(actor);
+  (*visualizer.getShapeActorMap())[id] = actor;
 }
 
 } // namespace
 
 std::size_t
-lineWidth(const Window& window)
+lineWidth(bool has_color_bar, const Window& window)
 {
-  const Eigen::Vector2i size = window.panelSize();
-  return static_cast<std::size_t>(size.x() / (0.55 * fontSizeFor(size)));
+  const int font_size = fontSizeIn(window);
+  const int margins = 2 * font_size + (has_color_bar ? barWidthIn(window) : 0);
+  return static_cast<std::size_t>((window.panelSize().x() - margins) /
+                                  (0.55 * font_size));
+}
+
+bool
+hasRoomFor(std::size_t num_lines, const Window& window)
+{
+  return 3 * (static_cast<int>(num_lines) + 2) * lineHeightIn(window) <=
+         2 * window.panelSize().y();
 }
 
 PictureArea
-areaBeside(std::size_t num_lines, bool has_color_bar, const Window& window)
+areaBeside(std::size_t num_legend_lines,
+           std::size_t num_status_lines,
+           bool has_color_bar,
+           const Window& window)
 {
   const Eigen::Vector2i size = window.panelSize();
-  const double line = 2.0 * 1.5 * fontSizeFor(size) / size.y();
+  const auto shareOf = [&](std::size_t num_lines) {
+    return 2.0 * lineHeightIn(window) * (static_cast<double>(num_lines) + 1.0) /
+           size.y();
+  };
   PictureArea area;
-  area.top = 1.0 - line * (static_cast<double>(num_lines) + 1.0);
-  area.bottom = -1.0 + 2.0 * line;
-  area.right = has_color_bar ? 0.72 : 0.95;
+  area.top = 1.0 - shareOf(num_legend_lines);
+  area.bottom = std::min(-1.0 + shareOf(num_status_lines), 0.0);
+  area.right = has_color_bar ? 1.0 - 2.0 * barWidthIn(window) / size.x() : 0.95;
   area.left = -0.95;
   return area;
 }
@@ -60,24 +114,44 @@ areaBeside(std::size_t num_lines, bool has_color_bar, const Window& window)
 void
 addLegend(const std::vector<LegendLine>& lines, int viewport, Window& window)
 {
-  const Eigen::Vector2i size = window.panelSize();
-  const int font_size = fontSizeFor(size);
-  const std::string id = "legend/" + std::to_string(viewport) + "/";
-  int y = size.y() - 2 * font_size;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    write(lines[i], y, id + std::to_string(i), viewport, window);
-    y -= 3 * font_size / 2;
-  }
+  write(lines,
+        window.panelSize().y() - 2 * fontSizeIn(window),
+        "legend/" + std::to_string(viewport) + "/",
+        viewport,
+        window);
 }
 
 void
-addStatus(const LegendLine& status, int viewport, Window& window)
+addStatus(const std::vector<LegendLine>& lines, int viewport, Window& window)
 {
-  write({io::wrapped(status.text, lineWidth(window)), status.color},
-        fontSizeFor(window.panelSize()),
-        "status",
+  const int lines_above = static_cast<int>(lines.size()) - 1;
+  write(lines,
+        fontSizeIn(window) + lines_above * lineHeightIn(window),
+        "status/",
         viewport,
         window);
+}
+
+void
+addAxisName(std::size_t axis,
+            const Eigen::Vector3d& end,
+            const Color& color,
+            const std::string& id,
+            int viewport,
+            Window& window)
+{
+  auto name = vtkSmartPointer<vtkTextActor>::New();
+  name->SetInput(std::string(1, "xyz"[axis]).c_str());
+  name->GetPositionCoordinate()->SetCoordinateSystemToWorld();
+  name->GetPositionCoordinate()->SetValue(end.x(), end.y(), end.z());
+  vtkTextProperty& text = *name->GetTextProperty();
+  text.SetColor(color[0], color[1], color[2]);
+  text.SetFontSize(lineHeightIn(window));
+  text.BoldOn();
+  text.ShadowOn();
+  text.SetJustificationToCentered();
+  text.SetVerticalJustificationToCentered();
+  addActor(name, id + "/name", viewport, window);
 }
 
 void
@@ -93,22 +167,19 @@ addColorBar(double maximum, const Color& text_color, int viewport, Window& windo
   bar->SetTitle((std::string("sd [") + unit.name + "]").c_str());
   bar->SetNumberOfLabels(6);
   bar->SetLabelFormat("%-#.3g");
-  bar->SetPosition(0.86, 0.25);
-  bar->SetWidth(0.1);
+  const double width = double(barWidthIn(window)) / window.panelSize().x();
+  bar->SetPosition(1.0 - width, 0.25);
+  bar->SetWidth(0.75 * width);
   bar->SetHeight(0.5);
   bar->UnconstrainedFontSizeOn();
-  const int font_size = std::clamp(window.panelSize().y() / 44, 11, 44);
   for (vtkTextProperty* text :
        {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
     text->SetColor(text_color[0], text_color[1], text_color[2]);
-    text->SetFontSize(font_size);
+    text->SetFontSize(fontSizeIn(window));
     text->ItalicOff();
     text->ShadowOff();
   }
-  auto& visualizer = window.visualizer();
-  auto* renderers = visualizer.getRendererCollection().Get();
-  vtkRenderer::SafeDownCast(renderers->GetItemAsObject(viewport))->AddActor2D(bar);
-  (*visualizer.getShapeActorMap())["legend/bar/" + std::to_string(viewport)] = bar;
+  addActor(bar, "legend/bar/" + std::to_string(viewport), viewport, window);
 }
 
 } // namespace bayesian_icp::viewer

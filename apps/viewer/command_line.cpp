@@ -64,10 +64,9 @@ bool
 readSize(const std::string& text, ViewOptions& view)
 {
   const auto items = io::splitAt('x', text);
-  const auto readLength = within(64, 8192);
   view.is_size_given = true;
-  return items.size() == 2 && readLength(items[0], view.width) &&
-         readLength(items[1], view.height);
+  return items.size() == 2 && within(least_width, 8192)(items[0], view.width) &&
+         within(least_height, 8192)(items[1], view.height);
 }
 
 /** Names of layers separated by commas, or "all". */
@@ -188,8 +187,9 @@ describeOptions(Request& request)
     ("screenshot", io::fileName("FILE", view.screenshot_file),
      "Write this file, a .png, instead of opening a window. With --live, it shows "
      "the chains' last state.")
-    ("size", value("WxH", readSize, view, "WIDTHxHEIGHT in pixels, each 64 to 8192"),
-     "Size of window or picture [pixels]. (default 1280x960)");
+    ("size", value("WxH", readSize, view, "WIDTHxHEIGHT in pixels, from 300x200 to 8192x8192"),
+     "Size of window or picture [pixels], from 300x200, or 600x400 with -multiview 1. "
+     "The legend is left out where it leaves no room. (default 1280x960)");
   // clang-format on
   po::options_description all;
   all.add(general).add(pcl_viewers).add(own);
@@ -282,6 +282,9 @@ parseCommandLine(int argc, const char* const* argv)
                          io::inQuotes(picture) + " does not end in .png");
   if (given.count("show") > 0 && request.view.is_multiview)
     throw io::UsageError("--show and -multiview 1 exclude each other");
+  if (request.view.is_multiview &&
+      (request.view.width < 2 * least_width || request.view.height < 2 * least_height))
+    throw io::UsageError("--size: with -multiview 1 at least 600x400");
   if (request.posterior_file.empty())
     request.settings = app::settingsFrom(given, app::Settings(), request.note);
   else

@@ -132,6 +132,7 @@ private:
   {
     auto& visualizer = window_.visualizer();
     const std::array<Eigen::Matrix3Xd, 3> cones = rotationCones(scene_);
+    const Color text_color = textColorOn(options_.background);
     for (std::size_t k = 0; k < 3; ++k) {
       Color color = {0.15, 0.15, 0.15};
       color[k] = 0.9;
@@ -150,6 +151,8 @@ private:
                                                   viewport_);
       visualizer.setPointCloudRenderingProperties(
           visualization::PCL_VISUALIZER_OPACITY, 0.6, name, viewport_);
+      // A quarter round the rim, which is the middle of a fan.
+      addAxisName(k, cones[k].col(1 + last / 4), text_color, name, viewport_, window_);
     }
   }
 
@@ -161,7 +164,7 @@ private:
 
 /** Axes of the target frame. PCL's own are drawn by what VTK 9 warns of at length. */
 void
-addAxes(double scale, Window& window)
+addAxes(double scale, const Color& text_color, int viewport, Window& window)
 {
   auto& visualizer = window.visualizer();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -169,11 +172,17 @@ addAxes(double scale, Window& window)
     color[k] = 1.0;
     pcl::PointXYZ end(0.0F, 0.0F, 0.0F);
     end.data[k] = static_cast<float>(scale);
-    const std::string id = "axes/" + std::to_string(k);
-    visualizer.addLine(
-        pcl::PointXYZ(0.0F, 0.0F, 0.0F), end, color[0], color[1], color[2], id);
+    const std::string id = "axes/" + std::to_string(viewport) + "/" + std::to_string(k);
+    visualizer.addLine(pcl::PointXYZ(0.0F, 0.0F, 0.0F),
+                       end,
+                       color[0],
+                       color[1],
+                       color[2],
+                       id,
+                       viewport);
     visualizer.setShapeRenderingProperties(
-        visualization::PCL_VISUALIZER_LINE_WIDTH, 4, id);
+        visualization::PCL_VISUALIZER_LINE_WIDTH, 4, id, viewport);
+    addAxisName(k, scale * Eigen::Vector3d::Unit(k), text_color, id, viewport, window);
   }
 }
 
@@ -199,27 +208,36 @@ drawScene(const Scene& scene, const ViewOptions& options, Window& window)
 {
   const std::vector<Panel> panels = options.panels(scene.uncertainty.has_value());
   const std::vector<int> viewports = window.makePanels(panels.size());
+  const auto wrappedIn = [&window](const Layers& layers,
+                                   const std::vector<LegendLine>& lines) {
+    return wrapped(lines, lineWidth(layers.count(Layer::Deviation) > 0, window));
+  };
+  const auto status = wrappedIn(
+      panels.front().layers,
+      {{scene.status + ": " + scene.status_message, textColorOn(options.background)}});
   Layers shown;
   std::size_t num_lines = 0;
   for (std::size_t i = 0; i < panels.size(); ++i) {
+    const auto& [title, layers] = panels[i];
     PanelDrawing drawing(scene, options, viewports[i], window);
-    for (const Layer layer : panels[i].layers)
+    for (const Layer layer : layers)
       drawing.draw(layer);
-    shown.insert(panels[i].layers.begin(), panels[i].layers.end());
-    const auto lines = wrapped(
-        legendOf(panels[i], scene, options, !options.isOffScreen()), lineWidth(window));
+    shown.insert(layers.begin(), layers.end());
+    if (options.axes_scale > 0.0)
+      addAxes(
+          options.axes_scale, textColorOn(options.background), viewports[i], window);
+    auto lines =
+        wrappedIn(layers, legendOf(panels[i], scene, options, !options.isOffScreen()));
+    if (!hasRoomFor(lines.size() + status.size(), window))
+      lines.resize(title.empty() ? 0 : 1);
     num_lines = std::max(num_lines, lines.size());
     addLegend(lines, viewports[i], window);
   }
-  if (options.axes_scale > 0.0)
-    addAxes(options.axes_scale, window);
-  addStatus(
-      {scene.status + ": " + scene.status_message, textColorOn(options.background)},
-      viewports.front(),
-      window);
-  window.lookAt(shownPoints(scene, shown),
-                defaultView(scene.target, scene.sensor_origin),
-                areaBeside(num_lines, shown.count(Layer::Deviation) > 0, window));
+  addStatus(status, viewports.front(), window);
+  window.lookAt(
+      shownPoints(scene, shown),
+      defaultView(scene.target, scene.sensor_origin),
+      areaBeside(num_lines, status.size(), shown.count(Layer::Deviation) > 0, window));
 }
 
 } // namespace bayesian_icp::viewer

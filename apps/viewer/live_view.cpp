@@ -56,7 +56,7 @@ public:
     addPoints(scene.source, options.styleOf(Layer::Source), "icp", 0, window);
     window.lookAt(shownPoints(scene, {Layer::Source, Layer::Target}),
                   defaultView(scene.target, scene.sensor_origin),
-                  areaBeside(3, false, window));
+                  areaBeside(3, 0, false, window));
   }
 
   void

@@ -66,6 +66,10 @@ constexpr std::array<LayerName, 7> layer_names = {
 
 using Layers = std::set<Layer>;
 
+/** \brief Least size of a panel that can be read [pixels]. */
+constexpr int least_width = 300;
+constexpr int least_height = 200;
+
 /** \brief One picture in the window. */
 struct Panel {
   std::string title;

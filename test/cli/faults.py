@@ -103,7 +103,7 @@ class FaultTest(ToolTest):
         source, target = pair or self.small_pair()
         clouds = {"source": source.name, "target": target.name}
         manifest = self.file("manifest.json", json.dumps([{"name": "pair", **clouds}]))
-        picture = ["--screenshot", output / "picture.png", "--size", "200x150"]
+        picture = ["--screenshot", output / "picture.png", "--size", "300x200"]
         viewer = {
             "viewer": ([VIEWER, source, target, *FAST, "--quiet", *picture], {"picture.png"})
         }

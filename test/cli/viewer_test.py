@@ -19,6 +19,7 @@ from cloud_files import box_surface, pcd_bytes
 from faults import VIEWER, call
 
 WIDTH, HEIGHT = 480, 360
+BLACK = (0, 0, 0)
 
 
 def environment(display):
@@ -47,6 +48,15 @@ class Picture:
             hue, found, _ = colorsys.rgb_to_hsv(*(part / 255 for part in color))
             total += n if lowest <= 360 * hue <= highest and found >= saturation else 0
         return total
+
+    def rows_with(self, color):
+        lines = (self.part(0, y, self.image.width, 1) for y in range(self.image.height))
+        return [y for y, line in enumerate(lines) if color in line.getdata()]
+
+    def count_grey(self, top, bottom):
+        """Pixels of a bright grey or white between these rows."""
+        part = self.part(0, top, self.image.width, bottom - top)
+        return sum(min(color) > 120 and max(color) - min(color) < 20 for color in part.getdata())
 
     def brightness(self):
         return sum(n * sum(color) for color, n in self.colors.items())
@@ -116,8 +126,7 @@ class Pictures(ScreenTest):
             for color in [(255, 0, 0), (0, 255, 0), (0, 0, 255)]:
                 found = picture.count(color)
                 (self.assertGreater if color in expected else self.assertLess)(found, 500)
-        lines = (picture.part(0, y, WIDTH, 1).getdata() for y in range(HEIGHT))
-        rows = [y for y, line in enumerate(lines) if (0, 255, 0) in line]
+        rows = picture.rows_with((0, 255, 0))
         self.assertGreater(max(rows) - min(rows), 0.5 * HEIGHT)
 
     def test_point_size_opacity_and_background(self):
@@ -145,6 +154,25 @@ class Pictures(ScreenTest):
         cones = self.saved("mug", "--show", "rotation")
         for lowest, highest in ((0, 10), (110, 130), (230, 250)):
             self.assertGreater(cones.count_hues(lowest, highest, 0.7), 300)
+
+    def test_axes_have_names(self):
+        for words in (["--show", "rotation"], ["--show", "position", "-ax", "0.05"]):
+            self.assertGreater(self.saved("mug", *words).count_grey(56, 310), 90)
+
+    def test_bar_and_text_keep_off_the_border(self):
+        for words, size in ((["--show", "all"], (300, 1000)), (["-multiview", "1"], (600, 400))):
+            picture = self.saved("can", *words, size=size)
+            width, height = size
+            border = picture.part(width - 2, 0, 2, height)
+            self.assertEqual(set(border.getdata()), {BLACK})
+            bar = picture.part(width - 80, 0, 78, height)
+            self.assertGreater(sum(pixel != BLACK for pixel in bar.getdata()), 1000)
+
+    def test_legend_is_left_out_where_it_has_no_room(self):
+        words = ["--show", "draws,position,rotation"]
+        for size, has_legend in (((300, 200), False), ((300, 500), True)):
+            top = self.saved("mug", *words, size=size).part(0, 0, 60, 16)
+            self.assertEqual(set(top.getdata()) != {BLACK}, has_legend)
 
     def test_multiview_has_four_pictures(self):
         picture = self.saved("mug", "-multiview", "1", size=(640, 480))
@@ -184,11 +212,11 @@ class Pictures(ScreenTest):
     def test_what_cannot_be_trusted_is_shown_and_said(self):
         path = self.folder / "picture.png"
         few = ["--samples", "40", "--chains", "2"]
-        words = ["--screenshot", path, "--size", "200x150"]
+        words = ["--screenshot", path, "--size", "300x200"]
         result = view(*scans("mug"), *CALIBRATED, *few, *words, display=self.display)
         self.assertEqual(result.returncode, 1)
         self.assertIn("not_mixed", result.stderr)
-        self.assertEqual(Picture(path).image.width, 200)
+        self.assertEqual(Picture(path).image.width, 300)
 
     def test_clouds_that_a_posterior_names_may_have_moved(self):
         saved = self.results / "mug" / "posterior.json"
@@ -210,7 +238,7 @@ class Pictures(ScreenTest):
         mixed = shutil.copy(saved, self.results / "mixed")
         lines = (saved.parent / "samples.csv").read_text().splitlines(keepends=True)
         (self.results / "mixed" / "samples.csv").write_text("".join(lines[:100]))
-        words = ["--screenshot", self.folder / "picture.png", "--size", "200x150"]
+        words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
         result = view(mixed, *scans("can"), *words, display=self.display)
         self.assertEqual(result.returncode, 0)
         for part in ("the source has ", "the target has ", "samples.csv has 99 in place of the"):
@@ -226,14 +254,14 @@ class Pictures(ScreenTest):
     def test_points_that_are_not_finite_count(self):
         exact = ["--preset=exact", "--sigma=0.01"]
         saved = self.saved_result([*box_surface(), (math.nan, 0, 0)], *exact)
-        words = ["--screenshot", self.folder / "picture.png", "--size", "200x150"]
+        words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
         result = view(saved, *words, display=self.display)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("in place of", result.stderr)
 
     def test_run_without_draws_is_shown(self):
         saved = self.saved_result(box_surface(), "--preset=paper", "--step-size=10")
-        words = ["--screenshot", self.folder / "picture.png", "--size", "200x150"]
+        words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
         result = view(saved, *words, display=self.display)
         self.assertIn(result.returncode, (0, 1), result.stderr)
         self.assertTrue((self.folder / "picture.png").exists())
@@ -268,7 +296,7 @@ class ViewerUsage(ViewerTest):
         text = view("--help").stdout
         for word in ("-bc", "-fc", "-ps", "-opaque", "-ax", "-cam", "-multiview", "--show"):
             self.assertIn("-" + word.lstrip("-") + " ", text)
-        for word in ("deviation", "rotation", "--preset", "--live", "--screenshot", "Exit codes"):
+        for word in ("deviation", "rotation", "--preset", "--live", "--screenshot", "600x400", "Exit codes"):
             self.assertIn(word, text)
         self.assertRegex(text, r"Excludes\s+--show")
         self.assertRegex(view("--version").stdout, r"^pcl_bayesian_icp_viewer \d+\.\d+\.\d+\n$")
@@ -291,7 +319,11 @@ class ViewerUsage(ViewerTest):
             (["--magnify", "0"], "--magnify"),
             (["--reference", "middle"], "--reference"),
             (["--size", "800"], "--size"),
-            (["--size", "10x10"], "--size"),
+            (["--size", "10x10"], "--size", "300x200"),
+            (["--size", "299x200"], "--size"),
+            (["--size", "300x199"], "--size"),
+            (["--size", "599x400", "-multiview", "1"], "--size", "600x400"),
+            (["--size", "600x399", "-multiview", "1"], "--size", "600x400"),
             (["--screenshot="], "--screenshot"),
             (["--screenshot", "picture.jpg"], "--screenshot", "'picture.jpg' does not end in .png"),
             (["--preset", "best"], "--preset"),
