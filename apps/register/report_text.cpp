@@ -208,11 +208,16 @@ scaleNote(Preset preset)
 }
 
 std::string
+statusText(std::string name, const std::string& message)
+{
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + ": " + message;
+}
+
+std::string
 statusText(const Summary& summary)
 {
-  std::string name = toString(summary.status);
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name + ": " + summary.message;
+  return statusText(toString(summary.status), summary.message);
 }
 
 std::string

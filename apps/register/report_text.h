@@ -49,7 +49,11 @@ icpNote(const Run& run);
 std::string
 scaleNote(Preset preset);
 
-/** \brief "not mixed: the chains ..." */
+/** \brief "not mixed: the chains ..."
+ * \param[in] name short name of the Status */
+std::string
+statusText(std::string name, const std::string& message);
+
 std::string
 statusText(const Summary& summary);
 

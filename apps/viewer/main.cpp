@@ -43,7 +43,7 @@ exitCodeFor(const Scene& scene)
 {
   if (io::wasInterrupted())
     return io::Interrupted;
-  return scene.status == toString(Status::Ok) ? io::Good : io::NotGood;
+  return scene.is_ok ? io::Good : io::NotGood;
 }
 
 /** Opens the window, or the picture that stands in for it. */
@@ -110,8 +110,8 @@ show(const Request& request)
     window->save(file.filename(), *folder);
   else
     letUserLook(*window);
-  if (scene.status != toString(Status::Ok))
-    io::tell(scene.status + ": " + scene.status_message);
+  if (!scene.is_ok)
+    io::tell(scene.status_text);
   return exitCodeFor(scene);
 }
 

@@ -46,9 +46,9 @@ struct Scene {
   /** The names by which the user knows the clouds. */
   std::string source_file;
   std::string target_file;
-  /** Short name of the Status, and the status in words. */
-  std::string status;
-  std::string status_message;
+  /** Whether the status is Ok, and the status in words. */
+  bool is_ok = false;
+  std::string status_text;
   /** What speaks against that all of this belongs together; empty if nothing. */
   std::string note;
 };

@@ -3,6 +3,7 @@
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "io/posterior_file.h"
+#include "register/report_text.h"
 
 #include <filesystem>
 
@@ -49,8 +50,8 @@ sceneOf(const app::Run& run)
   scene.guess = run.settings.guess;
   scene.final_matrix = run.result.final_matrix;
   scene.draws = pooledDraws(run.result.chains);
-  scene.status = toString(run.result.summary.status);
-  scene.status_message = run.result.summary.message;
+  scene.is_ok = run.result.summary.status == Status::Ok;
+  scene.status_text = app::statusText(run.result.summary);
   return scene;
 }
 
@@ -72,8 +73,8 @@ readScene(const std::string& posterior_file,
   scene.final_matrix = posterior.final_matrix;
   if (posterior.num_draws > 0)
     scene.draws = io::readSamples((folder / "samples.csv").string());
-  scene.status = posterior.status;
-  scene.status_message = posterior.status_message;
+  scene.is_ok = posterior.status == toString(Status::Ok);
+  scene.status_text = app::statusText(posterior.status, posterior.status_message);
   const auto compare =
       [&](const std::string& what, Eigen::Index found, Eigen::Index stated) {
         if (found != stated)

@@ -215,7 +215,7 @@ class Pictures(ScreenTest):
         words = ["--screenshot", path, "--size", "300x200"]
         result = view(*scans("mug"), *CALIBRATED, *few, *words, display=self.display)
         self.assertEqual(result.returncode, 1)
-        self.assertIn("not_mixed", result.stderr)
+        self.assertIn("not mixed: ", result.stderr)
         self.assertEqual(Picture(path).image.width, 300)
 
     def test_clouds_that_a_posterior_names_may_have_moved(self):
