@@ -24,20 +24,21 @@ takeClouds(const io::CloudFile& source, const io::CloudFile& target, Scene& scen
 }
 
 /** \p given, or else the cloud that a posterior names, which may have moved, or the
- * user.
- */
+ * user. A relative name is of the current folder, or else of the posterior's. */
 io::CloudFile
-readCloudOf(const std::string& posterior_file,
+readCloudOf(const std::filesystem::path& posterior_file,
             const std::string& named,
             const std::string& given)
 {
   if (!given.empty())
     return io::readCloud(given);
-  if (!std::filesystem::exists(named))
-    throw io::FileError(named,
-                        "no such file, though " + posterior_file +
-                            " names it; say on the command line where both clouds are");
-  return io::readCloud(named);
+  for (const std::filesystem::path& file :
+       {std::filesystem::path(named), posterior_file.parent_path() / named})
+    if (std::filesystem::exists(file))
+      return io::readCloud(file.string());
+  throw io::FileError(named,
+                      "no such file, though " + posterior_file.string() +
+                          " names it; say on the command line where both clouds are");
 }
 
 } // namespace
@@ -61,18 +62,15 @@ readScene(const std::string& posterior_file,
           const std::string& target_file)
 {
   const io::PosteriorFile posterior = io::readPosterior(posterior_file);
-  const std::filesystem::path folder =
-      std::filesystem::path(posterior_file).parent_path();
+  const std::filesystem::path path = posterior_file;
   Scene scene;
-  const io::CloudFile source =
-      readCloudOf(posterior_file, posterior.source_file, source_file);
-  const io::CloudFile target =
-      readCloudOf(posterior_file, posterior.target_file, target_file);
+  const io::CloudFile source = readCloudOf(path, posterior.source_file, source_file);
+  const io::CloudFile target = readCloudOf(path, posterior.target_file, target_file);
   takeClouds(source, target, scene);
   scene.guess = posterior.guess;
   scene.final_matrix = posterior.final_matrix;
   if (posterior.num_draws > 0)
-    scene.draws = io::readSamples((folder / "samples.csv").string());
+    scene.draws = io::readSamples((path.parent_path() / "samples.csv").string());
   scene.is_ok = posterior.status == toString(Status::Ok);
   scene.status_text = app::statusText(posterior.status, posterior.status_message);
   const auto compare =

@@ -14,7 +14,7 @@ import unittest
 import PIL.Image
 
 import x_server
-from cli_tool import CALIBRATED, DATA, ToolTest, run, scans
+from cli_tool import CALIBRATED, DATA, FAST, ToolTest, run, scans
 from cloud_files import box_surface, pcd_bytes
 from faults import VIEWER, call
 
@@ -231,6 +231,15 @@ class Pictures(ScreenTest):
         )
         shown = self.picture(moved, *scans("mug"), "--show", "draws")
         self.assert_same_pixels(shown, self.saved("mug", "--show", "draws"))
+
+    def test_relative_names_are_also_of_the_folder_of_the_posterior(self):
+        self.small_pair()
+        words = ["source.pcd", "target.pcd", *FAST, "-o", ".", "--quiet"]
+        self.assert_ran(run(*words, cwd=self.folder))
+        words = ["--screenshot", self.folder / "picture.png"]
+        result = view(self.folder / "posterior.json", *words, display=self.display)
+        self.assert_ran(result)
+        self.assertTrue((self.folder / "picture.png").exists())
 
     def test_files_that_do_not_belong_together_are_told(self):
         saved = self.results / "mug" / "posterior.json"
