@@ -213,8 +213,8 @@ target frame. Options begin with one or two dashes.
           '\n' + keysText() + R"(
 Exit codes:
   0    the result shown can be trusted
-  1    it cannot (the status in the picture says why), or nothing could be
-       shown, for example without an X display (xvfb-run provides one)
+  1    it cannot (the status or a warning in the picture says why), or nothing
+       could be shown, for example without an X display (xvfb-run provides one)
   2    wrong usage
   3    a file cannot be read, used or written
   130  interrupted (Ctrl-C or SIGTERM)

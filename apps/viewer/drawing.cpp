@@ -212,8 +212,7 @@ drawScene(const Scene& scene, const ViewOptions& options, Window& window)
                                    const std::vector<LegendLine>& lines) {
     return wrapped(lines, lineWidth(layers.count(Layer::Deviation) > 0, window));
   };
-  const auto status = wrappedIn(panels.front().layers,
-                                {{scene.status_text, textColorOn(options.background)}});
+  const auto status = wrappedIn(panels.front().layers, statusOf(scene, options));
   Layers shown;
   std::size_t num_lines = 0;
   for (std::size_t i = 0; i < panels.size(); ++i) {

@@ -100,6 +100,16 @@ legendOf(const Panel& panel,
 }
 
 std::vector<LegendLine>
+statusOf(const Scene& scene, const ViewOptions& options)
+{
+  const Color color = textColorOn(options.background);
+  std::vector<LegendLine> lines = {{scene.status_text, color}};
+  if (!scene.note.empty())
+    lines.insert(lines.begin(), {scene.note, color});
+  return lines;
+}
+
+std::vector<LegendLine>
 wrapped(const std::vector<LegendLine>& lines, std::size_t width)
 {
   std::vector<LegendLine> narrow;

@@ -33,6 +33,10 @@ legendOf(const Panel& panel,
          const ViewOptions& options,
          bool shows_keys);
 
+/** \brief The status, after the scene's note if it has one. */
+std::vector<LegendLine>
+statusOf(const Scene& scene, const ViewOptions& options);
+
 /** \brief The same in lines of at most \p width characters; those that go on are
  * indented. */
 std::vector<LegendLine>

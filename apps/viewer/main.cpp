@@ -43,7 +43,7 @@ exitCodeFor(const Scene& scene)
 {
   if (io::wasInterrupted())
     return io::Interrupted;
-  return scene.is_ok ? io::Good : io::NotGood;
+  return scene.is_ok && scene.note.empty() ? io::Good : io::NotGood;
 }
 
 /** Opens the window, or the picture that stands in for it. */
@@ -65,7 +65,7 @@ prepareScene(const Request& request, std::optional<Window>& window)
     Scene scene =
         readScene(request.posterior_file, request.source_file, request.target_file);
     if (!scene.note.empty())
-      io::tell("warning: not of one registration: " + scene.note);
+      io::tell(scene.note);
     requireDisplay();
     return scene;
   }

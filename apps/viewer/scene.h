@@ -49,7 +49,7 @@ struct Scene {
   /** Whether the status is Ok, and the status in words. */
   bool is_ok = false;
   std::string status_text;
-  /** What speaks against that all of this belongs together; empty if nothing. */
+  /** A warning that not all of this belongs together; empty if nothing says so. */
   std::string note;
 };
 

@@ -5,6 +5,8 @@
 #include "io/posterior_file.h"
 #include "register/report_text.h"
 
+#include <bayesian_icp/summary.h>
+
 #include <filesystem>
 
 namespace bayesian_icp::viewer {
@@ -41,6 +43,27 @@ readCloudOf(const std::filesystem::path& posterior_file,
                           " names it; say on the command line where both clouds are");
 }
 
+/** Whether the draws have the mean and the deviations that a posterior states. The
+ * draws of two runs differ by more, those of another computer by less. */
+bool
+haveMoments(const io::PosteriorFile& posterior, const PoseMatrix& draws)
+{
+  constexpr double share_of_deviation = 1e-3;
+  constexpr double rounding = 1e-9; // [m, rad]
+  constexpr auto convention = CovarianceConvention::RightSE3;
+  const auto deviationsOf =
+      [](const Matrix6d& covariance) -> Eigen::Array<double, 6, 1> {
+    return covariance.diagonal().array().sqrt();
+  };
+  const Vector6d mean = meanPose(draws);
+  const auto found = deviationsOf(covarianceAbout(mean, draws, convention));
+  const auto stated = deviationsOf(posterior.covariance(convention));
+  const Vector6d shift = poseError(mean, posterior.mean, convention);
+  const auto tolerance = share_of_deviation * stated + rounding;
+  // A single draw has no deviations: NaN, which does not speak against it.
+  return !(shift.array().abs() > tolerance || (found - stated).abs() > tolerance).any();
+}
+
 } // namespace
 
 Scene
@@ -73,16 +96,22 @@ readScene(const std::string& posterior_file,
     scene.draws = io::readSamples((path.parent_path() / "samples.csv").string());
   scene.is_ok = posterior.status == toString(Status::Ok);
   scene.status_text = app::statusText(posterior.status, posterior.status_message);
+  const auto note = [&scene](const std::string& text) {
+    scene.note +=
+        (scene.note.empty() ? "warning: not of one registration: " : "; ") + text;
+  };
   const auto compare =
       [&](const std::string& what, Eigen::Index found, Eigen::Index stated) {
         if (found != stated)
-          scene.note += (scene.note.empty() ? "" : "; ") + what + " has " +
-                        io::textOf(found) + " in place of the " + io::textOf(stated) +
-                        " of " + posterior_file;
+          note(what + " has " + io::textOf(found) + " in place of the " +
+               io::textOf(stated) + " of " + path.filename().string());
       };
   compare("the source", scene.num_source_points, posterior.num_source_points);
   compare("the target", scene.num_target_points, posterior.num_target_points);
   compare("samples.csv", scene.draws.rows(), posterior.num_draws);
+  if (scene.draws.rows() == posterior.num_draws && !haveMoments(posterior, scene.draws))
+    note("samples.csv has another mean or other deviations than " +
+         path.filename().string());
   return scene;
 }
 

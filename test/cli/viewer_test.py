@@ -19,7 +19,7 @@ from cloud_files import box_surface, pcd_bytes
 from faults import VIEWER, call
 
 WIDTH, HEIGHT = 480, 360
-BLACK = (0, 0, 0)
+BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
 
 def environment(display):
@@ -241,15 +241,36 @@ class Pictures(ScreenTest):
         self.assert_ran(result)
         self.assertTrue((self.folder / "picture.png").exists())
 
+    def view_mixed(self, samples, *arguments, size="480x360"):
+        """The mug's posterior.json beside other draws; the completed process."""
+        mixed = self.folder / "mixed"
+        mixed.mkdir()
+        (mixed / "samples.csv").write_text(samples)
+        saved = shutil.copy(self.results / "mug" / "posterior.json", mixed)
+        words = ["--screenshot", self.folder / "picture.png", "--size", size]
+        result = view(saved, *arguments, *words, display=self.display)
+        self.assertEqual(result.returncode, 1)
+        return result
+
+    def test_draws_of_another_run_are_told_and_drawn(self):
+        other = self.folder / "other"
+        words = [*CALIBRATED, "--seed", "2", "-o", other, "--quiet", "--no-report"]
+        self.assert_ran(run(*scans("mug"), *words))
+        green = ["--show", "target", "-fc", "1,1,1", "-fc", "0,1,0"]
+        result = self.view_mixed((other / "samples.csv").read_text(), *green)
+        self.assertIn("samples.csv has another mean or other deviations", result.stderr)
+        picture = Picture(self.folder / "picture.png")
+        warned = picture.rows_with(WHITE)
+        # The text is below the target, however many lines it has.
+        self.assertGreater(min(warned), max(picture.rows_with((0, 255, 0))))
+        for path in self.folder.iterdir():
+            (shutil.rmtree if path.is_dir() else os.remove)(path)
+        self.assertGreater(len(warned), len(self.saved("mug", *green).rows_with(WHITE)))
+
     def test_files_that_do_not_belong_together_are_told(self):
         saved = self.results / "mug" / "posterior.json"
-        (self.results / "mixed").mkdir()
-        mixed = shutil.copy(saved, self.results / "mixed")
         lines = (saved.parent / "samples.csv").read_text().splitlines(keepends=True)
-        (self.results / "mixed" / "samples.csv").write_text("".join(lines[:100]))
-        words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
-        result = view(mixed, *scans("can"), *words, display=self.display)
-        self.assertEqual(result.returncode, 0)
+        result = self.view_mixed("".join(lines[:100]), *scans("can"))
         for part in ("the source has ", "the target has ", "samples.csv has 99 in place of the"):
             self.assertIn(part, result.stderr)
 
@@ -267,6 +288,14 @@ class Pictures(ScreenTest):
         result = view(saved, *words, display=self.display)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("in place of", result.stderr)
+
+    def test_draws_of_the_same_run_are_not_told(self):
+        single = ["--preset=paper", "--step-size=1e-6", "--samples=1", "--chains=1"]
+        stein = ["--preset=exact", "--sigma=0.01", "--steps=stein-newton"]
+        for options in (FAST, [*FAST, "--normalize-cloud"], single, stein):
+            saved = self.saved_result(box_surface(), *options)
+            words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
+            self.assertNotIn("samples.csv", view(saved, *words, display=self.display).stderr)
 
     def test_run_without_draws_is_shown(self):
         saved = self.saved_result(box_surface(), "--preset=paper", "--step-size=10")

@@ -123,6 +123,18 @@ TEST(Legend, HasUnitsAndTheMagnification)
   EXPECT_EQ(legendOf(panel, scene, options, true)[0].color, (Color{}));
 }
 
+TEST(Legend, StatusFollowsTheNote)
+{
+  Scene scene;
+  scene.status_text = "ok: mixed";
+  ASSERT_EQ(statusOf(scene, ViewOptions()).size(), 1U);
+  scene.note = "warning: of two runs";
+  const auto lines = statusOf(scene, ViewOptions());
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].text, "warning: of two runs");
+  EXPECT_EQ(lines[1].text, "ok: mixed");
+}
+
 TEST(Legend, LinesThatAreTooLongGoOnBelow)
 {
   const Color red{1.0, 0.0, 0.0};
