@@ -183,8 +183,7 @@ pointToPointSandwich(const BaselineProblem& problem, const IcpFit& fit, double n
   GaussianInformation result;
   for (int round = 0; round < num_rounds; ++round) {
     const Secants secants = maker.measure(covariance);
-    const DebitedInformation debited =
-        debitedInformation(secants, J, maker.priorPrecision(), 0.0);
+    const DebitedInformation debited = debitedInformation(secants, J, Vector6d::Zero());
     result.information = debited.information;
     result.gradient = debited.transfer.transpose() * secants.curvature *
                       J.ldlt().solve(sums.gradient);

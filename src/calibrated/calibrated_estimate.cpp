@@ -50,10 +50,11 @@ constexpr double points_to_prior = 0.2;
 /** SecantPlan::min_displacement in units of the target's noise. */
 constexpr double min_step_to_noise = 0.5;
 
-/** The prior alone holds directions with less information than this, in units of the
- * prior's. Such information would be the remaining noise of a free motion, whose
- * direction would not be turned to follow the surface. */
-constexpr double smallest_information_share = 0.2;
+/** The prior alone holds directions with less information than this along the
+ * longestStep(). It is a fifth of the prior's information, and more where the prior is
+ * so wide that the steps see but a part of it. Such information would be the remaining
+ * noise of a free motion, whose direction would not be turned to follow the surface. */
+constexpr double least_information = 0.45;
 
 /** Variance of the score along motions that flat clouds cannot show, in units of the
  * prior's precision: above rounding, and far below all others. */
@@ -235,6 +236,21 @@ atMode(const SurfaceScorer& scorer, const HeldPrior& prior, const RobustFit& mod
   return e;
 }
 
+/** The least information along each step. */
+Vector6d
+leastInformation(const Matrix6d& steps, const CalibratedEstimate& e)
+{
+  Vector6d least;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d step = steps.col(k);
+    const double length = std::sqrt(step.dot(e.displacement_metric * step));
+    const double part =
+        length / longestStep(step / length, e.prior.precision, e.displacement_metric);
+    least[k] = least_information * part * part;
+  }
+  return least;
+}
+
 /** Debit the noise of the secants, and set keep, covariance and score_covariance. */
 void
 debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
@@ -242,7 +258,7 @@ debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
   e.score_covariance = J;
   for (int pass = 0; pass < 2; ++pass) {
     const DebitedInformation debited = debitedInformation(
-        secants, e.score_covariance, e.prior.precision, smallest_information_share);
+        secants, e.score_covariance, leastInformation(secants.steps, e));
     e.keep = debited.keep;
     e.covariance = (debited.information + e.prior.precision).inverse();
     if (pass == 0)

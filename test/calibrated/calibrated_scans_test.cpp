@@ -352,6 +352,49 @@ TEST(CalibratedScans, BareGroundInACoarseVoxelGridIsNoMisfit)
   }
 }
 
+/** Points of rolling hills within 20 m, seen from 1.5 m above, nearer ones more often,
+ * with a noise of 1 cm. */
+Eigen::Matrix3Xf
+scanOfHills(const Eigen::Isometry3d& T_world_sensor, std::uint64_t stream)
+{
+  Random random(7, stream);
+  Eigen::Matrix3Xf points(3, 5000);
+  for (auto point : points.colwise()) {
+    const double range = 2.0 * std::pow(10.0, random.uniform());
+    const double angle = 2.0 * std::acos(-1.0) * random.uniform();
+    Eigen::Vector3d place =
+        T_world_sensor.translation() +
+        range * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+    // A tenth of the height is gained on one metre (root mean square).
+    place.z() = 0.22 * std::sin(0.7 * place.x() + 0.4 * place.y()) +
+                0.16 * std::sin(0.9 * place.y() - 0.5 * place.x() + 1.0) +
+                0.01 * random.normal();
+    point = (T_world_sensor.inverse() * place).cast<float>();
+  }
+  return points;
+}
+
+TEST(CalibratedScans, OnHillsAreHeldByTheSlopes)
+{
+  for (std::uint64_t run = 1; run <= 6; ++run) {
+    Random random(8, run);
+    const Eigen::Isometry3d target(Eigen::Translation3d(0.0, 0.0, 1.5));
+    simulator::ScanPair scans;
+    scans.T_target_source = matrixOf(
+        Vector6d(0.2 * random.normal6())
+            .cwiseProduct((Vector6d() << 1.0, 1.0, 0.2, 0.1, 0.1, 0.3).finished()));
+    scans.target = scanOfHills(target, 2 * run);
+    scans.source =
+        scanOfHills(target * isometryOf(poseOf(scans.T_target_source)), 2 * run + 1);
+    const Summary summary = summaryOf(scans, Options());
+    EXPECT_EQ(summary.status, Status::Ok) << run << ": " << summary.message;
+    for (const DataDirection& direction : summary.data.directions)
+      EXPECT_NE(direction.observability, Observability::PriorOnly)
+          << run << ": " << direction.description;
+    EXPECT_LT(squaredErrorOf(summary, scans), chi_square_999) << run;
+  }
+}
+
 TEST(CalibratedScans, AWrongPriorIsAConflictWithTheSurfaceItHides)
 {
   // A table with things on it. From 15 standard deviations away, 52 mm, the things do
@@ -370,6 +413,19 @@ TEST(CalibratedScans, AWrongPriorIsAConflictWithTheSurfaceItHides)
   EXPECT_EQ(wrong.status, Status::Doubtful) << wrong.message;
   EXPECT_TRUE(wrong.data.flags.prior_conflict);
   EXPECT_GT(squaredErrorOf(wrong, scans), chi_square_999);
+}
+
+TEST(CalibratedScans, APriorWiderThanTheLongestStepHoldsTheYawOfACan)
+{
+  const simulator::ScanPair scans =
+      simulator::simulate(simulator::defaultOptions("can"));
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+    Options options;
+    options.prior.variance.tail<3>().setConstant(4.0);
+    options.chains.seed = seed;
+    const DataDirection yaw = summaryOf(scans, options).data.directions.back();
+    EXPECT_EQ(yaw.observability, Observability::PriorOnly) << yaw.description;
+  }
 }
 
 TEST(CalibratedScans, ABowlTurnsAboutItsAxisWhicheverOfItsPointsAreUsed)

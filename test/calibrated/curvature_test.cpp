@@ -64,7 +64,7 @@ keptInformation(double information)
   const Secants secants = diagonalSecants(Vector6d::Constant(std::sqrt(information)),
                                           Vector6d::Constant(2));
   const DebitedInformation debited =
-      debitedInformation(secants, Matrix6d::Identity(), Matrix6d::Identity(), 0.0);
+      debitedInformation(secants, Matrix6d::Identity(), Vector6d::Zero());
   EXPECT_NEAR(debited.raw[3], information, 1e-12 * information);
   return debited.keep[3] * debited.raw[3];
 }
@@ -102,14 +102,12 @@ TEST(NoiseDebit, InformationIsTheSandwichAlongWhatIsKept)
   secants.steps = randomSquare(random);
   secants.noise.fill(Matrix6d::Zero());
   const Matrix6d sandwich = secants.curvature * J.inverse() * secants.curvature;
-  const DebitedInformation all =
-      debitedInformation(secants, J, Matrix6d::Identity(), 0.0);
+  const DebitedInformation all = debitedInformation(secants, J, Vector6d::Zero());
   EXPECT_EQ(all.keep, Vector6d::Ones());
   EXPECT_LT((all.information - sandwich).norm(), 1e-9 * sandwich.norm());
   // Noise beyond all information along one step: nothing is left of that step alone.
   secants.noise[2] = 1e6 * J;
-  const DebitedInformation some =
-      debitedInformation(secants, J, Matrix6d::Identity(), 0.0);
+  const DebitedInformation some = debitedInformation(secants, J, Vector6d::Zero());
   EXPECT_EQ(some.keep[2], 0.0);
   EXPECT_LT((some.information * secants.steps.col(2)).norm(), 1e-9 * sandwich.norm());
   for (const int k : {0, 1, 3, 4, 5}) {
@@ -124,8 +122,7 @@ TEST(NoiseDebit, LeavesWhatThePriorKnowsBetterToThePrior)
   curvature[1] = 0.1;
   const Secants secants = diagonalSecants(curvature, Vector6d::Zero());
   const auto keep = [&](double least) {
-    return debitedInformation(
-               secants, Matrix6d::Identity(), Matrix6d::Identity(), least)
+    return debitedInformation(secants, Matrix6d::Identity(), Vector6d::Constant(least))
         .keep;
   };
   EXPECT_EQ(keep(0.009), Vector6d::Ones());

@@ -106,12 +106,11 @@ struct DebitedInformation {
   Matrix6d information = Matrix6d::Zero();
 };
 
-/** \brief Debit the noise. A direction keeps nothing if less than \p
- * min_relative_information times the prior's information along it would remain. */
+/** \brief Debit the noise. A direction keeps nothing if less than its \p
+ * least_information, that along the step, would remain. */
 DebitedInformation
 debitedInformation(const Secants& secants,
                    const Matrix6d& score_covariance,
-                   const Matrix6d& prior_precision,
-                   double min_relative_information);
+                   const Vector6d& least_information);
 
 } // namespace bayesian_icp

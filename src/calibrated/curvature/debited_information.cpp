@@ -50,8 +50,7 @@ transferOf(const Matrix6d& directions, const Vector6d& keep)
 DebitedInformation
 debitedInformation(const Secants& secants,
                    const Matrix6d& score_covariance,
-                   const Matrix6d& prior_precision,
-                   double min_relative_information)
+                   const Vector6d& least_information)
 {
   const Eigen::LDLT<Matrix6d> J(score_covariance);
   const Matrix6d HV = secants.curvature * secants.steps;
@@ -59,7 +58,6 @@ debitedInformation(const Secants& secants,
   result.raw = (HV.transpose() * J.solve(HV)).diagonal();
   for (int k = 0; k < 6; ++k) {
     const Matrix6d& noise = secants.noise[static_cast<std::size_t>(k)];
-    const Vector6d step = secants.steps.col(k);
     const double mean_noise = J.solve(noise).trace();
     const double debit = mean_noise > 0.0
                              ? noiseDebit(result.raw[k],
@@ -67,8 +65,7 @@ debitedInformation(const Secants& secants,
                                           noiseThreshold(score_covariance, noise))
                              : 0.0;
     const double kept = secants.trust[k] * (result.raw[k] - debit);
-    const bool is_held = kept > 0.0 && kept >= min_relative_information *
-                                                   step.dot(prior_precision * step);
+    const bool is_held = kept > 0.0 && kept >= least_information[k];
     result.keep[k] = is_held ? kept / result.raw[k] : 0.0;
   }
   result.transfer = transferOf(secants.steps, result.keep);
