@@ -2,6 +2,8 @@
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/draws/calibrated_draws.h"
 #include "calibrated/median.h"
+#include "calibrated/modes/look_alikes.h"
+#include "calibrated/modes/mode_weights.h"
 #include "simulator/simulation.h"
 #include "summary/estimates.h"
 #include "support/test_support.h"
@@ -309,6 +311,59 @@ TEST(CalibratedScans, AmongPillarsThatLookAlikeTheyAreNotSurelyWrong)
     EXPECT_TRUE(summary.status != Status::Ok ||
                 squaredErrorOf(summary, scans) < chi_square_999)
         << run << ": " << summary.message << summary.mean.transpose();
+  }
+}
+
+/** A scan from \p place along a corridor of 60 x 2.4 x 3 m, which has a flat pillar
+ * every 2 m along one wall. Rays have random directions, so far points are sparse. */
+Eigen::Matrix3Xd
+scanAmongFlatPillars(double place, std::uint64_t stream)
+{
+  const Eigen::Array3d half(30.0, 1.2, 1.5);
+  constexpr double face = 1.1, width = 0.3, noise = 0.01;
+  Random random(2, stream);
+  Eigen::Matrix3Xd points(3, 8000);
+  for (auto point : points.colwise()) {
+    Eigen::Vector3d ray;
+    for (double& coordinate : ray)
+      coordinate = random.normal();
+    ray.normalize();
+    const Eigen::Array3d wall = half * ray.array().sign();
+    double range = ((wall - Eigen::Array3d(place, 0.0, 0.0)) / ray.array()).minCoeff();
+    const double to_faces = face / ray.y();
+    const double along = place + to_faces * ray.x();
+    if (to_faces > 0.0 && to_faces < range &&
+        along - 2.0 * std::floor(along / 2.0) < width)
+      range = to_faces;
+    point = (range + noise * random.normal()) * ray;
+  }
+  return points;
+}
+
+TEST(CalibratedScans, SparsePointsFarAwayDoNotTellPillarsApart)
+{
+  // A period off, the views overlap more.
+  constexpr double motion = 1.3, period = 2.0, sd = 0.8;
+  for (std::uint64_t run = 1; run <= 3; ++run) {
+    const double place = 0.37 * static_cast<double>(run);
+    const Eigen::Matrix3Xd source = scanAmongFlatPillars(place + motion, 2 * run);
+    const Eigen::Matrix3Xd target = scanAmongFlatPillars(place, 2 * run + 1);
+    const PreparedSurface of_source = prepareSurface(source, 1, 0);
+    const PreparedSurface of_target = prepareSurface(target, 1, 0);
+    const SurfaceScorer scorer =
+        scorerOf(source, of_source, target, of_target, 5000, 1);
+    const HeldPrior prior = Prior(Vector6d::Zero(),
+                                  Vector6d(sd, sd, sd, 0.03, 0.03, 0.03).cwiseAbs2(),
+                                  scorer.centroid());
+    std::vector<CalibratedMode> modes;
+    for (const double along : {motion, motion - period}) {
+      const Eigen::Isometry3d start(Eigen::Translation3d(along, 0.0, 0.0));
+      modes.push_back({estimateCalibrated(scorer, prior, {}, &start), 0.0});
+      ASSERT_NEAR(modes.back().estimate.mode.translation().x(), along, 0.1);
+    }
+    weighModes(prior, 0.0, unseenPoints(scorer, modes), modes);
+    // The prior's energies differ by 0.94; 150 used to be between them.
+    EXPECT_LT(modes.front().log_weight - modes.back().log_weight, 2.0) << run;
   }
 }
 

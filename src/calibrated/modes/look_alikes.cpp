@@ -27,10 +27,11 @@ constexpr float max_mean_direction = 0.3F;
  * second one of any direction that it looks in [rad]. */
 constexpr float near_ray = 0.06F, far_ray = 0.1F;
 
-/** A point may be hidden if most of the nearest rays end before this part of its
- * distance. */
+/** A point beside a surface may be hidden if most of the nearest rays end before this
+ * part of its distance. Where there is no surface, the sensor may have missed one
+ * unless nearly all rays go on until the point is at this part of theirs. */
 constexpr std::size_t num_rays = 6;
-constexpr int least_shorter_rays = 4;
+constexpr int least_shorter_rays = 4, least_longer_rays = 5;
 constexpr float hiding_part = 0.95F;
 
 /** Of a scan, at most one point in 20 is behind most of the rays around its own. They
@@ -71,9 +72,10 @@ public:
   }
 
   /** Whether the sensor may not have seen a point.
+   * \param[in] has_patch whether it has seen a surface there
    * \param[in,out] list a buffer */
   bool
-  mayMiss(const Eigen::Vector3d& point, NeighborList& list) const
+  mayMiss(const Eigen::Vector3d& point, bool has_patch, NeighborList& list) const
   {
     const auto range = static_cast<float>(point.norm());
     if (range > max_range_)
@@ -81,11 +83,15 @@ public:
     rays_.find(point.normalized().cast<float>(), num_rays, list);
     if (list.squared_distances.front() > far_ray * far_ray)
       return true;
-    int num_shorter = 0;
-    for (std::size_t k = 0; k < list.indices.size(); ++k)
-      num_shorter += list.squared_distances[k] < near_ray * near_ray &&
-                     ranges_[list.indices[k]] < hiding_part * range;
-    return num_shorter >= least_shorter_rays;
+    int num_shorter = 0, num_longer = 0;
+    for (std::size_t k = 0; k < list.indices.size(); ++k) {
+      const float of_ray = ranges_[list.indices[k]];
+      const bool is_near = list.squared_distances[k] < near_ray * near_ray;
+      num_shorter += is_near && of_ray < hiding_part * range;
+      num_longer += is_near && range < hiding_part * of_ray;
+    }
+    return has_patch ? num_shorter >= least_shorter_rays
+                     : num_longer < least_longer_rays;
   }
 
 private:
@@ -131,12 +137,15 @@ unseenPoints(const SurfaceScorer& scorer, const std::vector<CalibratedMode>& mod
     const Isometry3d inverse = pose.inverse();
     std::vector<char> of_mode;
     for (Index i = 0; i < scorer.numPoints(); ++i) {
-      const bool fits = mode.estimate.scores.active[static_cast<std::size_t>(i)];
+      const auto point = static_cast<std::size_t>(i);
+      const bool has_patch = mode.estimate.scores.has_patch[point];
       of_mode.push_back(
-          !fits &&
+          !mode.estimate.scores.active[point] &&
           (i < num_source
-               ? of_target.mayMiss(pose * scorer.sourcePoints().col(i), of_target_list)
+               ? of_target.mayMiss(
+                     pose * scorer.sourcePoints().col(i), has_patch, of_target_list)
                : of_source.mayMiss(inverse * scorer.targetPoints().col(i - num_source),
+                                   has_patch,
                                    of_source_list)));
     }
     unseen.push_back(std::move(of_mode));
