@@ -62,6 +62,12 @@ check(const PriorOptions& prior, Preset preset, Checker& checker)
                   "prior.mean",
                   prior.mean.transpose(),
                   "six finite numbers (m, rad)");
+  checker.require(prior.frame == PriorFrame::Automatic ||
+                      prior.frame == PriorFrame::Origin ||
+                      prior.frame == PriorFrame::SourceCentroid,
+                  "prior.frame",
+                  static_cast<int>(prior.frame),
+                  "one of PriorFrame");
 }
 
 void

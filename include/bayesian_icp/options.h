@@ -85,8 +85,8 @@ struct ChainOptions {
   int num_draws = 2000;
   /** Seed of all random numbers; chain i uses stream i of this seed. */
   std::uint64_t seed = 1;
-  /** Number of OpenMP threads, at most 1024; 0 means OpenMP's default. Draws do not
-   * depend on it. */
+  /** Number of OpenMP threads; above 1024 it is 1024, and 0 means OpenMP's default.
+   * Draws do not depend on it. */
   int num_threads = 0;
 
   /** \brief Number of draws that chain \p chain keeps. */

@@ -13,8 +13,9 @@ namespace {
  * errors of 1e-15 become 1e-5 of the inverse. */
 constexpr double min_correlation_eigenvalue = 1e-10;
 
-/** Of correlations, for rounding errors; covariances of draws are exactly symmetric. */
-constexpr double max_asymmetry = 1e-9;
+/** Of correlations and of their eigenvalues, for rounding errors; covariances of draws
+ * are exactly symmetric. */
+constexpr double rounding_error = 1e-9;
 
 constexpr const char* frame_characters =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./";
@@ -27,6 +28,17 @@ isGood(Status status)
   return status == Status::Ok || status == Status::Doubtful;
 }
 
+/** Of the matrix of correlations. \param[in] scale standard deviations */
+double
+leastEigenvalue(const Matrix6d& covariance, const Vector6d& scale)
+{
+  const Vector6d inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 1.0);
+  const Matrix6d correlation = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(correlation,
+                                                       Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0];
+}
+
 std::string
 complaintAboutNumbers(const Matrix6d& covariance)
 {
@@ -36,8 +48,10 @@ complaintAboutNumbers(const Matrix6d& covariance)
     return "a variance is negative";
   const Vector6d scale = covariance.diagonal().cwiseSqrt();
   const Matrix6d asymmetry = (covariance - covariance.transpose()).cwiseAbs();
-  if ((asymmetry.array() > max_asymmetry * (scale * scale.transpose()).array()).any())
+  if ((asymmetry.array() > rounding_error * (scale * scale.transpose()).array()).any())
     return "the covariance is not symmetric";
+  if (leastEigenvalue(covariance, scale) < -rounding_error)
+    return "the covariance has a negative eigenvalue";
   return "";
 }
 
@@ -50,11 +64,7 @@ complaintAboutInverse(const Matrix6d& covariance)
   const Vector6d scale = covariance.diagonal().cwiseSqrt();
   if ((scale.array() == 0.0).any())
     return "the covariance is singular: a variance is zero";
-  const Matrix6d correlation = scale.cwiseInverse().asDiagonal() * covariance *
-                               scale.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(correlation,
-                                                       Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0] >= min_correlation_eigenvalue
+  return leastEigenvalue(covariance, scale) >= min_correlation_eigenvalue
              ? ""
              : "the covariance is singular or nearly so";
 }

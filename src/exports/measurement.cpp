@@ -132,6 +132,11 @@ withoutPrior(const PoseEstimate& posterior, const Prior& prior)
   // information of the clouds.
   const PrincipalAxes shares(
       covariance, near_mean.precision + least_precision * Matrix6d::Identity());
+  // But for rounding errors.
+  if (shares.variances.minCoeff() < -1e-9) {
+    measurement.estimate.status = Status::InvalidInput;
+    return measurement;
+  }
   const Matrix6d& directions = shares.axes;
   Vector6d variances, gains;
   measurement.num_unmeasured = 0;

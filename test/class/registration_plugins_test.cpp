@@ -391,6 +391,26 @@ TEST_F(PluginTest, TheMeanStaysWithinWhatAPlanarEstimationAllows)
   EXPECT_LT((T - expected).norm(), 1e-5f);
 }
 
+TEST_F(PluginTest, NoPosteriorIsLeftWhereTheEstimationThrowsOnTheWayToTheMean)
+{
+  using namespace registration;
+  struct Throwing : TransformationEstimationSVD<PointXYZ, PointXYZ> {
+    void
+    estimateRigidTransformation(const PointCloud<PointXYZ>& /* source */,
+                                const PointCloud<PointXYZ>& /* target */,
+                                Matrix4& /* transformation */) const override
+    {
+      throw std::runtime_error("of the user");
+    }
+  };
+  icp.setTransformationEstimation(pcl::shared_ptr<Throwing>(new Throwing));
+  icp.setUseMeanAsFinalTransformation(true);
+  EXPECT_THROW(align(icp), std::runtime_error);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::NotRun);
+  EXPECT_EQ(icp.getSamples().rows(), 0);
+}
+
 TEST(Plugins, TheMeanIsTheFinalTransformationOfAPointToPlaneEstimation)
 {
   using namespace registration;

@@ -228,9 +228,11 @@ TEST_F(Posterior, DoesNotDependOnHowTargetPointsAreTooFar)
 TEST_F(Posterior, IsEmptyForAGuessThatIsNotRigid)
 {
   Eigen::Matrix4f scaled = Eigen::Matrix4f::Identity(), mirrored = scaled;
+  Eigen::Matrix4f projective = scaled;
+  projective(3, 0) = 0.1f;
   scaled.topLeftCorner<3, 3>() *= 0.9f;
   mirrored(2, 2) = -1.0f;
-  for (const auto& guess : {scaled, mirrored}) {
+  for (const auto& guess : {scaled, mirrored, projective}) {
     align(icp, guess);
     EXPECT_EQ(icp.getSummary().status, bayesian_icp::Status::InvalidInput);
     EXPECT_EQ(icp.getSamples().rows(), 0);

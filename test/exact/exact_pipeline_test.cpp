@@ -200,6 +200,7 @@ TEST(Exact, OptionsAreChecked)
     EXPECT_NE(complaintOf(set).find(field), std::string::npos) << field;
   };
   expect("preset is 7", [](Options& o) { o.preset = static_cast<Preset>(7); });
+  expect("frame is 9", [](Options& o) { o.prior.frame = static_cast<PriorFrame>(9); });
   expect("variance[y]", [](Options& o) { o.prior.variance[1] = 1e-25; });
   expect("kernel_width", [](Options& o) { o.exact.residual.kernel_width = 0.0; });
   expect("max_distance", [](Options& o) { o.exact.residual.max_distance = -1.0; });

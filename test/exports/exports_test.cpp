@@ -9,6 +9,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
 #include <functional>
 
 using namespace bayesian_icp;
@@ -176,6 +177,13 @@ TEST(Exports, WhatIsNotKnownIsRefused)
   bad = good;
   bad.covariances[3](0, 1) += bad.covariances[3](0, 0);
   refused(bad, {});
+
+  bad = good;
+  for (auto& covariance : bad.covariances)
+    covariance(0, 1) = covariance(1, 0) =
+        2.0 * std::sqrt(covariance(0, 0) * covariance(1, 1));
+  refused(bad, {});
+  EXPECT_THROW(rosYaml(bad, {}), std::invalid_argument) << "a negative eigenvalue";
 }
 
 TEST(Exports, UnreliablePosteriorsNeedToBeAskedFor)

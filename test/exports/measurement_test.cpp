@@ -141,6 +141,17 @@ TEST(WithoutPrior, APriorThatIsNotFiniteIsAnInvalidInput)
             Status::InvalidInput);
 }
 
+TEST(WithoutPrior, ACovarianceWithANegativeEigenvalueIsAnInvalidInput)
+{
+  Matrix6d covariance = 1e-4 * Matrix6d::Identity();
+  covariance(0, 1) = covariance(1, 0) = 2e-4;
+  PoseEstimate posterior =
+      estimateOf(some_pose, covariance, CovarianceConvention::RightSE3);
+  posterior.status = Status::Ok;
+  const Prior prior(some_pose, Vector6d::Ones());
+  EXPECT_EQ(withoutPrior(posterior, prior).estimate.status, Status::InvalidInput);
+}
+
 TEST(WithoutPrior, AnInfinitePriorChangesNothing)
 {
   const PoseEstimate posterior =

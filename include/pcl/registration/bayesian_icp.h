@@ -41,11 +41,12 @@ namespace pcl {
  *
  * Unlike pcl::IterativeClosestPoint of PCL 1.13, this class skips source points that
  * are not finite (or further out than 1e18 m) and keeps them in the output. The
- * estimate uses only the given indices (the output is the whole cloud, as in PCL; ICP
- * of PCL registers the whole cloud). A source or target that is empty, null or not set,
- * and indices outside their cloud, give Status::InvalidInput. Exceptions of callbacks
- * and plug-ins, and std::bad_alloc, pass through align(): then hasConverged() is false
- * and the status NotRun. As in PCL, use one object from one thread at a time.
+ * estimate uses only the given indices; an empty list of them is the whole cloud (the
+ * output is the whole cloud, as in PCL; ICP of PCL registers the whole cloud). A source
+ * or target that is empty, null or not set, and indices outside their cloud, give
+ * Status::InvalidInput. Exceptions of callbacks and plug-ins, and std::bad_alloc, pass
+ * through align(): then hasConverged() is false and the status NotRun. As in PCL, use
+ * one object from one thread at a time.
  *
  * \tparam Scalar float or double, type of the transformations
  * \ingroup registration
@@ -110,7 +111,8 @@ public:
     return (estimate_.summary.mean);
   }
 
-  /** \brief T_target_source of getMean(). */
+  /** \brief T_target_source of getMean(). Where Scalar is float, its rounding moves
+   * points by 1e-7 of their distance from the origin: getMean() is in double. */
   Matrix4
   getMeanTransformation() const
   {

@@ -83,15 +83,16 @@ isDefaultTree(const search::KdTree<PointT>& tree)
           isDefault(*tree.getPointRepresentation()));
 }
 
-/** Whether a transformation is a rotation and a translation, to the accuracy of float.
- */
+/** Whether a transformation is a rotation and a translation, to the accuracy of float,
+ * in homogeneous coordinates. */
 inline bool
 isRigid(const Eigen::Matrix4d& transformation)
 {
   constexpr double tolerance = 1e-3;
   const Eigen::Matrix3d R = transformation.topLeftCorner<3, 3>();
   return ((R.transpose() * R - Eigen::Matrix3d::Identity()).norm() < tolerance &&
-          R.determinant() > 0.0);
+          R.determinant() > 0.0 &&
+          (transformation.row(3) - Eigen::RowVector4d::Unit(3)).norm() < tolerance);
 }
 
 /** Whether \p indices is 0, 1, ..., num_points - 1. */
@@ -477,6 +478,7 @@ protected:
           registerUsable(source, source == whole ? output : scratch, guess);
     }
     catch (...) { // of a callback, a plug-in or the memory
+      forgetResult();
       converged_ = false;
       throw;
     }
