@@ -9,9 +9,25 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 
 namespace bayesian_icp::app {
+
+/** \brief Where the final transformation is in the posterior. */
+struct FinalPlace {
+  /** Whether its squared Mahalanobis distance from the posterior mean is below the
+   * 99.99 % quantile of chi-square with 6 degrees of freedom. */
+  bool is_within_posterior = false;
+  /** Root mean square distance of the source's points that it moves from where the
+   * posterior mean moves them [m]. */
+  double distance_from_mean = 0.0;
+};
+
+/** \brief Compare the final transformation of \p run with its posterior.
+ * \return nothing unless the status is Ok or Doubtful */
+std::optional<FinalPlace>
+finalPlace(const Run& run);
 
 /** \brief The document as text. Lengths are in metres, angles in radians; numbers that
  * are not finite are null. */

@@ -3,6 +3,7 @@
 #include "io/cloud_file.h"
 #include "io/coordinates.h"
 #include "io/numbers.h"
+#include "register/posterior_files.h"
 
 #include <bayesian_icp/pose.h>
 

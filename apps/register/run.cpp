@@ -9,10 +9,7 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 namespace bayesian_icp::app {
@@ -178,41 +175,7 @@ registerNormalized(const Eigen::Matrix3Xf& source,
   return result;
 }
 
-/** Root mean square distance between the finite points moved by \p a and by \p b [m].
- */
-double
-distanceBetween(const Eigen::Matrix4d& a,
-                const Eigen::Matrix4d& b,
-                const io::CloudFile& cloud)
-{
-  const Eigen::Matrix<double, 3, 4> difference = (a - b).topRows<3>();
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < cloud.points.cols(); ++i) {
-    const Eigen::Vector3d point = cloud.points.col(i).cast<double>();
-    if (point.allFinite())
-      sum += (difference * point.homogeneous()).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(cloud.num_finite));
-}
-
 } // namespace
-
-std::optional<FinalPlace>
-finalPlace(const Run& run)
-{
-  constexpr double excluded = 27.9; // chi-square, 6 degrees of freedom, 99.99 %
-  const RegistrationResult& result = run.result;
-  const Summary& summary = result.summary;
-  if (summary.status != Status::Ok && summary.status != Status::Doubtful)
-    return std::nullopt;
-  const Vector6d error = poseError(bayesian_icp::poseOf(result.final_matrix),
-                                   summary.mean,
-                                   CovarianceConvention::RightSE3);
-  const Matrix6d& covariance = summary.covariance(CovarianceConvention::RightSE3);
-  return FinalPlace{
-      error.dot(covariance.ldlt().solve(error)) < excluded,
-      distanceBetween(result.final_matrix, matrixOf(summary.mean), run.source)};
-}
 
 Run
 readRun(const std::string& source_file,

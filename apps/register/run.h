@@ -13,7 +13,6 @@
 
 #include <functional>
 #include <limits>
-#include <optional>
 #include <vector>
 
 namespace bayesian_icp::app {
@@ -50,21 +49,6 @@ struct Run {
   RegistrationResult result;
   double reading_seconds = 0.0;
 };
-
-/** \brief Where the final transformation is in the posterior. */
-struct FinalPlace {
-  /** Whether its squared Mahalanobis distance from the posterior mean is below the
-   * 99.99 % quantile of chi-square with 6 degrees of freedom. */
-  bool is_within_posterior = false;
-  /** Root mean square distance of the source's points that it moves from where the
-   * posterior mean moves them [m]. */
-  double distance_from_mean = 0.0;
-};
-
-/** \brief Compare the final transformation of \p run with its posterior.
- * \return nothing unless the status is Ok or Doubtful */
-std::optional<FinalPlace>
-finalPlace(const Run& run);
 
 /** \brief Read both clouds, and scale the settings to the source where asked for.
  * \throws io::FileError */
