@@ -255,10 +255,11 @@ leastInformation(const Matrix6d& steps, const CalibratedEstimate& e)
 void
 debit(const Secants& secants, const Matrix6d& J, CalibratedEstimate& e)
 {
+  const Vector6d least = leastInformation(secants.steps, e);
   e.score_covariance = J;
   for (int pass = 0; pass < 2; ++pass) {
-    const DebitedInformation debited = debitedInformation(
-        secants, e.score_covariance, leastInformation(secants.steps, e));
+    const DebitedInformation debited =
+        debitedInformation(secants, e.score_covariance, least);
     e.keep = debited.keep;
     e.covariance = (debited.information + e.prior.precision).inverse();
     if (pass == 0)
