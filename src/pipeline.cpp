@@ -70,28 +70,9 @@ estimate(const Eigen::Matrix3Xd& source_points,
     const Eigen::Vector3d translation = prior.deviation(pose).head<3>();
     return (translation.cwiseAbs().array() > limit.array()).any();
   };
-  if (options.preset == Preset::Exact) {
-    const Eigen::Matrix3Xd sampled_points = thinned(
-        source_points, static_cast<std::size_t>(options.exact.max_source_points));
-    const PoseEnergy energy(sampled_points,
-                            target,
-                            prior,
-                            options.exact.scale.weight(),
-                            options.exact.residual);
-    PosteriorEstimate result = estimateOf(sampleExact(energy,
-                                                      initial_pose,
-                                                      options.exact,
-                                                      options.chains,
-                                                      has_diverged,
-                                                      progress),
-                                          prior);
-    addDoubts(doubtsAbout(energy,
-                          result,
-                          thicknessOf(sampled_points),
-                          options.exact.scale.measurement_sigma),
-              result.summary);
-    return result;
-  }
+  if (options.preset == Preset::Exact)
+    return estimateExact(
+        source_points, target, prior, initial_pose, options, has_diverged, progress);
   return estimateOf(samplePaper(source_points,
                                 search,
                                 prior,
