@@ -10,6 +10,16 @@ namespace bayesian_icp {
 
 namespace {
 
+/** Energy of a point without a match [m^2]: rho(d_max), or 0 without a gate. In the
+ * latter case only a user's rejectors leave points unmatched. */
+double
+unmatchedEnergy(const ResidualOptions& options)
+{
+  if (!std::isfinite(options.max_distance))
+    return 0.0;
+  return robustEnergy(options, options.max_distance * options.max_distance);
+}
+
 /** Rows: the axes about which roll, pitch and yaw turn the moved points. */
 Eigen::Matrix3d
 rotationAxes(const Vector6d& pose)
@@ -120,6 +130,32 @@ addCurvature(const Eigen::Vector3f& arm,
 }
 
 } // namespace
+
+double
+robustEnergy(const ResidualOptions& options, double squared_residual)
+{
+  const double k = options.kernel_width;
+  const bool is_within = squared_residual <= k * k;
+  if (options.kernel == RobustKernel::Huber && !is_within)
+    return k * (std::sqrt(squared_residual) - 0.5 * k);
+  if (options.kernel != RobustKernel::Tukey)
+    return 0.5 * squared_residual;
+  const double rest = is_within ? 1.0 - squared_residual / (k * k) : 0.0;
+  return k * k / 6.0 * (1.0 - rest * rest * rest);
+}
+
+double
+robustWeight(const ResidualOptions& options, double squared_residual)
+{
+  const double k = options.kernel_width;
+  const bool is_within = squared_residual <= k * k;
+  if (options.kernel == RobustKernel::Huber && !is_within)
+    return k / std::sqrt(squared_residual);
+  if (options.kernel != RobustKernel::Tukey)
+    return 1.0;
+  const double rest = is_within ? 1.0 - squared_residual / (k * k) : 0.0;
+  return rest * rest;
+}
 
 PoseEnergy::PoseEnergy(const Eigen::Matrix3Xd& source_points,
                        const Target& target,

@@ -3,12 +3,19 @@
  */
 #pragma once
 
-#include "exact/residual.h"
 #include "search/target.h"
 
 #include <bayesian_icp/prior.h>
 
 namespace bayesian_icp {
+
+/** \brief rho(r) [m^2] of a squared residual r^2 [m^2]. */
+double
+robustEnergy(const ResidualOptions& options, double squared_residual);
+
+/** \brief rho'(r) / r, dimensionless: 1 without a kernel. */
+double
+robustWeight(const ResidualOptions& options, double squared_residual);
 
 /** \brief Buffers of one thread, with what it knows of the points' neighbours. */
 struct EnergyWorkspace {
