@@ -1,12 +1,13 @@
-#include "calibrated/surface/surface_builder.h"
-
+// SurfaceModel::build(), and its stages.
 #include "calibrated/median.h"
 #include "calibrated/surface/even_choice.h"
 #include "calibrated/surface/patch_fit.h"
+#include "calibrated/surface/surface_model.h"
 #include "threads/first_exception.h"
 #include "threads/num_threads.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -75,230 +76,287 @@ isQuadric(const SurfacePatch& patch)
   return patch.kind == PatchKind::Quadric;
 }
 
+/** Fits a patch to every chosen point of a target, and corrects patches with the help
+ * of their neighbours. Call each stage once, in the order below. All stages are
+ * parallel and give the same bits for every number of threads. */
+class SurfaceBuilder {
+public:
+  /** \param[in] points 3 x n, finite, relative to the model's origin [m]; must outlive
+   *            this object
+   * \param[in] plane_normal of fitPatch() */
+  SurfaceBuilder(const Matrix3Xf& points,
+                 const std::optional<Vector3d>& plane_normal,
+                 const SurfaceModelOptions& options,
+                 int num_threads)
+  : plane_normal_(plane_normal)
+  , options_(options)
+  , num_threads_(numThreadsFor(num_threads, points.cols() / share_size))
+  , points_(points)
+  , columns_(evenChoice(points, options.max_patches, ChoiceStream::Patches))
+  , patch_of_(static_cast<std::size_t>(points.cols()), KdTree::none)
+  , neighbors_(columns_.size())
+  , spacings_(columns_.size())
+  {
+    patches.resize(columns_.size());
+    for (std::size_t j = 0; j < columns_.size(); ++j)
+      patch_of_[static_cast<std::size_t>(columns_[j])] = static_cast<std::uint32_t>(j);
+  }
+
+  void
+  fitPatches()
+  {
+    const PointNeighbors cloud(points_);
+    const auto num_points = static_cast<double>(points_.cols());
+    const double max_radius =
+        spreadOf(points_) *
+        std::max(max_radius_to_extent,
+                 max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
+    if (!plane_normal_)
+      adaptToExactCloud(cloud, max_radius);
+    const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
+      const std::uint32_t patch = patch_of_[point];
+      if (patch == KdTree::none)
+        return;
+      patches[patch] = fitPatch(cloud,
+                                points_.col(point),
+                                plane_normal_ ? &*plane_normal_ : nullptr,
+                                max_radius,
+                                options_,
+                                workspace,
+                                spacings_[patch]);
+      noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
+    };
+    forEachIndex<PatchFitWorkspace>(cloud.alongTree(), num_threads_, fitAt);
+    completeNeighbors();
+  }
+
+  /** Pool the noise of every quadric over the quadrics around it. */
+  void
+  poolNoise()
+  {
+    std::vector<double> noise(patches.size());
+    const auto count = static_cast<std::ptrdiff_t>(patches.size());
+#pragma omp parallel for num_threads(num_threads_) schedule(static)
+    for (std::ptrdiff_t j = 0; j < count; ++j) {
+      const auto patch = static_cast<std::size_t>(j);
+      noise[patch] = isQuadric(patches[patch])
+                         ? pooledNoise(patch)
+                         : (is_exact_ ? edge_doubt : 1.0) * patches[patch].sigma;
+    }
+    std::vector<double> of_quadrics;
+    for (std::size_t j = 0; j < patches.size(); ++j)
+      if (isQuadric(patches[j]))
+        of_quadrics.push_back(noise[j]);
+    const bool are_few = static_cast<double>(of_quadrics.size()) <
+                         min_share_of_quadrics * static_cast<double>(noise.size());
+    median_sigma = medianOf(are_few ? noise : of_quadrics);
+    const double least =
+        std::max({min_sigma_to_median * median_sigma,
+                  min_sigma_to_spacing * spacing(),
+                  static_cast<double>(std::numeric_limits<float>::min())});
+    for (std::size_t j = 0; j < patches.size(); ++j)
+      patches[j].sigma = std::max(noise[j], least);
+    median_sigma = std::max(median_sigma, least);
+  }
+
+  /** Let each point without a quadric take over the quadric of a neighbour on which it
+   * lies. */
+  void
+  takeOver()
+  {
+    std::vector<std::uint32_t> donors(patches.size(), KdTree::none);
+    const auto count = static_cast<std::ptrdiff_t>(patches.size());
+#pragma omp parallel for num_threads(num_threads_) schedule(dynamic, 1024)
+    for (std::ptrdiff_t j = 0; j < count; ++j)
+      if (!isQuadric(patches[static_cast<std::size_t>(j)]))
+        donors[static_cast<std::size_t>(j)] = donorOf(static_cast<std::size_t>(j));
+    // Donors are quadrics, so none of them is overwritten.
+    for (std::size_t j = 0; j < patches.size(); ++j)
+      if (donors[j] != KdTree::none) {
+        const Vector3d centre = patches[j].centre;
+        patches[j] = patches[donors[j]];
+        patches[j].centre = centre;
+      }
+  }
+
+  /** The points of the patches, projected to their surfaces. */
+  Matrix3Xf
+  projectedPoints() const
+  {
+    Matrix3Xf projected(3, static_cast<Index>(patches.size()));
+    for (std::size_t j = 0; j < patches.size(); ++j) {
+      const SurfaceOffset offset = offsetFrom(patches[j], patches[j].centre);
+      projected.col(static_cast<Index>(j)) =
+          (patches[j].centre - offset.distance * offset.normal).cast<float>();
+    }
+    return projected;
+  }
+
+  /** Median distance of a point to its nearest neighbour [m]. */
+  double
+  spacing() const
+  {
+    return medianOf(spacings_);
+  }
+
+  std::vector<SurfacePatch> patches;
+  /** Median of the pooled noise [m]. */
+  double median_sigma = 0.0;
+
+private:
+  /** Number of patches over which noise is pooled, and among which a point without a
+   * quadric looks for one to take over. */
+  static constexpr std::size_t num_nearest = 12;
+
+  /** The nearest patches of a patch; the first is the patch itself. */
+  struct NearestPatches {
+    std::array<std::uint32_t, num_nearest> patches;
+    std::uint32_t count = 0;
+  };
+
+  /** Find out whether the cloud is exact from the neighbourhoods of a few points. In an
+   * exact cloud, a neighbourhood that is thick is at an edge, and does not grow. */
+  void
+  adaptToExactCloud(const PointNeighbors& cloud, double max_radius)
+  {
+    SurfaceModelOptions exact = options_;
+    exact.min_radius_to_noise = 0.0;
+    PatchFitWorkspace workspace;
+    double spacing;
+    const std::size_t step =
+        std::max<std::size_t>(1, columns_.size() / num_exact_trials);
+    double num_trials = 0.0, num_exact = 0.0;
+    for (std::size_t j = 0; j < columns_.size(); j += step, ++num_trials)
+      num_exact += isExactQuadric(fitPatch(cloud,
+                                           points_.col(columns_[j]),
+                                           nullptr,
+                                           max_radius,
+                                           exact,
+                                           workspace,
+                                           spacing));
+    is_exact_ = num_exact > min_share_of_exact * num_trials;
+    if (!is_exact_)
+      return;
+    options_ = exact;
+    options_.num_neighbors = options_.num_exact_neighbors;
+  }
+
+  /** \param[in] points nearest first */
+  void
+  noteNeighbors(const std::vector<std::uint32_t>& points, NearestPatches& nearest) const
+  {
+    for (const std::uint32_t point : points) {
+      if (nearest.count == num_nearest)
+        return;
+      if (patch_of_[point] != KdTree::none)
+        nearest.patches[nearest.count++] = patch_of_[point];
+    }
+  }
+
+  /** Searches where a neighbourhood had too few points with a patch. */
+  void
+  completeNeighbors()
+  {
+    const std::size_t wanted = std::min(num_nearest, patches.size());
+    const auto hasEnough = [wanted](const NearestPatches& nearest) {
+      return nearest.count == wanted;
+    };
+    if (std::all_of(neighbors_.begin(), neighbors_.end(), hasEnough))
+      return;
+    Matrix3Xf centre_points(3, static_cast<Index>(columns_.size()));
+    for (std::size_t j = 0; j < columns_.size(); ++j)
+      centre_points.col(static_cast<Index>(j)) = points_.col(columns_[j]);
+    const PointNeighbors centres(centre_points);
+    const auto searchAt = [&](std::uint32_t patch, NeighborList& nearest) {
+      if (hasEnough(neighbors_[patch]))
+        return;
+      centres.find(centre_points.col(patch), num_nearest, nearest);
+      neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
+      std::copy(nearest.indices.begin(),
+                nearest.indices.end(),
+                neighbors_[patch].patches.begin());
+    };
+    forEachIndex<NeighborList>(centres.alongTree(), num_threads_, searchAt);
+  }
+
+  /** Root mean square of the noise of quadrics around a patch, or its own. */
+  double
+  pooledNoise(std::size_t patch) const
+  {
+    const NearestPatches& nearest = neighbors_[patch];
+    double sum = 0.0;
+    int used = 0;
+    for (std::size_t k = 0; k < nearest.count; ++k) {
+      const SurfacePatch& neighbor = patches[nearest.patches[k]];
+      if (isQuadric(neighbor)) {
+        sum += neighbor.sigma * neighbor.sigma;
+        ++used;
+      }
+    }
+    return used > 0 ? std::sqrt(sum / used) : patches[patch].sigma;
+  }
+
+  /** The quadric on which a point lies, or KdTree::none. */
+  std::uint32_t
+  donorOf(std::size_t patch) const
+  {
+    std::uint32_t best = KdTree::none;
+    double best_rank = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < neighbors_[patch].count; ++k) {
+      const std::uint32_t index = neighbors_[patch].patches[k];
+      const SurfacePatch& donor = patches[index];
+      if (!isQuadric(donor))
+        continue;
+      const SurfaceOffset offset = offsetFrom(donor, patches[patch].centre);
+      const double residual = std::abs(offset.distance) / donor.sigma;
+      if (residual > max_takeover_residual ||
+          offset.in_plane > options_.takeover_radius * donor.radius)
+        continue;
+      const double rank = offset.in_plane / donor.radius + 0.2 * residual;
+      if (rank < best_rank) {
+        best_rank = rank;
+        best = index;
+      }
+    }
+    return best;
+  }
+
+  const std::optional<Vector3d>& plane_normal_;
+  SurfaceModelOptions options_;
+  int num_threads_;
+  const Matrix3Xf& points_;
+  /** The point of each patch. */
+  std::vector<Index> columns_;
+  /** The patch of each point, or KdTree::none. */
+  std::vector<std::uint32_t> patch_of_;
+  std::vector<NearestPatches> neighbors_;
+  std::vector<double> spacings_;
+  bool is_exact_ = false;
+};
+
 } // namespace
 
-SurfaceBuilder::SurfaceBuilder(const Matrix3Xf& points,
-                               const std::optional<Vector3d>& plane_normal,
-                               const SurfaceModelOptions& options,
-                               int num_threads)
-: plane_normal_(plane_normal)
-, options_(options)
-, num_threads_(numThreadsFor(num_threads, points.cols() / share_size))
-, points_(points)
-, columns_(evenChoice(points, options.max_patches, ChoiceStream::Patches))
-, patch_of_(static_cast<std::size_t>(points.cols()), KdTree::none)
-, patches_(columns_.size())
-, neighbors_(columns_.size())
-, spacings_(columns_.size())
-{
-  for (std::size_t j = 0; j < columns_.size(); ++j)
-    patch_of_[static_cast<std::size_t>(columns_[j])] = static_cast<std::uint32_t>(j);
-}
-
 void
-SurfaceBuilder::fitPatches()
+SurfaceModel::build(const Matrix3Xf& points,
+                    const SurfaceModelOptions& options,
+                    int num_threads)
 {
-  const PointNeighbors cloud(points_);
-  const auto num_points = static_cast<double>(points_.cols());
-  const double max_radius =
-      spreadOf(points_) *
-      std::max(max_radius_to_extent,
-               max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
-  if (!plane_normal_)
-    adaptToExactCloud(cloud, max_radius);
-  const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
-    const std::uint32_t patch = patch_of_[point];
-    if (patch == KdTree::none)
-      return;
-    patches_[patch] = fitPatch(cloud,
-                               points_.col(point),
-                               plane_normal_ ? &*plane_normal_ : nullptr,
-                               max_radius,
-                               options_,
-                               workspace,
-                               spacings_[patch]);
-    noteNeighbors(workspace.nearest.indices, neighbors_[patch]);
-  };
-  forEachIndex<PatchFitWorkspace>(cloud.alongTree(), num_threads_, fitAt);
-  completeNeighbors();
-}
-
-/** Find out whether the cloud is exact from the neighbourhoods of a few points. In an
- * exact cloud, a neighbourhood that is thick is at an edge, and does not grow. */
-void
-SurfaceBuilder::adaptToExactCloud(const PointNeighbors& cloud, double max_radius)
-{
-  SurfaceModelOptions exact = options_;
-  exact.min_radius_to_noise = 0.0;
-  PatchFitWorkspace workspace;
-  double spacing;
-  const std::size_t step = std::max<std::size_t>(1, columns_.size() / num_exact_trials);
-  double num_trials = 0.0, num_exact = 0.0;
-  for (std::size_t j = 0; j < columns_.size(); j += step, ++num_trials)
-    num_exact += isExactQuadric(fitPatch(cloud,
-                                         points_.col(columns_[j]),
-                                         nullptr,
-                                         max_radius,
-                                         exact,
-                                         workspace,
-                                         spacing));
-  is_exact_ = num_exact > min_share_of_exact * num_trials;
-  if (!is_exact_)
-    return;
-  options_ = exact;
-  options_.num_neighbors = options_.num_exact_neighbors;
-}
-
-/** \param[in] points nearest first */
-void
-SurfaceBuilder::noteNeighbors(const std::vector<std::uint32_t>& points,
-                              NearestPatches& nearest) const
-{
-  for (const std::uint32_t point : points) {
-    if (nearest.count == num_nearest)
-      return;
-    if (patch_of_[point] != KdTree::none)
-      nearest.patches[nearest.count++] = patch_of_[point];
-  }
-}
-
-/** Searches where a neighbourhood had too few points with a patch. */
-void
-SurfaceBuilder::completeNeighbors()
-{
-  const std::size_t wanted = std::min(num_nearest, patches_.size());
-  const auto hasEnough = [wanted](const NearestPatches& nearest) {
-    return nearest.count == wanted;
-  };
-  if (std::all_of(neighbors_.begin(), neighbors_.end(), hasEnough))
-    return;
-  Matrix3Xf centre_points(3, static_cast<Index>(columns_.size()));
-  for (std::size_t j = 0; j < columns_.size(); ++j)
-    centre_points.col(static_cast<Index>(j)) = points_.col(columns_[j]);
-  const PointNeighbors centres(centre_points);
-  const auto searchAt = [&](std::uint32_t patch, NeighborList& nearest) {
-    if (hasEnough(neighbors_[patch]))
-      return;
-    centres.find(centre_points.col(patch), num_nearest, nearest);
-    neighbors_[patch].count = static_cast<std::uint32_t>(nearest.indices.size());
-    std::copy(nearest.indices.begin(),
-              nearest.indices.end(),
-              neighbors_[patch].patches.begin());
-  };
-  forEachIndex<NeighborList>(centres.alongTree(), num_threads_, searchAt);
-}
-
-/** Root mean square of the noise of quadrics around a patch, its own if there is none.
- */
-double
-SurfaceBuilder::pooledNoise(std::size_t patch) const
-{
-  const NearestPatches& nearest = neighbors_[patch];
-  double sum = 0.0;
-  int used = 0;
-  for (std::size_t k = 0; k < nearest.count; ++k) {
-    const SurfacePatch& neighbor = patches_[nearest.patches[k]];
-    if (isQuadric(neighbor)) {
-      sum += neighbor.sigma * neighbor.sigma;
-      ++used;
-    }
-  }
-  return used > 0 ? std::sqrt(sum / used) : patches_[patch].sigma;
-}
-
-void
-SurfaceBuilder::poolNoise()
-{
-  std::vector<double> noise(patches_.size());
-  const auto count = static_cast<std::ptrdiff_t>(patches_.size());
-#pragma omp parallel for num_threads(num_threads_) schedule(static)
-  for (std::ptrdiff_t j = 0; j < count; ++j) {
-    const auto patch = static_cast<std::size_t>(j);
-    noise[patch] = isQuadric(patches_[patch])
-                       ? pooledNoise(patch)
-                       : (is_exact_ ? edge_doubt : 1.0) * patches_[patch].sigma;
-  }
-  std::vector<double> of_quadrics;
-  for (std::size_t j = 0; j < patches_.size(); ++j)
-    if (isQuadric(patches_[j]))
-      of_quadrics.push_back(noise[j]);
-  const bool are_few = static_cast<double>(of_quadrics.size()) <
-                       min_share_of_quadrics * static_cast<double>(noise.size());
-  median_sigma_ = medianOf(are_few ? noise : of_quadrics);
-  const double least =
-      std::max({min_sigma_to_median * median_sigma_,
-                min_sigma_to_spacing * spacing(),
-                static_cast<double>(std::numeric_limits<float>::min())});
-  for (std::size_t j = 0; j < patches_.size(); ++j)
-    patches_[j].sigma = std::max(noise[j], least);
-  median_sigma_ = std::max(median_sigma_, least);
-}
-
-void
-SurfaceBuilder::takeOver()
-{
-  std::vector<std::uint32_t> donors(patches_.size(), KdTree::none);
-  const auto count = static_cast<std::ptrdiff_t>(patches_.size());
-#pragma omp parallel for num_threads(num_threads_) schedule(dynamic, 1024)
-  for (std::ptrdiff_t j = 0; j < count; ++j)
-    if (!isQuadric(patches_[static_cast<std::size_t>(j)]))
-      donors[static_cast<std::size_t>(j)] = donorOf(static_cast<std::size_t>(j));
-  // Donors are quadrics, so none of them is overwritten.
-  for (std::size_t j = 0; j < patches_.size(); ++j)
-    if (donors[j] != KdTree::none) {
-      const Vector3d centre = patches_[j].centre;
-      patches_[j] = patches_[donors[j]];
-      patches_[j].centre = centre;
-    }
-}
-
-/** The quadric on which a point lies, or KdTree::none. */
-std::uint32_t
-SurfaceBuilder::donorOf(std::size_t patch) const
-{
-  std::uint32_t best = KdTree::none;
-  double best_rank = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < neighbors_[patch].count; ++k) {
-    const std::uint32_t index = neighbors_[patch].patches[k];
-    const SurfacePatch& donor = patches_[index];
-    if (!isQuadric(donor))
-      continue;
-    const SurfaceOffset offset = offsetFrom(donor, patches_[patch].centre);
-    const double residual = std::abs(offset.distance) / donor.sigma;
-    if (residual > max_takeover_residual ||
-        offset.in_plane > options_.takeover_radius * donor.radius)
-      continue;
-    const double rank = offset.in_plane / donor.radius + 0.2 * residual;
-    if (rank < best_rank) {
-      best_rank = rank;
-      best = index;
-    }
-  }
-  return best;
-}
-
-Matrix3Xf
-SurfaceBuilder::projectedPoints() const
-{
-  Matrix3Xf projected(3, static_cast<Index>(patches_.size()));
-  for (std::size_t j = 0; j < patches_.size(); ++j) {
-    const SurfaceOffset offset = offsetFrom(patches_[j], patches_[j].centre);
-    projected.col(static_cast<Index>(j)) =
-        (patches_[j].centre - offset.distance * offset.normal).cast<float>();
-  }
-  return projected;
-}
-
-std::vector<SurfacePatch>
-SurfaceBuilder::takePatches()
-{
-  return std::move(patches_);
-}
-
-double
-SurfaceBuilder::spacing() const
-{
-  return medianOf(spacings_);
+  SurfaceBuilder builder(points, plane_normal_, options, num_threads);
+  builder.fitPatches();
+  builder.poolNoise();
+  if (options.takeover_radius > 0.0)
+    builder.takeOver();
+  tree_ = KdTree(builder.projectedPoints(), num_threads);
+  median_sigma_ = builder.median_sigma;
+  spacing_ = builder.spacing();
+  patches_ = std::move(builder.patches);
+  std::vector<double> radii;
+  for (const SurfacePatch& patch : patches_)
+    if (patch.isUsable())
+      radii.push_back(patch.radius);
+  usable_fraction_ =
+      static_cast<double>(radii.size()) / static_cast<double>(patches_.size());
+  median_radius_ = medianOf(std::move(radii));
 }
 
 } // namespace bayesian_icp

@@ -1,8 +1,6 @@
 #include "calibrated/surface/surface_model.h"
 
-#include "calibrated/median.h"
 #include "calibrated/surface/even_choice.h"
-#include "calibrated/surface/surface_builder.h"
 #include "search/finite_columns.h"
 
 #include <Eigen/Eigenvalues>
@@ -10,7 +8,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <utility>
 #include <vector>
 
 namespace bayesian_icp {
@@ -137,29 +134,6 @@ SurfaceModel::SurfaceModel(const Matrix3Xd& target_points,
     plane_normal_.reset();
     build(points, options, num_threads);
   }
-}
-
-void
-SurfaceModel::build(const Matrix3Xf& points,
-                    const SurfaceModelOptions& options,
-                    int num_threads)
-{
-  SurfaceBuilder builder(points, plane_normal_, options, num_threads);
-  builder.fitPatches();
-  builder.poolNoise();
-  if (options.takeover_radius > 0.0)
-    builder.takeOver();
-  tree_ = KdTree(builder.projectedPoints(), num_threads);
-  median_sigma_ = builder.medianSigma();
-  spacing_ = builder.spacing();
-  patches_ = builder.takePatches();
-  std::vector<double> radii;
-  for (const SurfacePatch& patch : patches_)
-    if (patch.isUsable())
-      radii.push_back(patch.radius);
-  usable_fraction_ =
-      static_cast<double>(radii.size()) / static_cast<double>(patches_.size());
-  median_radius_ = medianOf(std::move(radii));
 }
 
 } // namespace bayesian_icp
