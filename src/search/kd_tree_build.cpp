@@ -1,13 +1,189 @@
+// Every leaf is a run of 16 points and every subtree a run of 16 * 8^height points;
+// what is left over makes the last leaf, and the last subtree of every height, smaller.
+// So the shape of the tree follows from the number of points alone, and nodes need no
+// pointers.
 #include "search/kd_tree_build.h"
 
-#include "search/kd_tree_arrange.h"
 #include "threads/num_threads.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp {
 namespace kd_tree {
 namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+struct alignas(16) Record {
+  float coordinates[3];
+  std::uint32_t index;
+};
+
+struct Box {
+  float lower[3] = {infinity, infinity, infinity};
+  float upper[3] = {-infinity, -infinity, -infinity};
+
+  void
+  include(const float* lower_corner, const float* upper_corner)
+  {
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], lower_corner[axis]);
+      upper[axis] = std::max(upper[axis], upper_corner[axis]);
+    }
+  }
+};
+
+/** The nodes, or the leaves, of the same depth. */
+struct Level {
+  /** Number of the first one. */
+  std::size_t begin;
+  /** How many there are; they are the first ones of the complete level. */
+  std::size_t size;
+  /** Points below each of them, unless it is the last one. */
+  std::size_t subtree_size;
+};
+
+/** Smallest run of points that gets a task of its own. */
+constexpr std::size_t min_task_size = 8192;
+
+/** Points along an axis, equal coordinates by index: makes the order of the points, and
+ * so the tree, unique. It also puts the smaller index of two equal points to the left
+ * wherever they are separated. */
+struct IsBefore {
+  int axis;
+
+  bool
+  operator()(const Record& a, const Record& b) const
+  {
+    const float x = a.coordinates[axis];
+    const float y = b.coordinates[axis];
+    return (x < y) | ((x == y) & (a.index < b.index));
+  }
+};
+
+/** A record that probably is a little beyond \p nth, on the side where there are more:
+ * the two rounds that select() then needs are over the whole run and half of it. */
+Record
+choosePivot(const Record* first, const Record* nth, const Record* last, IsBefore before)
+{
+  constexpr std::size_t max_sample_size = 64;
+  const auto size = static_cast<std::size_t>(last - first);
+  const std::size_t sample_size = size < 256 ? 7 : size < 2048 ? 16 : max_sample_size;
+  Record sample[max_sample_size];
+  for (std::size_t i = 0; i < sample_size; ++i)
+    sample[i] = first[i * (size / sample_size)];
+  const auto rank = static_cast<std::size_t>(nth - first) * sample_size / size;
+  const std::size_t margin = std::max<std::size_t>(sample_size / 8, 1);
+  const std::size_t pivot = rank < sample_size / 2 ? rank + margin : rank - margin;
+  std::nth_element(sample, sample + pivot, sample + sample_size, before);
+  return sample[pivot];
+}
+
+/** Like std::nth_element, but without a branch that depends on the points: these cannot
+ * be predicted and take most of its time. No two records are equal. */
+void
+select(Record* first, Record* nth, Record* last, IsBefore before)
+{
+  constexpr std::ptrdiff_t small_size = 16;
+  // Pivots may be bad, but rarely that often; std::nth_element has its own guard.
+  constexpr int max_rounds = 64;
+  for (int round = 0; last - first > small_size && round < max_rounds; ++round) {
+    const Record pivot = choosePivot(first, nth, last, before);
+    Record* end_before = first;
+    for (Record* record = first; record != last; ++record) {
+      const Record moved = *record;
+      *record = *end_before;
+      *end_before = moved;
+      end_before += before(moved, pivot);
+    }
+    if (nth < end_before)
+      last = end_before;
+    else
+      first = end_before;
+  }
+  std::nth_element(first, nth, last, before);
+}
+
+int
+widestAxis(const Record* first, const Record* last)
+{
+  Box box;
+  for (; first != last; ++first)
+    box.include(first->coordinates, first->coordinates);
+  int widest = 0;
+  // Halves, because the whole width may overflow.
+  const auto half_width = [&box](int axis) {
+    return box.upper[axis] / 2 - box.lower[axis] / 2;
+  };
+  for (int axis = 1; axis < 3; ++axis)
+    if (half_width(axis) > half_width(widest))
+      widest = axis;
+  return widest;
+}
+
+/** Puts points in the order of the tree. */
+struct Arrangement {
+  Record* records;
+  const std::vector<Level>& levels;
+  /** Of the nodes, by their numbers; they are filled. */
+  Cell* cells;
+
+  /** Order a run such that all subtrees in it are runs.
+   * \param[in] depth of the smallest subtree known to contain the run
+   * \param[in] cell the part of space that belongs to the run */
+  void
+  arrange(Record* first, Record* last, std::size_t depth, Cell cell) const
+  {
+    const auto size = static_cast<std::size_t>(last - first);
+    for (; size <= levels[depth].subtree_size; ++depth) {
+      if (depth + 1 == levels.size()) {
+        std::sort(first, last, [](const Record& a, const Record& b) {
+          return a.index < b.index;
+        });
+        return;
+      }
+      const auto place = static_cast<std::size_t>(first - records);
+      cells[levels[depth].begin + place / levels[depth].subtree_size] = cell;
+    }
+    const std::size_t child_size = levels[depth].subtree_size;
+    const std::size_t num_children = (size + child_size - 1) / child_size;
+    Record* middle = first + child_size * ((num_children + 1) / 2);
+    const int axis = widestAxis(first, last);
+    select(first, middle, last, IsBefore{axis});
+    Cell left = cell;
+    left.upper[axis] = middle->coordinates[axis];
+    cell.lower[axis] = middle->coordinates[axis];
+    if (size > min_task_size) {
+#pragma omp task
+      arrange(first, middle, depth, left);
+    }
+    else {
+      arrange(first, middle, depth, left);
+    }
+    arrange(middle, last, depth, cell);
+  }
+};
+
+/** The levels from the root to the leaves of a tree of \p num_points points. */
+std::vector<Level>
+levelsOf(std::size_t num_points)
+{
+  const std::size_t num_leaves =
+      std::max<std::size_t>((num_points + leaf_size - 1) / leaf_size, 1);
+  std::size_t depth = 0;
+  for (std::size_t capacity = 1; capacity < num_leaves; capacity *= fan_out)
+    ++depth;
+  std::vector<Level> levels(depth + 1, {0, num_leaves, leaf_size});
+  for (std::size_t d = depth; d > 0; --d) {
+    levels[d - 1].size = (levels[d].size + fan_out - 1) / fan_out;
+    levels[d - 1].subtree_size = fan_out * levels[d].subtree_size;
+  }
+  for (std::size_t d = 1; d <= depth; ++d)
+    levels[d].begin = fan_out * levels[d - 1].begin + 1;
+  return levels;
+}
 
 /** Work of some 5 ms. For less, waking a thread may cost more than it saves, far more
  * if other programs keep the cores busy. */
@@ -158,7 +334,12 @@ build(const float* points,
     storage.nodes.resize(lowest.begin + lowest.size);
     storage.cells.resize(storage.nodes.size());
   }
-  arrange(records, levels, storage.cells.data(), num_threads);
+  const Arrangement arrangement{records.data(), levels, storage.cells.data()};
+  const Cell everywhere{{-infinity, -infinity, -infinity},
+                        {infinity, infinity, infinity}};
+#pragma omp parallel num_threads(num_threads)
+#pragma omp single
+  arrangement.arrange(records.data(), records.data() + records.size(), 0, everywhere);
   makeLeaves(records, storage, num_threads);
   for (std::size_t depth = levels.size() - 1; depth > 0; --depth)
     makeNodes(
