@@ -1,5 +1,5 @@
 #include "calibrated/calibrated.h"
-#include "cloud_parts.h"
+#include "calibrated/cloud_parts.h"
 #include "exact/exact.h"
 #include "paper/paper.h"
 #include "summary/estimates.h"
@@ -148,27 +148,13 @@ estimatePosterior(const PreparedCloud& source,
                   const Options& options,
                   const ProgressCallback& progress)
 {
-  const int num_threads = options.chains.num_threads;
-  if (options.preset == Preset::Calibrated) {
-    const auto surfaceOf = [num_threads](const PreparedCloud& cloud,
-                                         const PreparedCloud& other) {
-      return [&cloud, &other, num_threads]() -> const PreparedSurface& {
-        return cloud.parts().surfaceFor(other.parts(), num_threads);
-      };
-    };
-    return estimateCalibratedPosterior(source.points(),
-                                       target.points(),
-                                       surfaceOf(source, target),
-                                       surfaceOf(target, source),
-                                       initial_pose,
-                                       options,
-                                       progress);
-  }
+  if (options.preset == Preset::Calibrated)
+    return estimateCalibratedPosterior(source, target, initial_pose, options, progress);
   const std::string complaint = options.validate();
   if (!complaint.empty())
     return failure(Status::InvalidOptions, complaint);
   return estimatePosterior(source.points(),
-                           target.parts().tree(num_threads),
+                           target.parts().tree(options.chains.num_threads),
                            initial_pose,
                            options,
                            progress);

@@ -1,4 +1,4 @@
-#include "cloud_parts.h"
+#include "calibrated/cloud_parts.h"
 
 #include <bayesian_icp/prepared_cloud.h>
 

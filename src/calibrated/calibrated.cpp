@@ -4,6 +4,7 @@
 
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibrated_report.h"
+#include "calibrated/cloud_parts.h"
 #include "calibrated/draws/calibrated_draws.h"
 #include "calibrated/flat_clouds.h"
 #include "calibrated/modes/calibrated_modes.h"
@@ -94,14 +95,14 @@ estimateAndDraw(const SurfaceScorer& scorer,
 } // namespace
 
 PosteriorEstimate
-estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
-                            const Eigen::Matrix3Xd& target_points,
-                            const SurfaceGiver& source_surface,
-                            const SurfaceGiver& target_surface,
+estimateCalibratedPosterior(const PreparedCloud& source,
+                            const PreparedCloud& target,
                             const Vector6d& initial_pose,
                             const Options& options,
                             const ProgressCallback& progress)
 {
+  const Eigen::Matrix3Xd& source_points = source.points();
+  const int num_threads = options.chains.num_threads;
   if (auto refusal = refusalOf(source_points, initial_pose, options))
     return std::move(*refusal);
   if (source_points.cols() < min_calibrated_points)
@@ -112,28 +113,36 @@ estimateCalibratedPosterior(const Eigen::Matrix3Xd& source_points,
   if (isCancelled(progress))
     return failure(Status::Cancelled, "interrupted before the first draw");
   // 1: both clouds as surfaces.
-  const PreparedSurface& target = target_surface();
-  if (!target.complaint.empty())
-    return failure(target.status, target.complaint);
-  const PreparedSurface& source = source_surface();
-  if (target.model.planeNormal() && !source.model.planeNormal())
+  const PreparedSurface& target_surface =
+      target.parts().surfaceFor(source.parts(), num_threads);
+  if (!target_surface.complaint.empty())
+    return failure(target_surface.status, target_surface.complaint);
+  const PreparedSurface& source_surface =
+      source.parts().surfaceFor(target.parts(), num_threads);
+  if (target_surface.model.planeNormal() && !source_surface.model.planeNormal())
     return failure(Status::TooFewCorrespondences,
                    "the target lies in a plane, and the source does not: there is no "
                    "surface to compare its points with");
   // 2: what the points of both clouds say.
   const Prior prior = priorOf(options, initial_pose, source_points);
-  const SurfaceScorer scorer = scorerOf(source_points,
-                                        source,
-                                        target_points,
-                                        target,
-                                        options.calibrated.max_source_points,
-                                        options.chains.seed,
-                                        options.chains.num_threads,
-                                        reachOf(source_points, source.columns, prior));
-  PosteriorEstimate result = estimateAndDraw(
-      scorer, prior, heldInPlane(prior, source.model, target.model), options, progress);
+  const SurfaceScorer scorer =
+      scorerOf(source_points,
+               source_surface,
+               target.points(),
+               target_surface,
+               options.calibrated.max_source_points,
+               options.chains.seed,
+               num_threads,
+               reachOf(source_points, source_surface.columns, prior));
+  PosteriorEstimate result =
+      estimateAndDraw(scorer,
+                      prior,
+                      heldInPlane(prior, source_surface.model, target_surface.model),
+                      options,
+                      progress);
   if (result.summary.num_draws > 0)
-    addDoubts(doubtsAboutTilt(prior, source.model, target.model), result.summary);
+    addDoubts(doubtsAboutTilt(prior, source_surface.model, target_surface.model),
+              result.summary);
   return result;
 }
 
