@@ -41,3 +41,14 @@ LLT<PoseSquare>::_solve_impl_transposed<true>(const PoseSquare&, PoseSquare&) co
 BAYESIAN_ICP_EXTERN template class PartialPivLU<PoseSquare>;
 
 } // namespace Eigen
+
+namespace bayesian_icp {
+
+/** \brief The nearest symmetric matrix. */
+inline Matrix6d
+symmetrized(const Matrix6d& m)
+{
+  return 0.5 * (m + m.transpose());
+}
+
+} // namespace bayesian_icp

@@ -140,8 +140,7 @@ informationOf(const Matrix6d& covariance)
   const Vector6d scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix6d correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
   const Matrix6d inverse = correlation.llt().solve(Matrix6d::Identity());
-  return (scale * scale.transpose())
-      .cwiseProduct(0.5 * (inverse + inverse.transpose()));
+  return (scale * scale.transpose()).cwiseProduct(symmetrized(inverse));
 }
 
 } // namespace bayesian_icp

@@ -104,9 +104,8 @@ estimateOf(const Vector6d& mean,
   estimate.mean = mean;
   for (const auto other : covariance_conventions) {
     const Matrix6d J = derivativeBetween(mean, convention, other);
-    const Matrix6d converted = J * covariance * J.transpose();
     estimate.covariances[static_cast<std::size_t>(other)] =
-        0.5 * (converted + converted.transpose());
+        symmetrized(J * covariance * J.transpose());
   }
   return estimate;
 }

@@ -12,8 +12,6 @@ namespace bayesian_icp {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /** Coefficients (1 - cos a) / a^2 and (a - sin a) / a^3, with their series at a = 0. */
 std::array<double, 2>
 leftJacobianCoefficients(double angle)
@@ -90,18 +88,18 @@ toString(CovarianceConvention convention)
 double
 wrapAngle(double angle)
 {
-  const double wrapped = std::remainder(angle, 2.0 * pi);
-  return wrapped <= -pi ? wrapped + 2.0 * pi : wrapped;
+  const double wrapped = std::remainder(angle, 2.0 * M_PI);
+  return wrapped <= -M_PI ? wrapped + 2.0 * M_PI : wrapped;
 }
 
 Vector6d
 canonicalPose(const Vector6d& pose)
 {
   Vector6d canonical = pose;
-  if (std::abs(pose[4]) > 2.0 * pi) // the double of any number need not be one
+  if (std::abs(pose[4]) > 2.0 * M_PI) // the double of any number need not be one
     canonical[4] = wrapAngle(pose[4]);
   if (std::cos(canonical[4]) < 0.0)
-    canonical.tail<3>() += Eigen::Vector3d(pi, pi - 2.0 * canonical[4], pi);
+    canonical.tail<3>() += Eigen::Vector3d(M_PI, M_PI - 2.0 * canonical[4], M_PI);
   for (int k = 3; k < 6; ++k)
     canonical[k] = wrapAngle(canonical[k]);
   return canonical;

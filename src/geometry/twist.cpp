@@ -34,10 +34,9 @@ angleRates(const Vector6d& pose)
 Vector6d
 preferredPose(const Prior& prior, const Isometry3d& T_target_source)
 {
-  constexpr double pi = 3.14159265358979323846;
   const Vector6d pose = poseOf(T_target_source.matrix());
   Vector6d other = pose;
-  other.tail<3>() = Vector3d(pose[3] + pi, pi - pose[4], pose[5] + pi);
+  other.tail<3>() = Vector3d(pose[3] + M_PI, M_PI - pose[4], pose[5] + M_PI);
   const auto fit = [&](const Vector6d& angles) {
     const Vector3d d = angles.tail<3>() - prior.mean().tail<3>();
     return (d.array().cos() / prior.variance().tail<3>().array()).sum();

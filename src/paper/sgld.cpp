@@ -5,12 +5,6 @@
 
 namespace bayesian_icp {
 
-namespace {
-
-constexpr double half_a_turn = 3.14159265358979323846;
-
-} // namespace
-
 RmsPropPreconditioner::RmsPropPreconditioner(const SgldOptions& options)
 : decay_rate_(options.decay_rate)
 , lambda_rms_(options.lambda_rms)
@@ -77,7 +71,7 @@ SgldChain::step()
   const double alpha = stepSizeAt(options_, steps_made_++, num_steps_);
   position_ = sgldStep(
       pose, gradient.energy, A, alpha, options_.noise_factor, random_); // (5, 8, 9)
-  num_jumps_ += (position_ - pose).tail<3>().cwiseAbs().maxCoeff() > half_a_turn;
+  num_jumps_ += (position_ - pose).tail<3>().cwiseAbs().maxCoeff() > M_PI;
 }
 
 bool

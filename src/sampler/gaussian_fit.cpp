@@ -25,12 +25,6 @@ constexpr int max_last_iterations = 20;
 constexpr double least_prior_precision = 1e-3;
 
 Matrix6d
-symmetrized(const Matrix6d& m)
-{
-  return 0.5 * (m + m.transpose());
-}
-
-Matrix6d
 withLeastPrior(const Matrix6d& prior_precision)
 {
   return prior_precision + least_prior_precision * Matrix6d::Identity();

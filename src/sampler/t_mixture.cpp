@@ -23,7 +23,7 @@ constexpr double min_draws = 60.0;
 /** log Gamma((nu + 6) / 2) - log Gamma(nu / 2) - 3 log(nu pi): of the standard t. */
 const double log_normalisation = std::lgamma(0.5 * (degrees_of_freedom + 6.0)) -
                                  std::lgamma(0.5 * degrees_of_freedom) -
-                                 3.0 * std::log(degrees_of_freedom * std::acos(-1.0));
+                                 3.0 * std::log(degrees_of_freedom * M_PI);
 
 double
 logSumExp(const Eigen::VectorXd& values)

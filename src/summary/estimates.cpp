@@ -16,7 +16,6 @@ namespace {
 std::vector<std::string>
 doubtsAboutAngles(const Summary& summary)
 {
-  constexpr double quarter_turn = 1.57079632679489661923;
   /** Standard deviations within which the draws are. */
   constexpr double reach = 3.0;
   /** Draws that reach further have all attitudes: other doubts are more important
@@ -31,7 +30,7 @@ doubtsAboutAngles(const Summary& summary)
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rotation, Eigen::EigenvaluesOnly)
           .eigenvalues()
           .maxCoeff();
-  const double distance = quarter_turn - std::abs(summary.mean[4]);
+  const double distance = M_PI_2 - std::abs(summary.mean[4]);
   if (distance > max_distance ||
       distance > reach * std::sqrt(std::max(largest_variance, 0.0)))
     return {};

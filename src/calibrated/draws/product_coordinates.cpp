@@ -119,7 +119,7 @@ ProductCoordinates::setVolume()
 Vector6d
 ProductCoordinates::unwound(const Vector6d& z) const
 {
-  constexpr double turn = 6.283185307179586;
+  constexpr double turn = 2.0 * M_PI;
   const Vector3d rotation = (prior_only_ * z).tail<3>();
   const double angle = rotation.norm();
   const double num_turns = std::round(angle / turn);
@@ -162,8 +162,7 @@ ProductCoordinates::heldPart(const Isometry3d& pose) const
   Vector6d a = Vector6d::Zero();
   if (num_prior_only_ == 1 && prior_only_.col(0).tail<3>().norm() > 0.0) {
     // A first time: far from the mode the rounds below may not converge.
-    constexpr double pi = 3.14159265358979323846;
-    const double half_turn = pi / prior_only_.col(0).tail<3>().norm();
+    const double half_turn = M_PI / prior_only_.col(0).tail<3>().norm();
     double least = std::numeric_limits<double>::infinity(), best = 0.0;
     for (int i = -num_scanned; i <= num_scanned; ++i) {
       a[0] = half_turn * i / num_scanned;

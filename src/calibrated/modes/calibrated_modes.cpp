@@ -22,8 +22,6 @@ using Eigen::Isometry3d;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /** A prior is wide above these standard deviations: [rad], and as a fraction of the
  * source's extent. */
 constexpr double wide_angle = 0.2, wide_part_of_extent = 0.25;
@@ -132,7 +130,7 @@ startsOver(const HeldPrior& prior,
     std::vector<Index> strata(static_cast<std::size_t>(num_starts));
     std::iota(strata.begin(), strata.end(), Index(0));
     shuffle(strata, random);
-    const double range = k < 3 ? reach * sd : std::min(pi, reach * sd);
+    const double range = k < 3 ? reach * sd : std::min(M_PI, reach * sd);
     for (Index i = 0; i < num_starts; ++i) {
       const double share = (static_cast<double>(strata[static_cast<std::size_t>(i)]) +
                             random.uniform()) /
@@ -182,7 +180,7 @@ hopsFrom(const Isometry3d& pose,
                                                                  arms.transpose());
   for (int k = 0; k < 3; ++k)
     starts.push_back(pose * centroid *
-                     Eigen::AngleAxisd(pi, principal.eigenvectors().col(k)) *
+                     Eigen::AngleAxisd(M_PI, principal.eigenvectors().col(k)) *
                      centroid.inverse());
   return starts;
 }

@@ -182,9 +182,8 @@ evennessOf(const PointRows& local)
   Eigen::ArrayXf x = (scale * local.col(0)).cast<float>();
   const Eigen::ArrayXf y = (scale * local.col(1)).cast<float>();
   // Of an ellipse that is filled evenly.
-  constexpr double pi = 3.14159265358979323846;
   const double area =
-      4.0 * pi *
+      4.0 * M_PI *
       std::sqrt((x - x.mean()).square().mean() * (y - y.mean()).square().mean());
   const Eigen::Index step = std::max<Eigen::Index>(1, num_points / num_evenness_points);
   double sum = 0.0;
