@@ -9,8 +9,8 @@
 #include <bayesian_icp/kd_tree.h>
 
 #include <array>
-#include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 namespace bayesian_icp {
@@ -20,18 +20,18 @@ namespace bayesian_icp {
 template <typename T>
 class Lazy {
 public:
-  /** \param[in] make returns a std::unique_ptr<const T> */
+  /** \param[in] make returns the value */
   template <typename Make>
   const T&
   get(const Make& make)
   {
-    std::call_once(is_made_, [&] { value_ = make(); });
+    std::call_once(is_made_, [&] { value_.emplace(make()); });
     return *value_;
   }
 
 private:
   std::once_flag is_made_;
-  std::unique_ptr<const T> value_;
+  std::optional<T> value_;
 };
 
 /** \brief The points of a cloud and what is made of them. */
@@ -45,19 +45,15 @@ struct CloudParts {
   surfaceFor(const CloudParts& other, int num_threads)
   {
     const int num_doublings = numDoublings(points, other.points);
-    return surfaces_[static_cast<std::size_t>(num_doublings)].get([&] {
-      return std::make_unique<const PreparedSurface>(
-          prepareSurface(points, num_threads, num_doublings));
-    });
+    return surfaces_[static_cast<std::size_t>(num_doublings)].get(
+        [&] { return prepareSurface(points, num_threads, num_doublings); });
   }
 
   /** In single precision. */
   const KdTree&
   tree(int num_threads)
   {
-    return tree_.get([&] {
-      return std::make_unique<const KdTree>(points.cast<float>(), num_threads);
-    });
+    return tree_.get([&] { return KdTree(points.cast<float>(), num_threads); });
   }
 
   const Eigen::Matrix3Xd points;

@@ -48,9 +48,9 @@ turnDirection(int k,
   options.hold = holdOfFree(e, hold_tolerance * noise);
   const Vector6d step = length * e.directions.col(k);
   std::array<RobustFit, 2> ends;
-  forEachPiece(2, num_threads, [&](std::ptrdiff_t i) {
+  forEachPiece(ends.size(), num_threads, [&](std::size_t i) {
     const Isometry3d start = movedBy(i == 0 ? step : Vector6d(-step), e.centre, e.mode);
-    ends[static_cast<std::size_t>(i)] = fitRobustly(scorer, prior, start, options);
+    ends[i] = fitRobustly(scorer, prior, start, options);
   });
   for (const RobustFit& end : ends)
     if (!(contactsOf(end.residuals).misfit <= max_misfit * misfit))

@@ -91,9 +91,9 @@ template <typename Work>
 void
 forEachChain(int num_chains, int num_threads, RunState& run, const Work& work)
 {
-  forEachPiece(num_chains, num_threads, [&](std::ptrdiff_t i) {
+  forEachPiece(num_chains, num_threads, [&](int i) {
     try {
-      work(static_cast<int>(i));
+      work(i);
     }
     catch (...) {
       run.stop();

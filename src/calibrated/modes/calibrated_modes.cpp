@@ -254,11 +254,9 @@ followStarts(const SurfaceScorer& subset,
   fit.max_steps = 20;
   fit.tolerance = 0.1 * noise;
   std::vector<RobustFit> ends(starts.size());
-  const auto num_starts = static_cast<std::ptrdiff_t>(starts.size());
-  forEachPiece(num_starts, num_threads, [&](std::ptrdiff_t i) {
-    const auto start = static_cast<std::size_t>(i);
-    const RobustFit icp = fitPointToPoint(icp_points, prior, starts[start]);
-    ends[start] = fitRobustly(subset, prior, icp.pose, fit);
+  forEachPiece(starts.size(), num_threads, [&](std::size_t i) {
+    const RobustFit icp = fitPointToPoint(icp_points, prior, starts[i]);
+    ends[i] = fitRobustly(subset, prior, icp.pose, fit);
   });
   return ends;
 }

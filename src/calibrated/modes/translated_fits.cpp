@@ -255,10 +255,8 @@ followHops(const SurfaceScorer& scorer,
   fit.max_steps = max_fit_steps;
   fit.tolerance = 0.1 * scorer.noise();
   std::vector<RobustFit> ends(ways.size());
-  const auto num_ways = static_cast<std::ptrdiff_t>(ways.size());
-  forEachPiece(num_ways, num_threads, [&](std::ptrdiff_t i) {
-    const auto way = static_cast<std::size_t>(i);
-    ends[way] = fitRobustly(scorer, prior, Eigen::Translation3d(ways[way]) * from, fit);
+  forEachPiece(ways.size(), num_threads, [&](std::size_t i) {
+    ends[i] = fitRobustly(scorer, prior, Eigen::Translation3d(ways[i]) * from, fit);
   });
   return ends;
 }
