@@ -10,8 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bayesian_icp {
-namespace kd_tree {
+namespace bayesian_icp::kd_tree {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -347,5 +346,4 @@ build(const float* points,
   return storage;
 }
 
-} // namespace kd_tree
-} // namespace bayesian_icp
+} // namespace bayesian_icp::kd_tree

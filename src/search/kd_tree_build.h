@@ -13,8 +13,7 @@
 #include <cstring>
 #include <vector>
 
-namespace bayesian_icp {
-namespace kd_tree {
+namespace bayesian_icp::kd_tree {
 
 /** What View points to. */
 struct Storage {
@@ -64,13 +63,11 @@ build(const float* points,
 const Searches&
 searchesOf(InstructionSet instruction_set);
 
-} // namespace kd_tree
+} // namespace bayesian_icp::kd_tree
 
 /** \brief What a KdTree owns besides its points. */
-struct KdTree::Tree {
+struct bayesian_icp::KdTree::Tree {
   kd_tree::Storage storage;
   kd_tree::View view;
   kd_tree::Searches searches;
 };
-
-} // namespace bayesian_icp

@@ -11,8 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace bayesian_icp {
-namespace kd_tree {
+namespace bayesian_icp::kd_tree {
 
 constexpr std::size_t fan_out = 8;
 constexpr std::size_t leaf_size = 16;
@@ -109,5 +108,4 @@ extern const Searches sse2_searches;
 extern const Searches avx2_searches;
 #endif
 
-} // namespace kd_tree
-} // namespace bayesian_icp
+} // namespace bayesian_icp::kd_tree

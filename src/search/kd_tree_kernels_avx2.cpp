@@ -4,8 +4,7 @@
 
 #include <immintrin.h>
 
-namespace bayesian_icp {
-namespace kd_tree {
+namespace bayesian_icp::kd_tree {
 namespace {
 
 struct EightFloats {
@@ -39,5 +38,4 @@ struct EightFloats {
 
 const Searches avx2_searches = searchesWith<EightFloats>();
 
-} // namespace kd_tree
-} // namespace bayesian_icp
+} // namespace bayesian_icp::kd_tree

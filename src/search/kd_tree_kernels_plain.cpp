@@ -1,8 +1,7 @@
 // The searches for any processor.
 #include "search/kd_tree_search.h"
 
-namespace bayesian_icp {
-namespace kd_tree {
+namespace bayesian_icp::kd_tree {
 namespace {
 
 struct OneFloat {
@@ -29,5 +28,4 @@ struct OneFloat {
 
 const Searches plain_searches = searchesWith<OneFloat>();
 
-} // namespace kd_tree
-} // namespace bayesian_icp
+} // namespace bayesian_icp::kd_tree

@@ -3,8 +3,7 @@
 
 #include <immintrin.h>
 
-namespace bayesian_icp {
-namespace kd_tree {
+namespace bayesian_icp::kd_tree {
 namespace {
 
 struct FourFloats {
@@ -37,5 +36,4 @@ struct FourFloats {
 
 const Searches sse2_searches = searchesWith<FourFloats>();
 
-} // namespace kd_tree
-} // namespace bayesian_icp
+} // namespace bayesian_icp::kd_tree

@@ -21,8 +21,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace bayesian_icp {
-namespace kd_tree {
+namespace bayesian_icp::kd_tree {
 namespace {
 
 /** A subtree still to be searched, and the bound of its box. */
@@ -341,5 +340,4 @@ searchesWith()
 }
 
 } // namespace
-} // namespace kd_tree
-} // namespace bayesian_icp
+} // namespace bayesian_icp::kd_tree
