@@ -63,13 +63,8 @@ public:
   using ConstPtr = shared_ptr<const BayesianIterativeClosestPoint>;
   using Matrix4 = typename Base::Matrix4;
   using PointCloudSource = typename Base::PointCloudSource;
-  using PointCloudSourcePtr = typename Base::PointCloudSourcePtr;
   using PointCloudSourceConstPtr = typename Base::PointCloudSourceConstPtr;
   using PointCloudTarget = typename Base::PointCloudTarget;
-  using PointCloudTargetPtr = typename Base::PointCloudTargetPtr;
-  using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
-  using PointIndicesPtr = typename Base::PointIndicesPtr;
-  using PointIndicesConstPtr = typename Base::PointIndicesConstPtr;
   /** Each row is one draw: x y z roll pitch yaw [m, rad]. */
   using Samples = bayesian_icp::PoseMatrix;
   using Vector6d = bayesian_icp::Vector6d;
@@ -297,7 +292,13 @@ protected:
                  const Matrix4& guess) override;
 
   void
-  keepFailure(bool is_input_valid, const char* reason) override;
+  keepFailure(bool is_input_valid, const char* reason) override
+  {
+    estimate_.summary.status = is_input_valid
+                                   ? bayesian_icp::Status::TooFewCorrespondences
+                                   : bayesian_icp::Status::InvalidInput;
+    estimate_.summary.message = reason;
+  }
 
 private:
   /** \return false if the progress callback has cancelled it */
@@ -312,7 +313,11 @@ private:
 
   /** \brief Whether the pairs are exactly those of the nearest points. */
   bool
-  hasPlainCorrespondences() const;
+  hasPlainCorrespondences() const
+  {
+    return (this->hasDefaultEstimation() && correspondence_rejectors_.empty() &&
+            !use_reciprocal_correspondence_);
+  }
 
   /** \brief The finite target points that the search tree finds. */
   Eigen::Matrix3Xd

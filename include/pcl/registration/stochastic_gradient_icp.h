@@ -108,8 +108,6 @@ public:
 
 protected:
   using Base::converged_;
-  using Base::correspondence_estimation_;
-  using Base::correspondence_rejectors_;
   using Base::correspondences_;
   using Base::final_transformation_;
   using Base::max_iterations_;
@@ -120,7 +118,6 @@ protected:
   using Base::transformation_;
   using Base::transformation_epsilon_;
   using Base::transformation_rotation_epsilon_;
-  using Base::tree_;
   using Base::update_visualizer_;
   using typename Base::State;
 

@@ -133,35 +133,21 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::keepFailure(
-    bool is_input_valid, const char* reason)
-{
-  estimate_.summary.status = is_input_valid
-                                 ? bayesian_icp::Status::TooFewCorrespondences
-                                 : bayesian_icp::Status::InvalidInput;
-  estimate_.summary.message = reason;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior(
     const PointCloudSourceConstPtr& source, const Matrix4& guess)
 {
-  auto& summary = estimate_.summary;
+  using bayesian_icp_detail::usualCoordinate;
   const Eigen::Matrix4d initial = guess.template cast<double>();
-  if (!bayesian_icp_detail::isRigid(initial)) {
-    summary.status = bayesian_icp::Status::InvalidInput;
-    summary.message = "the initial guess is not a rotation and a translation";
-    PCL_ERROR("[pcl::%s::computeTransformation] No posterior: %s.\n",
-              getClassName().c_str(),
-              summary.message.c_str());
-    return;
+  if (bayesian_icp_detail::isRigid(initial)) {
+    estimate_ = estimateByPreset(source, bayesian_icp::poseOf(initial));
+    bayesian_icp::doubtRounding(
+        std::max(usualCoordinate(*source), usualCoordinate(*target_)),
+        options_,
+        estimate_.summary);
   }
-  estimate_ = estimateByPreset(source, bayesian_icp::poseOf(initial));
-  bayesian_icp::doubtRounding(std::max(bayesian_icp_detail::usualCoordinate(*source),
-                                       bayesian_icp_detail::usualCoordinate(*target_)),
-                              options_,
-                              summary);
+  else {
+    keepFailure(false, "the initial guess is not a rotation and a translation");
+  }
   reportStatus();
 }
 
@@ -232,15 +218,6 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::reportStatus() 
     PCL_ERROR("[pcl::%s::computeTransformation] No posterior: %s.\n",
               getClassName().c_str(),
               summary.message.c_str());
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-bool
-BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    hasPlainCorrespondences() const
-{
-  return (this->hasDefaultEstimation() && correspondence_rejectors_.empty() &&
-          !use_reciprocal_correspondence_);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
