@@ -58,10 +58,4 @@ MatchedBatch::makeOneToOne()
   correspondences_.resize(kept.size());
 }
 
-Vector6d
-MatchedBatch::meanGradient() const
-{
-  return bayesian_icp::meanGradient(pose_, points_, moved_points_, correspondences_);
-}
-
 } // namespace bayesian_icp

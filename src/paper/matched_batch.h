@@ -34,7 +34,10 @@ public:
 
   /** \brief meanGradient() of the mini-batch at the pose of its draw(). */
   Vector6d
-  meanGradient() const;
+  meanGradient() const
+  {
+    return bayesian_icp::meanGradient(pose_, points_, moved_points_, correspondences_);
+  }
 
   /** \brief Points in the mini-batch. */
   std::size_t

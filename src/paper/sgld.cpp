@@ -74,10 +74,4 @@ SgldChain::step()
   num_jumps_ += (position_ - pose).tail<3>().cwiseAbs().maxCoeff() > M_PI;
 }
 
-bool
-SgldChain::hasDiverged() const
-{
-  return SamplingChain::hasDiverged() || runs_away_(position_);
-}
-
 } // namespace bayesian_icp

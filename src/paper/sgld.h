@@ -86,7 +86,10 @@ public:
   step() override;
 
   bool
-  hasDiverged() const override;
+  hasDiverged() const override
+  {
+    return SamplingChain::hasDiverged() || runs_away_(position_);
+  }
 
   /** \brief Whether an angle moved by more than half a turn in most of the chain's
    * steps. Such a chain is white noise on the circle, whose R-hat and effective sample

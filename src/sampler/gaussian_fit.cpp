@@ -94,12 +94,6 @@ Gaussian::Gaussian(const Vector6d& mean, const Matrix6d& precision)
   factor_ = inverse_factor_.triangularView<Eigen::Upper>().solve(Matrix6d::Identity());
 }
 
-Vector6d
-Gaussian::draw(Random& random) const
-{
-  return mean_ + factor_ * random.normal6();
-}
-
 double
 Gaussian::energy(const Vector6d& x) const
 {

@@ -21,7 +21,10 @@ public:
 
   /** \brief mean + L z with z standard normal. */
   Vector6d
-  draw(Random& random) const;
+  draw(Random& random) const
+  {
+    return mean_ + factor_ * random.normal6();
+  }
 
   /** \brief -log density, without the constant 3 log(2 pi). */
   double

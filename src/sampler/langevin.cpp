@@ -109,10 +109,4 @@ LangevinChain::step()
   last_noise_ = noise;
 }
 
-bool
-LangevinChain::hasDiverged() const
-{
-  return gradient_.hasDiverged(position_);
-}
-
 } // namespace bayesian_icp

@@ -57,7 +57,10 @@ public:
   step() override;
 
   bool
-  hasDiverged() const override;
+  hasDiverged() const override
+  {
+    return gradient_.hasDiverged(position_);
+  }
 
 private:
   StepPlan plan_;

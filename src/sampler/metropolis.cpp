@@ -70,10 +70,4 @@ MetropolisChain::step()
   is_jump_next_ = !is_jump_next_;
 }
 
-bool
-MetropolisChain::hasDiverged() const
-{
-  return energy_.hasDiverged(position_);
-}
-
 } // namespace bayesian_icp

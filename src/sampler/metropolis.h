@@ -44,7 +44,10 @@ public:
   walk(const Matrix6d& factor, double temperature);
 
   bool
-  hasDiverged() const override;
+  hasDiverged() const override
+  {
+    return energy_.hasDiverged(position_);
+  }
 
   /** \brief Share of accepted walks in step() since setProposal(), in [0, 1]. */
   double

@@ -99,8 +99,6 @@ regularized(const Eigen::Vector3d& variances, CovarianceRegularization regulariz
 
 } // namespace
 
-Target::~Target() = default;
-
 TreeTarget::TreeTarget(const KdTree& tree,
                        double max_distance,
                        Eigen::Matrix3Xf normals,
@@ -137,8 +135,6 @@ TreeTarget::match(const Vector6d& /* pose */,
   }
 }
 
-SearchTarget::SearchTarget(const CorrespondenceSearch& search) : search_(search) {}
-
 void
 SearchTarget::match(const Vector6d& pose,
                     const std::vector<std::size_t>& indices,
@@ -152,12 +148,6 @@ SearchTarget::match(const Vector6d& pose,
   for (const auto& pair : pairs)
     matches.push_back(
         {pair.source_index, pair.target_point.cast<float>(), Eigen::Vector3f::Zero()});
-}
-
-bool
-SearchTarget::isThreadSafe() const
-{
-  return search_.isThreadSafe();
 }
 
 Eigen::Matrix3Xf

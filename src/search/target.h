@@ -28,7 +28,7 @@ struct TargetMatch {
 /** \brief Interface: finds matches within the gate. */
 class Target {
 public:
-  virtual ~Target();
+  virtual ~Target() = default;
 
   /** \brief Match moved source points.
    * \param[in] pose source-to-target pose that moved the points [m, rad]
@@ -86,7 +86,7 @@ treeTargetFor(const ResidualOptions& residual, const KdTree& tree);
 class SearchTarget : public Target {
 public:
   /** \param[in] search must outlive this object */
-  explicit SearchTarget(const CorrespondenceSearch& search);
+  explicit SearchTarget(const CorrespondenceSearch& search) : search_(search) {}
 
   void
   match(const Vector6d& pose,
@@ -96,7 +96,10 @@ public:
         std::vector<TargetMatch>& matches) const override;
 
   bool
-  isThreadSafe() const override;
+  isThreadSafe() const override
+  {
+    return search_.isThreadSafe();
+  }
 
 private:
   const CorrespondenceSearch& search_;

@@ -194,42 +194,12 @@ ProductCoordinates::logVolume() const
 }
 
 Vector6d
-ProductCoordinates::scoredTwist(const Vector6d& z) const
-{
-  return transfer_ * (held_ * z);
-}
-
-Isometry3d
-ProductCoordinates::scoredPose(const Vector6d& z) const
-{
-  return movedBy(scoredTwist(z), centre_, mode_);
-}
-
-Vector6d
-ProductCoordinates::linearGradient(const Vector6d& z) const
-{
-  return information_ * (z - best_fit_);
-}
-
-double
-ProductCoordinates::linearEnergy(const Vector6d& z) const
-{
-  return 0.5 * (z - best_fit_).dot(linearGradient(z));
-}
-
-Vector6d
 ProductCoordinates::priorGradient(const Vector6d& z, const HeldPrior& prior) const
 {
   const Vector6d gradient = twistPriorGradient(prior, pose(z), centre_);
   const Vector6d a = prior_only_ * unwound(z), b = held_ * z;
   return prior_only_.transpose() * carriedToTheExponent(a, gradient) +
          held_.transpose() * carriedToTheExponent(b, carriedToTheRight(a, gradient));
-}
-
-Vector6d
-ProductCoordinates::volumeGradient(const Vector6d& z) const
-{
-  return volume_slope_ + volume_curvature_ * unwound(z);
 }
 
 } // namespace bayesian_icp

@@ -38,11 +38,17 @@ public:
 
   /** \brief The twist T VK b from the mode, at which scores are evaluated for z. */
   Vector6d
-  scoredTwist(const Vector6d& z) const;
+  scoredTwist(const Vector6d& z) const
+  {
+    return transfer_ * (held_ * z);
+  }
 
   /** \brief The mode moved by scoredTwist(). */
   Eigen::Isometry3d
-  scoredPose(const Vector6d& z) const;
+  scoredPose(const Vector6d& z) const
+  {
+    return movedBy(scoredTwist(z), centre_, mode_);
+  }
 
   /** \brief VK^T T^T H J^-1. It maps total scores to gradients of the likelihood's
    * energy with respect to z, and weights them such that the draws have the right
@@ -56,11 +62,17 @@ public:
   /** \brief Lambda_b (z - (0, b^)): gradient of the likelihood's energy if it were
    * Gaussian. */
   Vector6d
-  linearGradient(const Vector6d& z) const;
+  linearGradient(const Vector6d& z) const
+  {
+    return information_ * (z - best_fit_);
+  }
 
   /** \brief Energy of the likelihood if it were Gaussian. */
   double
-  linearEnergy(const Vector6d& z) const;
+  linearEnergy(const Vector6d& z) const
+  {
+    return 0.5 * (z - best_fit_).dot(linearGradient(z));
+  }
 
   /** \brief z without whole turns of V0 a: the same pose. */
   Vector6d
@@ -74,7 +86,10 @@ public:
    * the same change of a is a smaller motion where V0 a is a large rotation. To first
    * order in a. */
   Vector6d
-  volumeGradient(const Vector6d& z) const;
+  volumeGradient(const Vector6d& z) const
+  {
+    return volume_slope_ + volume_curvature_ * unwound(z);
+  }
 
   /** \brief log |det [V0 VK]|, which converts densities of z into those of twists. */
   double
