@@ -93,6 +93,10 @@ warmUp(PreconditionedRun& run);
 void
 measureEvidence(const std::vector<Gaussian>& gaussians, PreconditionedRun& run);
 
+/** \brief Merge modes whose draws turn out to overlap. */
+void
+mergeOverlappingModes(ChainSet& set);
+
 /** \brief Make the samplers, let them learn a common proposal, and freeze it.
  * \return the thinning that makes draws nearly independent */
 int

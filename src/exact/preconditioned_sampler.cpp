@@ -1,4 +1,3 @@
-#include "exact/modes.h"
 #include "exact/preconditioned_run.h"
 #include "sampler/langevin.h"
 #include "summary/estimates.h"
