@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "sampler/sampling_chain.h"
+#include "sampler/sampling.h"
 
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/random.h>

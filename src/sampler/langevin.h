@@ -6,7 +6,7 @@
 #pragma once
 
 #include "sampler/gaussian_fit.h"
-#include "sampler/sampling_chain.h"
+#include "sampler/sampling.h"
 
 namespace bayesian_icp {
 

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "sampler/sampling_chain.h"
+#include "sampler/sampling.h"
 #include "sampler/stochastic_energy.h"
 #include "sampler/t_mixture.h"
 
