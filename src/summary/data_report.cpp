@@ -27,34 +27,20 @@ constexpr double min_patches_with_misfit = 28.0;
  * than the target. */
 constexpr double min_residual_scale = 0.301;
 
-/** Rounded, without the sign of -0.00. */
-double
-rounded(double value, double unit)
-{
-  const double multiple = std::round(value / unit);
-  return multiple == 0.0 ? 0.0 : multiple * unit;
-}
-
-/** "(0.98, 0.10, 0.10)" */
+/** "(0.98, 0.10, 0.10)": rounded, without the sign of -0.00. */
 std::string
-textOfDirection(const Eigen::Vector3d& direction)
+textOf(const Eigen::Vector3d& vector, int num_decimals)
 {
-  constexpr double unit = 0.01;
-  return formatted("(%.2f, %.2f, %.2f)",
-                   rounded(direction.x(), unit),
-                   rounded(direction.y(), unit),
-                   rounded(direction.z(), unit));
-}
-
-/** "(0.100, 0.200, 0.050) m" */
-std::string
-textOfPoint(const Eigen::Vector3d& point)
-{
-  constexpr double unit = 0.001;
-  return formatted("(%.3f, %.3f, %.3f) m",
-                   rounded(point.x(), unit),
-                   rounded(point.y(), unit),
-                   rounded(point.z(), unit));
+  const double unit = std::pow(10.0, -num_decimals);
+  const Eigen::Array3d multiples = (vector / unit).array().round();
+  const Eigen::Array3d rounded = (multiples == 0.0).select(0.0, multiples * unit);
+  return formatted("(%.*f, %.*f, %.*f)",
+                   num_decimals,
+                   rounded[0],
+                   num_decimals,
+                   rounded[1],
+                   num_decimals,
+                   rounded[2]);
 }
 
 /** The one of two opposite directions whose first large component is positive. */
@@ -142,11 +128,11 @@ describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre)
   if (twist.isZero(0.0))
     return "no motion";
   if (w.isZero(0.0) || v.squaredNorm() >= min_translation_share)
-    return "translation along " + textOfDirection(canonicalDirection(v));
+    return "translation along " + textOf(canonicalDirection(v), 2);
   const double pitch = v.dot(w) / w.squaredNorm();
   const Eigen::Vector3d point = centre + w.cross(v) / w.squaredNorm();
   const std::string axis =
-      textOfDirection(canonicalDirection(w)) + " through " + textOfPoint(point);
+      textOf(canonicalDirection(w), 2) + " through " + textOf(point, 3) + " m";
   const double share_along_axis = pitch * pitch * w.squaredNorm();
   if (share_along_axis < min_screw_share)
     return "rotation about " + axis;
