@@ -258,18 +258,6 @@ distanceOfBest(const PoseEnergy& energy, const PosteriorEstimate& estimate)
   return std::sqrt(2.0 * least);
 }
 
-/** At most \p max_points of the points, evenly over their order. */
-Eigen::Matrix3Xd
-thinned(const Eigen::Matrix3Xd& points, std::size_t max_points)
-{
-  const auto chosen = evenlySpread(static_cast<std::size_t>(points.cols()), max_points);
-  Eigen::Matrix3Xd kept(3, static_cast<Eigen::Index>(chosen.size()));
-  for (std::size_t i = 0; i < chosen.size(); ++i)
-    kept.col(static_cast<Eigen::Index>(i)) =
-        points.col(static_cast<Eigen::Index>(chosen[i]));
-  return kept;
-}
-
 ChainSet
 sample(const PoseEnergy& energy,
        const Vector6d& initial_pose,
@@ -356,8 +344,10 @@ estimateExact(const Eigen::Matrix3Xd& source_points,
               const ProgressCallback& progress)
 {
   const LikelihoodScale& scale = options.exact.scale;
-  const Eigen::Matrix3Xd sampled_points =
-      thinned(source_points, static_cast<std::size_t>(options.exact.max_source_points));
+  const Eigen::Matrix3Xd sampled_points = source_points(
+      Eigen::all,
+      evenlySpread(static_cast<std::size_t>(source_points.cols()),
+                   static_cast<std::size_t>(options.exact.max_source_points)));
   const PoseEnergy energy(
       sampled_points, target, prior, scale.weight(), options.exact.residual);
   PosteriorEstimate result =

@@ -263,9 +263,7 @@ private:
     };
     if (std::all_of(neighbors_.begin(), neighbors_.end(), hasEnough))
       return;
-    Matrix3Xf centre_points(3, static_cast<Index>(columns_.size()));
-    for (std::size_t j = 0; j < columns_.size(); ++j)
-      centre_points.col(static_cast<Index>(j)) = points_.col(columns_[j]);
+    const Matrix3Xf centre_points = points_(Eigen::all, columns_);
     const PointNeighbors centres(centre_points);
     const auto searchAt = [&](std::uint32_t patch, NeighborList& nearest) {
       if (hasEnough(neighbors_[patch]))
