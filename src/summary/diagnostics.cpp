@@ -1,14 +1,7 @@
-/** \file
- * \brief R-hat, effective sample sizes and Monte Carlo error of Markov chains.
- *
- * Definitions: A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Buerkner,
- * "Rank-Normalization, Folding, and Localization: An Improved R-hat for Assessing
- * Convergence of MCMC", Bayesian Analysis 16(2), 2021, in the form of R's package
- * posterior, version 1.4.0 (functions rhat, ess_bulk, ess_tail, mcse_mean), whose
- * results the test compares. Two differences, both NaN here: an infinite draw, which
- * posterior ranks like any number, and two or three draws per chain, where its rhat
- * confuses draws with chains.
- */
+// The functions rhat, ess_bulk, ess_tail and mcse_mean of R's package posterior, with
+// whose results the test compares. Two differences, both NaN here: an infinite draw,
+// which posterior ranks like any number, and two or three draws per chain, where its
+// rhat confuses draws with chains.
 #include <bayesian_icp/diagnostics.h>
 
 #include <unsupported/Eigen/FFT>

@@ -191,12 +191,6 @@ struct KnownMode {
   Isometry3d pose;
   RobustFit fit;
 
-  KnownMode(const CalibratedEstimate& estimate, const RobustFit& there)
-  : coordinates(estimate)
-  , pose(estimate.mode)
-  , fit(there)
-  {}
-
   double
   squaredDistanceTo(const Isometry3d& other) const
   {
@@ -407,7 +401,8 @@ addModes(const SurfaceScorer& scorer,
   const double max_cost = (1.0 + cost_margin) * ends.leastCost();
   std::vector<KnownMode> known;
   for (const CalibratedMode& mode : modes)
-    known.emplace_back(mode.estimate, ends.first);
+    known.push_back(
+        {ProductCoordinates(mode.estimate), mode.estimate.mode, ends.first});
   for (const RobustFit& end : ends.others) {
     if (end.cost > max_cost || static_cast<int>(modes.size()) >= options.max_modes)
       break;
@@ -421,7 +416,7 @@ addModes(const SurfaceScorer& scorer,
       continue;
     const CalibratedEstimate estimate =
         estimateCalibrated(scorer, prior, options.estimate, &end.pose, leading);
-    const KnownMode found(estimate, end);
+    const KnownMode found = {ProductCoordinates(estimate), estimate.mode, end};
     const bool is_known =
         std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
           constexpr double limit = min_squared_distance_of_modes;
