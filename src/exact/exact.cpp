@@ -30,12 +30,6 @@ constexpr double max_step_length = 0.5, max_step_angle = 0.3; // [m], [rad]
 constexpr double tempered_span = 3.0;
 constexpr double max_temperature = 4096.0;
 
-double
-gainOf(int step)
-{
-  return step < num_full_steps ? 1.0 : 1.0 / (1.0 + 0.5 * (step - num_full_steps));
-}
-
 Vector6d
 limitStep(const Vector6d& step)
 {
@@ -157,7 +151,8 @@ public:
           pose_energy_.weight() * likelihood_curvature + prior_precision_ + least;
       const Vector6d gradient =
           pose_energy_.weight() * batch.gradient + pose_energy_.priorGradient(phi);
-      phi -= gainOf(step) * limitStep(curvature.ldlt().solve(gradient));
+      const double gain = 1.0 / (1.0 + 0.5 * std::max(0, step - num_full_steps));
+      phi -= gain * limitStep(curvature.ldlt().solve(gradient));
     }
     return phi;
   }

@@ -33,15 +33,6 @@ rotationAxes(const Vector6d& pose)
   return axes;
 }
 
-/** Derivatives by a rotation vector to derivatives by roll, pitch, yaw. */
-Matrix6d
-toAngles(const Eigen::Matrix3d& axes)
-{
-  Matrix6d map = Matrix6d::Identity();
-  map.bottomRightCorner<3, 3>() = axes;
-  return map;
-}
-
 Matrix6d
 congruence(const Matrix6d& map, const Matrix6d& inner)
 {
@@ -261,7 +252,9 @@ PoseEnergy::batchTerms(const Vector6d& phi,
     addCurvature(arm, normal, residual.information, terms);
   }
 
-  const Matrix6d map = toAngles(rotationAxes(phi));
+  // Derivatives by a rotation vector to derivatives by roll, pitch, yaw.
+  Matrix6d map = Matrix6d::Identity();
+  map.bottomRightCorner<3, 3>() = rotationAxes(phi);
   terms.energy /= size;
   terms.squared_distance /=
       std::max(1.0, static_cast<double>(workspace.matches.size()));

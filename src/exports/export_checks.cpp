@@ -22,12 +22,6 @@ constexpr const char* frame_characters =
 /** Seconds are an int32 in ROS. */
 constexpr std::int64_t timestamp_limit_ns = (std::int64_t(1) << 31) * 1'000'000'000;
 
-bool
-isGood(Status status)
-{
-  return status == Status::Ok || status == Status::Doubtful;
-}
-
 /** Of the matrix of correlations. \param[in] scale standard deviations */
 double
 leastEigenvalue(const Matrix6d& covariance, const Vector6d& scale)
@@ -115,7 +109,8 @@ complaintAboutExport(const PoseEstimate& estimate,
                      bool needs_information,
                      bool accept_unreliable)
 {
-  if (!isGood(estimate.status) && !accept_unreliable)
+  if (estimate.status != Status::Ok && estimate.status != Status::Doubtful &&
+      !accept_unreliable)
     return std::string("the status is ") + toString(estimate.status) +
            ", neither ok nor doubtful";
   if (!estimate.mean.allFinite())

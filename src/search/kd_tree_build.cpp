@@ -215,12 +215,6 @@ makeLeaf(const Record* first, const Record* last)
   return leaf;
 }
 
-bool
-isEqual(const Record& a, const Record& b)
-{
-  return std::equal(a.coordinates, a.coordinates + 3, b.coordinates);
-}
-
 /** Whether all points of a leaf equal two in the leaf before it: those have smaller
  * indices and show the tie, so the leaf is never needed. Without this, a query to a
  * million equal points would look at all of them. */
@@ -234,7 +228,7 @@ isRedundant(const std::vector<Record>& records, std::size_t leaf)
                         ? first + leaf_size
                         : records.end();
   const auto equals_first = [&first](const Record& other) {
-    return isEqual(*first, other);
+    return std::equal(first->coordinates, first->coordinates + 3, other.coordinates);
   };
   return std::all_of(first, last, equals_first) &&
          std::count_if(first - leaf_size, first, equals_first) >= 2;

@@ -26,13 +26,6 @@ constexpr int max_trials = 24;
 constexpr int num_bits = 21;
 constexpr double smallest_cube = 1.0 / (1 << 20);
 
-/** Rotation of the grid, which brings no axis near another one. */
-Eigen::Quaternionf
-tilt()
-{
-  return Eigen::Quaternionf(0.5F, 0.31F, -0.7F, 0.4F).normalized();
-}
-
 /** The points that are chosen from cubes: in each cube the point with the smallest
  * rank, which is random. */
 class ChosenOfCubes {
@@ -332,7 +325,9 @@ evenChoice(Eigen::Matrix3Xf points, Index count, ChoiceStream stream)
 {
   if (points.cols() <= count)
     return allOf(points);
-  const Eigen::Matrix3f R = tilt().toRotationMatrix();
+  // A rotation of the grid that brings no axis near another one.
+  const Eigen::Matrix3f R =
+      Eigen::Quaternionf(0.5F, 0.31F, -0.7F, 0.4F).normalized().toRotationMatrix();
   for (auto point : points.colwise())
     point = (R * point).eval();
   const Eigen::Vector3f corner = points.rowwise().minCoeff();
