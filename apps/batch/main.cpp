@@ -60,7 +60,7 @@ describeOptions(Request& request)
   // clang-format on
   po::options_description all;
   all.add(group);
-  describeSettings(Settings(), all);
+  describeSettings(all);
   return all;
 }
 
@@ -133,7 +133,7 @@ parseCommandLine(int argc, const char* const* argv)
   io::takeOptions(given, options);
   if (request.use_suggested_prior)
     refuseSecondPrior(given);
-  request.settings = settingsFrom(given, Settings(), request.note);
+  request.settings = settingsFrom(given, request.note);
   return request;
 }
 

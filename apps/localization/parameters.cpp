@@ -68,7 +68,7 @@ readParameters(const std::map<std::string, std::string>& parameters)
   own.add_options()(
       "prior-floor-rad", io::number("", options.prior_floor.rotation), "");
   all.add(own);
-  describeSettings(options.settings, all);
+  describeSettings(all);
 
   std::vector<std::string> texts = {"parameters"};
   for (const auto& [name, text] : parameters) {
@@ -84,7 +84,7 @@ readParameters(const std::map<std::string, std::string>& parameters)
       static_cast<int>(arguments.size()), arguments.data(), all, nullptr);
   io::takeOptions(given, own);
   std::string note;
-  options.settings = settingsFrom(given, options.settings, note);
+  options.settings = settingsFrom(given, note);
   for (const char* name : not_of_calibrated)
     if (options.settings.options.preset == Preset::Calibrated && given.count(name) > 0)
       throw io::UsageError(std::string(name) + " has no effect with preset calibrated");

@@ -58,7 +58,7 @@ describeOptionsOfGraph(GraphCommand& command)
   // clang-format on
   po::options_description all;
   all.add(group).add(edges).add(optimization);
-  describeSettings(Settings(), all);
+  describeSettings(all);
   return all;
 }
 
@@ -168,7 +168,7 @@ parseGraphCommand(int argc, const char* const* argv)
   io::takeOptions(given, options);
   for (const std::string& text : io::optionTexts(given, "loop"))
     request.loops.push_back(loopOf(text, request.scans.size()));
-  request.settings = settingsFrom(given, Settings(), command.note);
+  request.settings = settingsFrom(given, command.note);
   check(given, command);
   command.command = io::commandOf(argc, argv);
   return command;

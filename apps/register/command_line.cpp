@@ -181,7 +181,7 @@ describeOptions(Request& request)
   // clang-format on
   po::options_description all;
   all.add(general).add(describeExportOptions(request.exports));
-  describeSettings(Settings(), all);
+  describeSettings(all);
   all.add(describeSgdOptions());
   return all;
 }
@@ -233,7 +233,7 @@ parseCommandLine(int argc, const char* const* argv)
     throw io::UsageError("--json and --quiet exclude each other");
   checkExports(request);
   if (!is_sgd)
-    request.settings = settingsFrom(given, Settings(), request.note);
+    request.settings = settingsFrom(given, request.note);
   return request;
 }
 

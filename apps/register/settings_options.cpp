@@ -26,8 +26,9 @@ refuseLengths(const po::variables_map& given, const std::string& config)
 } // namespace
 
 void
-describeSettings(const Settings& defaults, po::options_description& options)
+describeSettings(po::options_description& options)
 {
+  const Settings defaults;
   po::options_description registration("Registration");
   registration.add_options()(
       "config",
@@ -51,11 +52,9 @@ describeSettings(const Settings& defaults, po::options_description& options)
 }
 
 Settings
-settingsFrom(const po::variables_map& given,
-             const Settings& defaults,
-             std::string& note)
+settingsFrom(const po::variables_map& given, std::string& note)
 {
-  Settings settings = defaults;
+  Settings settings;
   std::string config;
   std::optional<Preset> preset;
   po::options_description first;

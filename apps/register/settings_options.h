@@ -13,19 +13,15 @@
 namespace bayesian_icp::app {
 
 /** \brief Add the options that decide the result of a registration, which all programs
- * that register have in common, described with their units and \p defaults. Values are
+ * that register have in common, described with their units and defaults. Values are
  * strings. Each preset has a group, so that an option can be there several times. */
 void
-describeSettings(const Settings& defaults,
-                 boost::program_options::options_description& options);
+describeSettings(boost::program_options::options_description& options);
 
 /** \brief What the command line, and the file that --config names, say of the settings.
- * \param[in] defaults settings if nothing is said; a --config file has its own
  * \param[out] note something that the user ought to know; empty if nothing
  * \throws io::UsageError or io::FileError naming the option or file */
 Settings
-settingsFrom(const boost::program_options::variables_map& given,
-             const Settings& defaults,
-             std::string& note);
+settingsFrom(const boost::program_options::variables_map& given, std::string& note);
 
 } // namespace bayesian_icp::app

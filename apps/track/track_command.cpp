@@ -66,7 +66,7 @@ describeOptionsOfTrack(TrackCommand& command, TimeOptions& times)
   // clang-format on
   po::options_description all;
   all.add(group).add(motion).add(map);
-  describeSettings(Settings(), all);
+  describeSettings(all);
   return all;
 }
 
@@ -257,7 +257,7 @@ parseTrackCommand(int argc, const char* const* argv)
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);
   requireWithin(times.period, shortest_interval, io::time_limit, "period");
-  request.settings = settingsFrom(given, Settings(), command.note);
+  request.settings = settingsFrom(given, command.note);
   Options& options_of_presets = request.settings.options;
   for (double* const gate : {&options_of_presets.exact.residual.max_distance,
                              &options_of_presets.paper.max_distance})

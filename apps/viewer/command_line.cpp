@@ -193,7 +193,7 @@ describeOptions(Request& request)
   // clang-format on
   po::options_description all;
   all.add(general).add(pcl_viewers).add(own);
-  app::describeSettings(app::Settings(), all);
+  app::describeSettings(all);
   return all;
 }
 
@@ -255,7 +255,7 @@ refuseSettings(const po::variables_map& given)
 {
   po::options_description settings;
   settings.add_options()("live", "");
-  app::describeSettings(app::Settings(), settings);
+  app::describeSettings(settings);
   for (const auto& option : settings.options())
     if (given.count(option->long_name()) > 0)
       throw io::UsageError("--" + option->long_name() +
@@ -286,7 +286,7 @@ parseCommandLine(int argc, const char* const* argv)
       (request.view.width < 2 * least_width || request.view.height < 2 * least_height))
     throw io::UsageError("--size: with -multiview 1 at least 600x400");
   if (request.posterior_file.empty())
-    request.settings = app::settingsFrom(given, app::Settings(), request.note);
+    request.settings = app::settingsFrom(given, request.note);
   else
     refuseSettings(given);
   return request;
