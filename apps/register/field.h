@@ -38,37 +38,23 @@ pathOf(const Field& field)
   return std::string(field.group) + '.' + field.key;
 }
 
-/** \brief A visitor of fields that looks for the option of a complaint of validate():
- * "prior.variance[x] is ..." speaks of the key "variance_m2_rad2". */
-class OptionFinder {
-public:
-  explicit OptionFinder(const std::string& complaint)
-  : complaint_(complaint)
-  , name_(complaint.substr(0, complaint.find_first_of(" [")))
-  {
-    name_.erase(0, name_.find('.') + 1);
-  }
-
-  template <typename T>
-  void
-  operator()(const Field& field, const T&)
-  {
+/** \brief A complaint of validate() behind the option that it is about:
+ * "prior.variance[x] is ..." speaks of the key "variance_m2_rad2".
+ * \param[in] visit_fields passes all fields to the visitor that it gets */
+template <typename VisitFields>
+std::string
+complaintWithOption(const std::string& complaint, const VisitFields& visit_fields)
+{
+  std::string name = complaint.substr(0, complaint.find_first_of(" ["));
+  name.erase(0, name.find('.') + 1);
+  std::string option;
+  const auto look = [&](const Field& field, const auto&) {
     const std::string key = field.key;
-    if (key == name_ || "num_" + key == name_ || key.rfind(name_ + '_', 0) == 0)
-      option_ = "--" + longNameOf(field) + ": ";
-  }
-
-  /** \brief The complaint behind its option. */
-  std::string
-  complaintWithOption() const
-  {
-    return option_ + complaint_;
-  }
-
-private:
-  std::string complaint_;
-  std::string name_;
-  std::string option_;
-};
+    if (key == name || "num_" + key == name || key.rfind(name + '_', 0) == 0)
+      option = "--" + longNameOf(field) + ": ";
+  };
+  visit_fields(look);
+  return option + complaint;
+}
 
 } // namespace bayesian_icp::app

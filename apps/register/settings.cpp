@@ -72,11 +72,11 @@ Settings::validate() const
     return std::string("--residual: is ") + toString(options.exact.residual.residual) +
            ", but must be point-to-point with --reciprocal or --one-to-one";
   const std::string complaint = options.validate();
-  if (complaint.empty())
-    return "";
-  OptionFinder finder(complaint);
-  visitSettings(*this, finder);
-  return finder.complaintWithOption();
+  return complaint.empty()
+             ? ""
+             : complaintWithOption(complaint, [this](const auto& visitor) {
+                 visitSettings(*this, visitor);
+               });
 }
 
 void

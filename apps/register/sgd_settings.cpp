@@ -87,11 +87,9 @@ check(const SgdSettings& settings, bool has_step_size)
   if (has_step_size && std::isnan(options.step_size))
     throw io::UsageError("--step-size: is nan, but must be positive and finite");
   const std::string complaint = options.validate();
-  if (complaint.empty())
-    return;
-  OptionFinder finder(complaint);
-  visitSgdFields(settings, finder);
-  throw io::UsageError(finder.complaintWithOption());
+  if (!complaint.empty())
+    throw io::UsageError(complaintWithOption(
+        complaint, [&](const auto& visitor) { visitSgdFields(settings, visitor); }));
 }
 
 } // namespace
