@@ -84,43 +84,17 @@ read(const Field& field, const JsonNode& node, Automatic<T>& value)
   value = given;
 }
 
-struct JsonReader {
-  const JsonNode document;
-  /** Groups, and "group.key". */
-  std::set<std::string> known;
-
-  template <typename T>
-  void
-  operator()(const Field& field, T& value)
-  {
-    known.insert(field.group);
-    known.insert(pathOf(field));
-    if (!document.has(field.group))
-      return;
-    document[field.group].requireObject();
-    if (document[field.group].has(field.key))
-      read(field, document[field.group][field.key], value);
-  }
-
-  void
-  refuseUnknownKeys(Preset preset) const
-  {
-    for (const auto& [group, content] : document.json().items()) {
-      refuseIfUnknown(group, preset);
-      for (const auto& item : content.items())
-        refuseIfUnknown(group + '.' + item.key(), preset);
-    }
-  }
-
-  void
-  refuseIfUnknown(const std::string& path, Preset preset) const
-  {
-    if (known.count(path) > 0)
-      return;
-    refuseOfOtherPresets(path, preset);
-    throw io::UsageError("unknown key " + io::inQuotes(path));
-  }
-};
+/** \throws io::UsageError if \p path, a group or "group.key", is not \p known */
+void
+refuseIfUnknown(const std::string& path,
+                const std::set<std::string>& known,
+                Preset preset)
+{
+  if (known.count(path) > 0)
+    return;
+  refuseOfOtherPresets(path, preset);
+  throw io::UsageError("unknown key " + io::inQuotes(path));
+}
 
 } // namespace
 
@@ -141,9 +115,22 @@ settingsOf(const json& document, const Settings& defaults)
     throw io::UsageError("has settings of several presets, as former versions wrote "
                          "them: keep those of one");
   Settings settings = defaults;
-  JsonReader reader{JsonNode(document), {}};
-  visitSettings(settings, reader);
-  reader.refuseUnknownKeys(settings.options.preset);
+  const JsonNode root(document);
+  std::set<std::string> known;
+  const auto take = [&](const Field& field, auto& value) {
+    known.insert({field.group, pathOf(field)});
+    if (!root.has(field.group))
+      return;
+    root[field.group].requireObject();
+    if (root[field.group].has(field.key))
+      read(field, root[field.group][field.key], value);
+  };
+  visitSettings(settings, take);
+  for (const auto& [group, content] : document.items()) {
+    refuseIfUnknown(group, known, settings.options.preset);
+    for (const auto& item : content.items())
+      refuseIfUnknown(group + '.' + item.key(), known, settings.options.preset);
+  }
   if (document.contains(json::json_pointer("/sgld/step_size")))
     settings.is_step_size_times_points = false;
   if (document.contains(json::json_pointer("/posterior/effective_points")))
