@@ -61,7 +61,10 @@ private:
     if (!pair.guess_file.empty())
       settings.guess = io::readMotionFile(pair.guess_file);
     Run run = readRun(pair.source_file, pair.target_file, settings);
-    registerClouds([this](const Progress&) { return !isStopped(); }, run);
+    run.result = registerClouds(run.source.points,
+                                run.target.points,
+                                run.settings,
+                                [this](const Progress&) { return !isStopped(); });
     return run;
   }
 

@@ -34,14 +34,8 @@ runRegistration(const Request& request)
                                     noteOfZeros(run.target),
                                     noteOfSize(run.source, run.settings)})
       io::tell(note);
-  ProgressBar bar(!request.is_quiet);
   io::catchInterrupt();
-  registerClouds(
-      [&bar](const Progress& progress) {
-        bar.update(progress);
-        return !io::wasInterrupted();
-      },
-      run);
+  registerWithBar(!request.is_quiet, run);
   return run;
 }
 

@@ -1,5 +1,7 @@
 #include "register/progress_bar.h"
 
+#include "io/interrupt.h"
+
 #include <unistd.h>
 
 #include <chrono>
@@ -68,6 +70,19 @@ ProgressBar::draw() const
     std::fprintf(stderr, "\r%s [%s] %3ld %%", activity_, bar.c_str(), percent);
   }
   std::fflush(stderr);
+}
+
+void
+registerWithBar(bool is_wanted, Run& run)
+{
+  ProgressBar bar(is_wanted);
+  run.result = registerClouds(run.source.points,
+                              run.target.points,
+                              run.settings,
+                              [&bar](const Progress& progress) {
+                                bar.update(progress);
+                                return !io::wasInterrupted();
+                              });
 }
 
 } // namespace bayesian_icp::app

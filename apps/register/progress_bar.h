@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/draws.h>
+#include "register/run.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -44,5 +44,10 @@ private:
   std::condition_variable stop_;
   std::thread thread_;
 };
+
+/** \brief Register the clouds of \p run until it is done or interrupted, with a bar if
+ * that is wanted. */
+void
+registerWithBar(bool is_wanted, Run& run);
 
 } // namespace bayesian_icp::app

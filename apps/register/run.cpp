@@ -221,13 +221,4 @@ registerClouds(const Eigen::Matrix3Xf& source,
   return result;
 }
 
-void
-registerClouds(const ProgressCallback& progress,
-               Run& run,
-               const IcpCallback& icp_progress)
-{
-  run.result = registerClouds(
-      run.source.points, run.target.points, run.settings, progress, icp_progress);
-}
-
 } // namespace bayesian_icp::app

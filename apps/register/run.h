@@ -63,7 +63,7 @@ using IcpCallback = std::function<void(const Eigen::Matrix4d& T_target_source)>;
 
 /** \brief Run ICP and sample the posterior.
  * \param[in] source,target x, y, z [m], one point per column; not finite: skipped
- * \param[in] progress called after each step of the chains
+ * \param[in] progress called after each step of the chains; returns false to cancel
  * \param[in] icp_progress called at ICP's start and after each of its iterations; may
  * be empty */
 RegistrationResult
@@ -71,14 +71,6 @@ registerClouds(const Eigen::Matrix3Xf& source,
                const Eigen::Matrix3Xf& target,
                const Settings& settings,
                const ProgressCallback& progress,
-               const IcpCallback& icp_progress = IcpCallback());
-
-/** \brief Register the clouds of \p run.
- * \param[in] progress called after each step of the chains; returns false to cancel
- * \param[in] icp_progress as above */
-void
-registerClouds(const ProgressCallback& progress,
-               Run& run,
                const IcpCallback& icp_progress = IcpCallback());
 
 } // namespace bayesian_icp::app

@@ -132,11 +132,13 @@ registerLive(const Scene& scene,
   LiveState state(scene.source.rowwise().mean());
   LiveDrawing drawing(scene, options, window);
   auto registration = std::async(std::launch::async, [&state, &run] {
-    app::registerClouds(
+    run.result = app::registerClouds(
+        run.source.points,
+        run.target.points,
+        run.settings,
         [&state](const Progress& progress) {
           return state.moveChain(progress) && !io::wasInterrupted();
         },
-        run,
         [&state](const Eigen::Matrix4d& matrix) { state.moveIcp(matrix); });
   });
   while (registration.wait_for(frame) != std::future_status::ready) {

@@ -19,18 +19,6 @@ namespace bayesian_icp::viewer {
 namespace {
 
 void
-registerWithoutWindow(bool is_quiet, app::Run& run)
-{
-  app::ProgressBar bar(!is_quiet);
-  app::registerClouds(
-      [&bar](const Progress& progress) {
-        bar.update(progress);
-        return !io::wasInterrupted();
-      },
-      run);
-}
-
-void
 letUserLook(Window& window)
 {
   window.handleKeys();
@@ -77,7 +65,7 @@ prepareScene(const Request& request, std::optional<Window>& window)
     registerLive(sceneOf(run), request.view, *window, run);
   }
   else
-    registerWithoutWindow(request.is_quiet, run);
+    app::registerWithBar(!request.is_quiet, run);
   return sceneOf(run);
 }
 
