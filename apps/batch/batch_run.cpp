@@ -25,10 +25,10 @@ namespace {
 class Batch {
 public:
   Batch(const std::vector<BatchPair>& pairs,
-        const BatchRunOptions& options,
+        const std::string& output_folder,
         const std::function<void(const BatchResult&)>& take)
   : pairs_(pairs)
-  , options_(options)
+  , output_folder_(output_folder)
   , take_(take)
   {}
 
@@ -97,9 +97,9 @@ private:
   void
   removeFiles(const BatchPair& pair) const
   {
-    const auto folder = std::filesystem::path(options_.output_folder) / pair.name;
+    const auto folder = std::filesystem::path(output_folder_) / pair.name;
     std::error_code error;
-    if (options_.output_folder.empty() || !std::filesystem::exists(folder, error))
+    if (output_folder_.empty() || !std::filesystem::exists(folder, error))
       return;
     io::OutputFolder files(folder.string());
     for (const char* const name : {"posterior.json", "samples.csv"})
@@ -111,8 +111,8 @@ private:
   give(const BatchPair& pair, const Run& run, double seconds, const std::string& state)
   {
     const Summary& summary = run.result.summary;
-    if (!options_.output_folder.empty()) {
-      const std::filesystem::path root(options_.output_folder);
+    if (!output_folder_.empty()) {
+      const std::filesystem::path root(output_folder_);
       io::OutputFolder folder((root / pair.name).string());
       addPosteriorFiles(run, folder);
       folder.commit();
@@ -129,7 +129,7 @@ private:
   }
 
   const std::vector<BatchPair>& pairs_;
-  const BatchRunOptions& options_;
+  const std::string& output_folder_;
   const std::function<void(const BatchResult&)>& take_;
   std::atomic<std::size_t> next_{0};
   FirstException failure_;
@@ -140,16 +140,17 @@ private:
 
 void
 runBatch(const std::vector<BatchPair>& pairs,
-         const BatchRunOptions& options,
+         int num_threads,
+         const std::string& output_folder,
          const std::function<void(const BatchResult&)>& take)
 {
-  const int num_threads =
-      options.num_threads > 0 ? options.num_threads : omp_get_max_threads();
   if (pairs.empty())
     return;
+  if (num_threads <= 0)
+    num_threads = omp_get_max_threads();
   const int num_workers =
       static_cast<int>(std::min(pairs.size(), static_cast<std::size_t>(num_threads)));
-  Batch batch(pairs, options, take);
+  Batch batch(pairs, output_folder, take);
   const auto workAs = [&batch, num_threads, num_workers](int worker) {
     omp_set_num_threads(num_threads / num_workers +
                         (worker < num_threads % num_workers ? 1 : 0));

@@ -12,15 +12,6 @@
 
 namespace bayesian_icp::app {
 
-/** \brief How a batch is run; nothing of it has an effect on the results. */
-struct BatchRunOptions {
-  /** Threads, 0 for as many as OpenMP offers. With more pairs than threads each pair
-   * has one, otherwise the pairs share them evenly. */
-  int num_threads = 0;
-  /** Folder for a folder a pair with posterior.json and samples.csv; empty for none. */
-  std::string output_folder;
-};
-
 /** \brief The status of a pair that could not be registered. */
 constexpr const char* error_status = "error";
 
@@ -42,12 +33,18 @@ struct BatchResult {
  *
  * A pair that fails, by an exception too, has a result that says so. After an interrupt
  * no pair is begun, and those under way are given up, without a result.
+ * \param[in] num_threads 0 for as many as OpenMP offers. With more pairs than threads
+ *            each pair has one, otherwise the pairs share them evenly. The results do
+ *            not depend on it.
+ * \param[in] output_folder for a folder a pair with posterior.json and samples.csv;
+ *            empty for none
  * \param[in] take gets each result as it comes, by one thread at a time
  * \throws io::FileError if files of a pair cannot be written, and what \p take throws;
  *         nothing more is begun then */
 void
 runBatch(const std::vector<BatchPair>& pairs,
-         const BatchRunOptions& options,
+         int num_threads,
+         const std::string& output_folder,
          const std::function<void(const BatchResult&)>& take);
 
 } // namespace bayesian_icp::app

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <optional>
 
@@ -137,42 +138,35 @@ parseCommandLine(int argc, const char* const* argv)
   return request;
 }
 
-/** Reports each pair on standard error. */
-class ProgressLines {
-public:
-  ProgressLines(const Ranks& ranks, std::size_t num_pairs, bool is_wanted)
-  : start_(ranks.size() > 1 ? "rank " + io::textOf(ranks.rank()) + ": " : "")
-  , num_pairs_(num_pairs)
-  , is_wanted_(is_wanted)
-  {}
-
-  void
-  show(const BatchResult& result)
-  {
-    ++num_done_;
-    if (is_wanted_)
-      std::cerr << start_ + io::textOf(num_done_) + '/' + io::textOf(num_pairs_) + ' ' +
-                       result.pair.name + ": " + result.status + " (" +
-                       io::fixedTextOf(result.seconds, 1) + " s)\n";
-  }
-
-private:
-  std::string start_;
-  std::size_t num_pairs_;
-  bool is_wanted_;
-  std::size_t num_done_ = 0;
-};
-
 int
 exitCodeOf(bool are_all_ok)
 {
   return io::wasInterrupted() ? io::Interrupted : are_all_ok ? io::Good : io::NotGood;
 }
 
-BatchRunOptions
-runOptionsOf(const Request& request)
+/** Registers \p pairs, passes each result on to \p take, and reports it on standard
+ * error. */
+void
+registerPairs(const Request& request,
+              const Ranks& ranks,
+              const std::vector<BatchPair>& pairs,
+              const std::function<void(const BatchResult&)>& take)
 {
-  return {request.settings.options.chains.num_threads, request.output_folder};
+  const std::string start =
+      ranks.size() > 1 ? "rank " + io::textOf(ranks.rank()) + ": " : "";
+  std::size_t num_done = 0;
+  runBatch(pairs,
+           request.settings.options.chains.num_threads,
+           request.output_folder,
+           [&](const BatchResult& result) {
+             take(result);
+             ++num_done;
+             if (!request.is_quiet)
+               std::cerr << start + io::textOf(num_done) + '/' +
+                                io::textOf(pairs.size()) + ' ' + result.pair.name +
+                                ": " + result.status + " (" +
+                                io::fixedTextOf(result.seconds, 1) + " s)\n";
+           });
 }
 
 int
@@ -180,11 +174,9 @@ runToStandardOutput(const Request& request,
                     const Ranks& ranks,
                     const std::vector<BatchPair>& pairs)
 {
-  ProgressLines progress(ranks, pairs.size(), !request.is_quiet);
   bool are_all_ok = true;
-  runBatch(pairs, runOptionsOf(request), [&](const BatchResult& result) {
+  registerPairs(request, ranks, pairs, [&](const BatchResult& result) {
     io::print(batchLine(result) + '\n');
-    progress.show(result);
     are_all_ok &= result.status == toString(Status::Ok);
   });
   return exitCodeOf(are_all_ok);
@@ -250,13 +242,11 @@ runToFile(const Request& request,
   if (ranks.rank() > 0)
     part.emplace(rankFileName(request.results_file, ranks.rank()),
                  [](const std::string&) { return true; });
-  ProgressLines progress(ranks, share.size(), !request.is_quiet);
-  runBatch(share, runOptionsOf(request), [&](const BatchResult& result) {
+  registerPairs(request, ranks, share, [&](const BatchResult& result) {
     if (file)
       file->add(batchLine(result));
     else
       part->add(batchLine(result));
-    progress.show(result);
   });
   part.reset();
   ranks.maximum(0); // All have written their parts.

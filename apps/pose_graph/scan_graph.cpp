@@ -126,7 +126,8 @@ private:
       }
     }
     runBatch(pairs,
-             {request_.settings.options.chains.num_threads, ""},
+             request_.settings.options.chains.num_threads,
+             "",
              [&](const BatchResult& result) {
                const auto position =
                    static_cast<std::size_t>(&result.pair - pairs.data());
