@@ -88,8 +88,7 @@ batchLine(const BatchResult& result)
   line["seed"] = result.pair.settings.options.chains.seed;
   line["settings_id"] = result.pair.settings_id;
   line["files_state"] = result.files_state;
-  // Names of files need not be UTF-8.
-  return line.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return jsonText(line);
 }
 
 std::string

@@ -29,6 +29,14 @@ jsonOf(const Eigen::MatrixBase<Derived>& matrix)
   return list;
 }
 
+/** \brief As text. Names of files need not be UTF-8; what is not becomes U+FFFD.
+ * \param[in] indent number of blanks; -1: all in one line */
+inline std::string
+jsonText(const nlohmann::ordered_json& value, int indent = -1)
+{
+  return value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 /** \brief A visitor that writes the fields of a table of settings in their groups. */
 struct FieldWriter {
   nlohmann::ordered_json document = nlohmann::ordered_json::object();

@@ -290,8 +290,7 @@ posteriorJson(const Run& run)
       {"prior_frame",
        toString(priorFrameOf(run.settings.options, run.source.points.cast<double>()))},
       {"time", timeJson(run)}};
-  // Names of files need not be UTF-8.
-  return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+  return jsonText(document, 2) + '\n';
 }
 
 void

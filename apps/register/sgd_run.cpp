@@ -166,8 +166,7 @@ sgdJson(const SgdRun& run)
       {"time",
        {{"reading_s", run.reading_seconds},
         {"registration_s", run.registration_seconds}}}};
-  // Names of files need not be UTF-8.
-  return document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+  return jsonText(document, 2) + '\n';
 }
 
 /** Without a step there is sgd_icp.json alone, which says why, and no older aligned.pcd

@@ -259,9 +259,6 @@ chainSection(const DrawSet& draws, const Summary& summary)
 Section
 repeatSection(const Run& run, const std::string& command)
 {
-  const std::string options =
-      jsonOf(run.settings)
-          .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return {"repeat",
           "To repeat the run",
           commandHtml(command,
@@ -269,7 +266,7 @@ repeatSection(const Run& run, const std::string& command)
                       "threads") +
               html::tableHtml(runTable(run)) +
               html::detailsHtml("All options, as --config takes them",
-                                html::codeHtml(options))};
+                                html::codeHtml(jsonOf(run.settings).dump(2)))};
 }
 
 /** All parts below the verdict. */

@@ -58,13 +58,6 @@ readEdge(const json& value)
   return {value.at("target"), readPose(value), value.at("num_unmeasured")};
 }
 
-/** Names of files need not be UTF-8. */
-std::string
-textOf(const ordered_json& value)
-{
-  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
 /** Differs if something differs that decides the result of a track: a line with another
  * one is not of this track. */
 std::string
@@ -81,7 +74,7 @@ settingsIdOf(const TrackRequest& request)
                             request.scans.front(),
                             request.times.front(),
                             BAYESIAN_ICP_VERSION};
-  return io::textOfHash(io::hashOf(textOf(all)));
+  return io::textOfHash(io::hashOf(jsonText(all)));
 }
 
 } // namespace
@@ -110,7 +103,7 @@ trackLine(const TrackRequest& request, const Track& track)
                              {"seconds", step.seconds},
                              {"settings_id", settingsIdOf(request)},
                              {"files_state", step.files_state}};
-  return textOf(line);
+  return jsonText(line);
 }
 
 TrackStep
@@ -124,7 +117,7 @@ readTrackLine(const std::string& line, const TrackRequest& request, int scan)
   if (k >= request.scans.size())
     throw std::runtime_error("there is no " + name);
   if (const std::string file = document.at("file");
-      file != json::parse(textOf(request.scans[k])))
+      file != json::parse(jsonText(request.scans[k])))
     throw std::runtime_error(name + " is another file here, " +
                              io::inQuotes(request.scans[k]) + " in place of " +
                              io::inQuotes(file));
