@@ -4,6 +4,7 @@
 
 #include <boost/program_options/parsers.hpp>
 
+#include <algorithm>
 #include <set>
 #include <sstream>
 
@@ -30,8 +31,7 @@ quotedForShell(const std::string& argument)
 } // namespace
 
 po::variables_map
-splitCommandLine(int argc,
-                 const char* const* argv,
+splitCommandLine(const std::vector<std::string>& arguments,
                  const po::options_description& options,
                  const char* positional_name)
 {
@@ -47,7 +47,7 @@ splitCommandLine(int argc,
   }
   po::variables_map given;
   try {
-    po::store(po::command_line_parser(argc, argv)
+    po::store(po::command_line_parser(arguments)
                   .options(known)
                   .positional(positional)
                   .style(option_style)
@@ -84,8 +84,8 @@ readCommandLine(int argc,
                 const char* positional_name,
                 const ToolText& tool)
 {
-  const po::variables_map given =
-      splitCommandLine(argc, argv, options, positional_name);
+  const po::variables_map given = splitCommandLine(
+      {argv + std::min(argc, 1), argv + argc}, options, positional_name);
   if (given.count("help") == 0 && given.count("version") == 0)
     return given;
   std::ostringstream text;

@@ -30,13 +30,13 @@ constexpr int option_style =
     ~boost::program_options::command_line_style::allow_guessing;
 
 /** \brief Take a command line apart; options begin with one dash or two.
+ * \param[in] arguments all but the program's name
  * \param[in] options those of one name count once
  * \param[in] positional_name option under which the arguments without a dash are found,
  *            as a std::vector<std::string>; null: there may be none
  * \throws io::UsageError if there is an option that is not in \p options */
 boost::program_options::variables_map
-splitCommandLine(int argc,
-                 const char* const* argv,
+splitCommandLine(const std::vector<std::string>& arguments,
                  const boost::program_options::options_description& options,
                  const char* positional_name);
 

@@ -60,28 +60,24 @@ readParameters(const std::map<std::string, std::string>& parameters)
 {
   LocalizerOptions options;
   po::options_description own, all;
-  own.add_options()("map-frame", io::text("", options.map_frame), "");
-  own.add_options()("cloud-frame", io::text("", options.cloud_frame), "");
-  own.add_options()("max-prior-age-s", io::number("", options.max_prior_age), "");
-  own.add_options()(
-      "prior-floor-m", io::number("", options.prior_floor.translation), "");
-  own.add_options()(
-      "prior-floor-rad", io::number("", options.prior_floor.rotation), "");
+  // clang-format off
+  own.add_options()
+    ("map-frame", io::text("", options.map_frame))
+    ("cloud-frame", io::text("", options.cloud_frame))
+    ("max-prior-age-s", io::number("", options.max_prior_age))
+    ("prior-floor-m", io::number("", options.prior_floor.translation))
+    ("prior-floor-rad", io::number("", options.prior_floor.rotation));
+  // clang-format on
   all.add(own);
   describeSettings(all);
 
-  std::vector<std::string> texts = {"parameters"};
+  std::vector<std::string> arguments;
   for (const auto& [name, text] : parameters) {
     const std::string argument = argumentOf(name, text, all);
     if (!argument.empty())
-      texts.push_back(argument);
+      arguments.push_back(argument);
   }
-  std::vector<const char*> arguments;
-  arguments.reserve(texts.size());
-  for (const std::string& text : texts)
-    arguments.push_back(text.c_str());
-  const po::variables_map given = io::splitCommandLine(
-      static_cast<int>(arguments.size()), arguments.data(), all, nullptr);
+  const po::variables_map given = io::splitCommandLine(arguments, all, nullptr);
   io::takeOptions(given, own);
   std::string note;
   options.settings = settingsFrom(given, note);
