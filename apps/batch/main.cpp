@@ -65,15 +65,6 @@ describeOptions(Request& request)
   return all;
 }
 
-void
-refuseSecondPrior(const po::variables_map& given)
-{
-  for (const char* const name : {"prior-mean", "prior-variance", "prior-frame"})
-    if (given.count(name) > 0)
-      throw io::UsageError("--suggested-prior and --" + std::string(name) +
-                           " exclude each other");
-}
-
 io::ToolText
 toolText()
 {
@@ -133,7 +124,9 @@ parseCommandLine(int argc, const char* const* argv)
   request.manifest_file = manifests[0];
   io::takeOptions(given, options);
   if (request.use_suggested_prior)
-    refuseSecondPrior(given);
+    io::refuseOptions(given,
+                      {"prior-mean", "prior-variance", "prior-frame"},
+                      " and --suggested-prior exclude each other");
   request.settings = settingsFrom(given, request.note);
   return request;
 }

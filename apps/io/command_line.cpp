@@ -69,6 +69,16 @@ takeOptions(const po::variables_map& given, const po::options_description& optio
                  [&] { option->semantic()->notify(found->second.value()); });
 }
 
+void
+refuseOptions(const po::variables_map& given,
+              const std::vector<std::string>& options,
+              const std::string& reason)
+{
+  for (const std::string& option : options)
+    if (given.count(option) > 0)
+      throw UsageError("--" + option + reason);
+}
+
 po::options_description
 generalOptions()
 {

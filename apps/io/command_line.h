@@ -47,6 +47,13 @@ void
 takeOptions(const boost::program_options::variables_map& given,
             const boost::program_options::options_description& options);
 
+/** \brief Refuse options that are of no use with others.
+ * \throws UsageError "--OPTION REASON" of the first of \p options that is given */
+void
+refuseOptions(const boost::program_options::variables_map& given,
+              const std::vector<std::string>& options,
+              const std::string& reason);
+
 /** \brief What a tool says of itself. */
 struct ToolText {
   /** For --version: its name and version. */

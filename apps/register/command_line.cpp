@@ -72,24 +72,6 @@ describeExportOptions(ExportRequest& exports)
   return group;
 }
 
-/** \throws io::UsageError if there is an option that has no effect because --export is
- *         missing */
-void
-refuseExportOptionsWithoutExport(const po::variables_map& given)
-{
-  if (given.count("export") > 0)
-    return;
-  for (const char* option : {"target-frame",
-                             "source-frame",
-                             "timestamp",
-                             "vertices",
-                             "export-without-prior",
-                             "export-unreliable"})
-    if (given.count(option) > 0)
-      throw io::UsageError(std::string("--") + option +
-                           ": has no effect without --export");
-}
-
 /** \throws io::UsageError if a cloud of a former run would be replaced while it is used
  */
 void
@@ -201,9 +183,8 @@ isSgdIcpAskedFor(const po::variables_map& given)
                          " is not bayesian-icp or sgd-icp");
   const po::options_description own = describeSgdOptions();
   for (const auto& option : own.options())
-    if (given.count(option->long_name()) > 0)
-      throw io::UsageError("--" + option->long_name() +
-                           ": has no effect with method bayesian-icp");
+    io::refuseOptions(
+        given, {option->long_name()}, ": has no effect with method bayesian-icp");
   return false;
 }
 
@@ -223,7 +204,15 @@ parseCommandLine(int argc, const char* const* argv)
   if (is_sgd)
     request.sgd = sgdSettingsFrom(given);
   io::takeClouds(given, "cloud", request.source_file, request.target_file);
-  refuseExportOptionsWithoutExport(given);
+  if (given.count("export") == 0)
+    io::refuseOptions(given,
+                      {"target-frame",
+                       "source-frame",
+                       "timestamp",
+                       "vertices",
+                       "export-without-prior",
+                       "export-unreliable"},
+                      ": has no effect without --export");
   io::takeOptions(given, options);
   refuseToReplaceInput(request);
   request.wants_report = given.count("no-report") == 0;

@@ -10,21 +10,6 @@ namespace bayesian_icp::app {
 
 namespace po = boost::program_options;
 
-namespace {
-
-void
-refuseLengths(const po::variables_map& given, const std::string& config)
-{
-  for (const char* option :
-       {"guess", "max-distance", "prior-mean", "prior-variance", "initial-spread"})
-    if (given.count(option) > 0)
-      throw io::UsageError(std::string("--") + option +
-                           ": is in metres, but with normalize-cloud the lengths of " +
-                           config + " are in units of the clouds");
-}
-
-} // namespace
-
 void
 describeSettings(po::options_description& options)
 {
@@ -68,7 +53,11 @@ settingsFrom(const po::variables_map& given, std::string& note)
   OptionReader reader{given};
   visitSettings(settings, reader);
   if (settings.are_lengths_scaled)
-    refuseLengths(given, config);
+    io::refuseOptions(
+        given,
+        {"guess", "max-distance", "prior-mean", "prior-variance", "initial-spread"},
+        ": is in metres, but with normalize-cloud the lengths of " + config +
+            " are in units of the clouds");
   if (given.count("step-size") > 0)
     settings.is_step_size_times_points = false;
   if (given.count("effective-points") > 0)

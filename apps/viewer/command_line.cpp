@@ -257,9 +257,8 @@ refuseSettings(const po::variables_map& given)
   settings.add_options()("live", "");
   app::describeSettings(settings);
   for (const auto& option : settings.options())
-    if (given.count(option->long_name()) > 0)
-      throw io::UsageError("--" + option->long_name() +
-                           ": has no effect with a finished posterior");
+    io::refuseOptions(
+        given, {option->long_name()}, ": has no effect with a finished posterior");
 }
 
 } // namespace
