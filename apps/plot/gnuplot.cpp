@@ -52,14 +52,6 @@ documentsOf(const std::string& text)
 
 } // namespace
 
-void
-requireGnuplot(const std::string& option)
-{
-  if (!runChildProgram({"gnuplot", "--version"}, "").is_good)
-    throw GnuplotError("is not installed, but " + option +
-                       " needs it (package gnuplot-nox)");
-}
-
 std::string
 quotedForGnuplot(const std::string& text)
 {
@@ -83,6 +75,8 @@ drawSvgs(const std::vector<Drawing>& drawings)
     script += scriptOf(drawing);
   // Users' own settings of gnuplot are not for these pictures.
   const ProgramResult run = runChildProgram({"gnuplot", "--default-settings"}, script);
+  if (!run.is_good && !runChildProgram({"gnuplot", "--version"}, "").is_good)
+    throw GnuplotError("is not installed, but figures need it (package gnuplot-nox)");
   if (!run.is_good)
     throw GnuplotError("could not draw the figures" + firstComplaint(run.errors));
   std::vector<std::string> svgs = documentsOf(run.output);

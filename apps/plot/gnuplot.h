@@ -15,12 +15,6 @@ struct GnuplotError : io::FileError {
   explicit GnuplotError(const std::string& reason) : io::FileError("gnuplot", reason) {}
 };
 
-/** \brief For options that cannot do without it.
- * \param[in] option its name, with dashes
- * \throws GnuplotError if there is no gnuplot */
-void
-requireGnuplot(const std::string& option);
-
 /** \brief A string of gnuplot's. */
 std::string
 quotedForGnuplot(const std::string& text);
@@ -41,7 +35,7 @@ struct Drawing {
 
 /** \brief The drawings as SVG documents, in their order. Backgrounds are transparent;
  * html/inline_svg.h puts them into pages.
- * \throws GnuplotError if it does not draw them */
+ * \throws GnuplotError if it is not there, or does not draw them */
 std::vector<std::string>
 drawSvgs(const std::vector<Drawing>& drawings);
 

@@ -9,10 +9,10 @@
 #include "io/numbers.h"
 #include "io/output_folder.h"
 #include "io/program.h"
-#include "plot/gnuplot.h"
 #include "pose_graph/graph_command.h"
 #include "pose_graph/graph_report.h"
 #include "register/cloud_notes.h"
+#include "report/section.h"
 
 #include <filesystem>
 #include <optional>
@@ -80,13 +80,7 @@ addOptimum(const GraphCommand& command,
     numbers.push_back(1'000'000'000 * static_cast<std::int64_t>(k));
   folder.add("trajectory_tum.txt", tumText(numbers, optimum->poses));
   folder.add("trajectory_covariance.txt", tumCovarianceText(numbers, optimum->poses));
-  try {
-    folder.add("report.html", graphReportHtml(command, graph, *optimum, cycles));
-  }
-  catch (const plot::GnuplotError& error) {
-    io::tell(std::string(error.what()) + "; report.html is left out");
-    folder.leaveOut("report.html");
-  }
+  addReport([&] { return graphReportHtml(command, graph, *optimum, cycles); }, folder);
 }
 
 int

@@ -4,7 +4,6 @@
 #include "io/interrupt.h"
 #include "io/numbers.h"
 #include "io/program.h"
-#include "plot/gnuplot.h"
 #include "register/cloud_notes.h"
 #include "register/command_line.h"
 #include "register/export_files.h"
@@ -72,40 +71,21 @@ printExport(const Request& request, const Run& run)
   }
 }
 
-/** Adds the report, if it is wanted. What keeps it from being drawn keeps nothing else
- * from being written.
- * \return why there is none; empty if there is one, or none is wanted */
-std::string
-addReport(const Request& request, const Run& run, io::OutputFolder& folder)
-{
-  constexpr const char* name = "report.html";
-  std::string complaint;
-  if (request.wants_report)
-    try {
-      plot::requireGnuplot(name);
-      folder.add(name, reportHtml(run, request.command));
-      return "";
-    }
-    catch (const plot::GnuplotError& error) {
-      complaint = std::string(name) + " is not written: " + error.what();
-    }
-  folder.leaveOut(name);
-  return complaint;
-}
-
 /** \return whether all that was asked for could be exported */
 bool
 writeFiles(const Request& request, const Run& run, io::OutputFolder& folder)
 {
   const auto refusals =
       addExports(request.exports, exportedEstimate(request, run), folder);
-  const std::string complaint = addReport(request, run, folder);
+  if (request.wants_report)
+    addReport([&] { return reportHtml(run, request.command); }, folder);
+  else
+    folder.leaveOut("report.html");
   folder.add("aligned.pcd", [&](std::ostream& stream) {
     io::writeAligned(run.source, run.target, run.result.final_matrix, stream);
   });
   addPosteriorFiles(run, folder);
   folder.commit();
-  io::tell(complaint);
   for (const std::string& refusal : refusals)
     io::tell(refusal);
   return refusals.empty();

@@ -1,6 +1,7 @@
 #include "report/section.h"
 
 #include "html/inline_svg.h"
+#include "io/program.h"
 
 #include <filesystem>
 
@@ -53,6 +54,19 @@ sectionsHtml(const std::vector<Section>& sections)
   for (const Section& section : sections)
     body += sectionHtml(section, next_svg);
   return body;
+}
+
+void
+addReport(const std::function<std::string()>& make, io::OutputFolder& folder)
+{
+  const std::string name = "report.html";
+  try {
+    folder.add(name, make());
+  }
+  catch (const plot::GnuplotError& error) {
+    io::tell(name + " is not written: " + error.what());
+    folder.leaveOut(name);
+  }
 }
 
 } // namespace bayesian_icp::app

@@ -4,8 +4,10 @@
 #pragma once
 
 #include "html/page.h"
+#include "io/output_folder.h"
 #include "report/chart.h"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,5 +33,12 @@ commandHtml(const std::string& command, const std::string& note = "");
  * \throws plot::GnuplotError if gnuplot cannot draw */
 std::string
 sectionsHtml(const std::vector<Section>& sections);
+
+/** \brief Put report.html on its way into \p folder. What keeps it from being drawn
+ * keeps nothing else from being written: it is told on standard error, and there is no
+ * report.
+ * \param[in] make returns the page */
+void
+addReport(const std::function<std::string()>& make, io::OutputFolder& folder);
 
 } // namespace bayesian_icp::app

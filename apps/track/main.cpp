@@ -8,8 +8,8 @@
 #include "io/numbers.h"
 #include "io/output_folder.h"
 #include "io/program.h"
-#include "plot/gnuplot.h"
 #include "register/cloud_notes.h"
+#include "report/section.h"
 #include "track/track_command.h"
 #include "track/track_line.h"
 #include "track/track_report.h"
@@ -68,13 +68,7 @@ writeFiles(const TrackCommand& command, const Track& track, io::OutputFolder& fo
   folder.add("trajectory_covariance.txt",
              tumCovarianceText(track.times(), track.poses()));
   folder.add("graph.g2o", g2oText(track.poses(), track.edges()));
-  try {
-    folder.add("report.html", trackReportHtml(command, track));
-  }
-  catch (const plot::GnuplotError& error) {
-    io::tell(std::string(error.what()) + "; report.html is left out");
-    folder.leaveOut("report.html");
-  }
+  addReport([&] { return trackReportHtml(command, track); }, folder);
   folder.commit();
 }
 
