@@ -33,7 +33,6 @@ if(BAYESIAN_ICP_BUILD_VIEWER)
     viewer/drawing.cpp
     viewer/live_view.cpp
     viewer/main.cpp
-    viewer/scene_files.cpp
     viewer/window.cpp)
   # X11's macros would change what is compiled with it.
   set_source_files_properties(viewer/display.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
