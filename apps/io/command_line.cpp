@@ -148,23 +148,6 @@ optionTexts(const po::variables_map& given, const std::string& name)
                                : std::vector<std::string>();
 }
 
-void
-takeClouds(const po::variables_map& given,
-           const std::string& name,
-           std::string& source_file,
-           std::string& target_file)
-{
-  const std::vector<std::string> clouds = optionTexts(given, name);
-  if (clouds.size() < 2)
-    throw UsageError("expected a source and a target cloud");
-  if (clouds.size() > 2)
-    throw UsageError(
-        "expected one source and one target cloud, but got a third file: " +
-        inQuotes(clouds[2]));
-  source_file = clouds[0];
-  target_file = clouds[1];
-}
-
 std::string
 commandOf(int argc, const char* const* argv)
 {

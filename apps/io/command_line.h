@@ -146,12 +146,4 @@ std::vector<std::string>
 optionTexts(const boost::program_options::variables_map& given,
             const std::string& name);
 
-/** \brief The arguments \p name as the files of a source and a target.
- * \throws io::UsageError if they are not two */
-void
-takeClouds(const boost::program_options::variables_map& given,
-           const std::string& name,
-           std::string& source_file,
-           std::string& target_file);
-
 } // namespace bayesian_icp::io

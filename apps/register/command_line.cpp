@@ -2,7 +2,10 @@
 
 #include "io/command_line.h"
 #include "io/folders.h"
+#include "io/time_stamps.h"
 #include "register/settings_options.h"
+
+#include <algorithm>
 
 namespace bayesian_icp::app {
 
@@ -18,6 +21,29 @@ takeVertices(const std::string& text, ExportOptions& options)
   if (items.size() != 2 || !io::readNumber(items[0], options.target_vertex) ||
       !io::readNumber(items[1], options.source_vertex) || !options.validate().empty())
     io::refuseValue(text, "two different whole numbers from 0 on");
+}
+
+/** Nanoseconds of a decimal number of seconds, without loss. */
+void
+takeTimestamp(const std::string& seconds, ExportOptions& options)
+{
+  if (!io::readSeconds(seconds, options.timestamp_ns) || !options.validate().empty())
+    io::refuseValue(seconds,
+                    "a number of seconds from 0 to below 2^31 with at most nine "
+                    "decimals");
+}
+
+/** The formats of a list with commas, each once. */
+void
+takeFormats(const std::string& list, std::vector<std::string>& formats)
+{
+  for (const auto item : io::splitAt(',', list)) {
+    const std::string format(item);
+    if (!isExportFormat(format))
+      io::refuseValue(format, export_format_names);
+    if (std::find(formats.begin(), formats.end(), format) == formats.end())
+      formats.push_back(format);
+  }
 }
 
 /** An option that is the name of a frame. */
@@ -47,7 +73,7 @@ describeExportOptions(ExportRequest& exports)
   // clang-format off
   group.add_options()
     ("export", io::taken("LIST", [&exports](const std::string& list) {
-       exports.formats = readExportFormats(list);
+       takeFormats(list, exports.formats);
      }),
      formats.c_str())
     ("target-frame", frame(&ExportOptions::target_frame, options),
@@ -55,7 +81,7 @@ describeExportOptions(ExportRequest& exports)
     ("source-frame", frame(&ExportOptions::source_frame, options),
      "Name of the source frame of csv. (default source)")
     ("timestamp", io::taken("S", [&options](const std::string& seconds) {
-       options.timestamp_ns = readTimestamp(seconds);
+       takeTimestamp(seconds, options);
      }),
      "Time of ros, tum and csv [s since 1970]. (default 0)")
     ("vertices", io::taken("I,J", [&options](const std::string& vertices) {
@@ -70,6 +96,19 @@ describeExportOptions(ExportRequest& exports)
      "posterior is not exported.");
   // clang-format on
   return group;
+}
+
+void
+takeClouds(const std::vector<std::string>& clouds, Request& request)
+{
+  if (clouds.size() < 2)
+    throw io::UsageError("expected a source and a target cloud");
+  if (clouds.size() > 2)
+    throw io::UsageError(
+        "expected one source and one target cloud, but got a third file: " +
+        io::inQuotes(clouds[2]));
+  request.source_file = clouds[0];
+  request.target_file = clouds[1];
 }
 
 /** \throws io::UsageError if a cloud of a former run would be replaced while it is used
@@ -203,7 +242,7 @@ parseCommandLine(int argc, const char* const* argv)
   const bool is_sgd = isSgdIcpAskedFor(given);
   if (is_sgd)
     request.sgd = sgdSettingsFrom(given);
-  io::takeClouds(given, "cloud", request.source_file, request.target_file);
+  takeClouds(io::optionTexts(given, "cloud"), request);
   if (given.count("export") == 0)
     io::refuseOptions(given,
                       {"target-frame",

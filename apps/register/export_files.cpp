@@ -1,10 +1,5 @@
 #include "register/export_files.h"
 
-#include "io/errors.h"
-#include "io/numbers.h"
-#include "io/time_stamps.h"
-
-#include <algorithm>
 #include <stdexcept>
 
 namespace bayesian_icp::app {
@@ -38,31 +33,10 @@ filesOf(const std::string& format)
 
 } // namespace
 
-std::vector<std::string>
-readExportFormats(const std::string& list)
+bool
+isExportFormat(const std::string& name)
 {
-  std::vector<std::string> formats;
-  for (const auto item : io::splitAt(',', list)) {
-    const std::string format(item);
-    if (filesOf(format).empty())
-      throw io::UsageError("--export: " + io::inQuotes(format) + " is not " +
-                           export_format_names);
-    if (std::find(formats.begin(), formats.end(), format) == formats.end())
-      formats.push_back(format);
-  }
-  return formats;
-}
-
-std::int64_t
-readTimestamp(const std::string& seconds)
-{
-  ExportOptions options;
-  if (!io::readSeconds(seconds, options.timestamp_ns) || !options.validate().empty())
-    throw io::UsageError(
-        "--timestamp: " + io::inQuotes(seconds) +
-        " is not a number of seconds from 0 to below 2^31 with at most "
-        "nine decimals");
-  return options.timestamp_ns;
+  return !filesOf(name).empty();
 }
 
 std::string

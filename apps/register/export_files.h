@@ -22,15 +22,9 @@ struct ExportRequest {
 
 constexpr const char* export_format_names = "ros, g2o, gtsam, tum or csv";
 
-/** \brief The formats of a list with commas, each once.
- * \throws io::UsageError if there is another name in it */
-std::vector<std::string>
-readExportFormats(const std::string& list);
-
-/** \brief Nanoseconds of a decimal number of seconds, without loss.
- * \throws io::UsageError if it is none, or has more than nine decimals */
-std::int64_t
-readTimestamp(const std::string& seconds);
+/** \brief Whether \p name is one of these. */
+bool
+isExportFormat(const std::string& name);
 
 /** \brief The text of one format, of TUM without the covariance.
  * \throws std::invalid_argument if the posterior cannot be exported to it */
