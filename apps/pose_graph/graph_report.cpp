@@ -176,10 +176,10 @@ contradictionsHtml(const std::vector<ScanEdge>& edges,
 } // namespace
 
 std::string
-graphReportHtml(const GraphCommand& command,
-                const ScanGraph& graph,
+graphReportHtml(const ScanGraph& graph,
                 const OptimizedPoses& optimum,
-                const std::vector<ClosedCycle>& cycles)
+                const std::vector<ClosedCycle>& cycles,
+                const std::string& command)
 {
   const std::vector<ScanEdge> edges = graph.taken();
   const std::vector<Disagreement> disagreements = disagreementsOf(cycles, optimum);
@@ -226,7 +226,7 @@ graphReportHtml(const GraphCommand& command,
                 cyclesHtml(cycles),
       {},
       contradictionsHtml(edges, optimum, disagreements)};
-  const Section repeat = {"repeat", "To repeat the run", commandHtml(command.command)};
+  const Section repeat = {"repeat", "To repeat the run", commandHtml(command)};
   return html::pageHtml("Pose graph of " + io::textOf(optimum.poses.size()) + " scans",
                         verdictHtml(graph, disagreements.size()) +
                             sectionsHtml({trajectory, uncertainty, agreement, repeat}));

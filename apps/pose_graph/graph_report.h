@@ -3,19 +3,22 @@
  */
 #pragma once
 
-#include "pose_graph/graph_command.h"
+#include "graph/optimization.h"
+#include "pose_graph/scan_graph.h"
 
 #include <string>
+#include <vector>
 
 namespace bayesian_icp::app {
 
 /** \brief A self-contained HTML page.
  * \param[in] optimum,cycles of the edges that \p graph has taken
+ * \param[in] command that made the graph, as a shell takes it
  * \throws plot::GnuplotError if gnuplot does not draw */
 std::string
-graphReportHtml(const GraphCommand& command,
-                const ScanGraph& graph,
+graphReportHtml(const ScanGraph& graph,
                 const OptimizedPoses& optimum,
-                const std::vector<ClosedCycle>& cycles);
+                const std::vector<ClosedCycle>& cycles,
+                const std::string& command);
 
 } // namespace bayesian_icp::app
