@@ -25,6 +25,13 @@ constexpr double millimetres = 1e3;
 constexpr double milliradians = 1e3;
 constexpr double percent = 100.0;
 
+/** At least one blank, and \p text, \p width characters or more. */
+std::string
+rightAligned(const std::string& text, std::size_t width)
+{
+  return std::string(width > text.size() ? width - text.size() : 1, ' ') + text;
+}
+
 std::string
 coordinateTable(const Summary& summary)
 {
@@ -306,12 +313,6 @@ leftAligned(std::string text, std::size_t width)
 {
   text.resize(std::max(width, text.size()), ' ');
   return text;
-}
-
-std::string
-rightAligned(const std::string& text, std::size_t width)
-{
-  return std::string(width > text.size() ? width - text.size() : 1, ' ') + text;
 }
 
 std::string

@@ -96,10 +96,6 @@ angularDeviation(const DataDirection& direction);
 std::string
 leftAligned(std::string text, std::size_t width);
 
-/** \brief \p text with at least one blank before it, \p width characters or more. */
-std::string
-rightAligned(const std::string& text, std::size_t width);
-
 /** \brief A number in full if it is below 1e9.
  * \param[in] unknown stands for numbers that are not finite */
 std::string
