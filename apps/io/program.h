@@ -48,33 +48,6 @@ tell(const std::string& message)
     std::cerr << program_name + ": " + message + '\n';
 }
 
-/** \brief Say on standard error why the program ends. To be called in a
- * `catch (...)`.
- * \return its exit code */
-inline int
-explainFailure()
-{
-  try {
-    throw;
-  }
-  catch (const UsageError& error) {
-    tell(std::string(error.what()) + " (see --help)");
-    return BadUsage;
-  }
-  catch (const FileError& error) {
-    tell(error.what());
-    return BadFile;
-  }
-  catch (const std::bad_alloc&) {
-    tell("out of memory");
-    return NotGood;
-  }
-  catch (const std::exception& error) {
-    tell(std::string("failed: ") + error.what());
-    return NotGood;
-  }
-}
-
 /** \brief What `main` does: run \p work. A file that would grow beyond the limit on the
  * size of files (`ulimit -f`) is an error as on a full disk, not a signal that kills.
  * \param[in] on_failure told the exit code of a failure that has been explained
@@ -88,14 +61,26 @@ runProgram(
 {
   program_name = program;
   std::signal(SIGXFSZ, SIG_IGN);
+  int exit_code = NotGood;
   try {
     return work();
   }
-  catch (...) {
-    const int exit_code = explainFailure();
-    on_failure(exit_code);
-    return exit_code;
+  catch (const UsageError& error) {
+    tell(std::string(error.what()) + " (see --help)");
+    exit_code = BadUsage;
   }
+  catch (const FileError& error) {
+    tell(error.what());
+    exit_code = BadFile;
+  }
+  catch (const std::bad_alloc&) {
+    tell("out of memory");
+  }
+  catch (const std::exception& error) {
+    tell(std::string("failed: ") + error.what());
+  }
+  on_failure(exit_code);
+  return exit_code;
 }
 
 } // namespace bayesian_icp::io
