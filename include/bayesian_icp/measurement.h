@@ -23,8 +23,11 @@ namespace bayesian_icp {
 constexpr double max_measured_share_of_prior = 0.8;
 
 /** \brief Standard deviation of unmeasured directions, in units of the prior's. Their
- * information is then a ten-thousandth of the prior's. */
-constexpr double unmeasured_deviation = 100.0;
+ * information is then a hundredth of the prior's. More would do harm: draws correlate
+ * measured motions with unmeasured ones by chance, some 1 / sqrt(ESS), and the
+ * variance of a measured motion grows by the square of this constant times that of the
+ * correlation. */
+constexpr double unmeasured_deviation = 10.0;
 
 /** \brief A posterior as a measurement that is independent of its prior. */
 struct BAYESIAN_ICP_EXPORT PoseMeasurement {

@@ -106,6 +106,38 @@ TEST(WithoutPrior, SaysWhereTheCloudsSayNothing)
   }
 }
 
+TEST(WithoutPrior, DeviationsOfMeasuredMotionsStayNearThePosteriors)
+{
+  // A planar scan: the clouds hold x, y and yaw, the prior alone the rest.
+  const Vector6d deviation(0.001, 0.0005, 0.02, 0.005, 0.005, 0.0002);
+  const Prior prior(Vector6d::Zero(),
+                    Vector6d(0.02, 0.02, 0.02, 0.005, 0.005, 0.005).cwiseAbs2());
+  constexpr Eigen::Index num_draws = 1500;
+  // Each of three unmeasured directions adds unmeasured_deviation^2 times the square of
+  // its chance correlation, of mean 1 / num_draws, to the relative variance of each of
+  // three measured ones.
+  constexpr int num_runs = 100;
+  const double added = unmeasured_deviation * unmeasured_deviation / num_draws;
+  double sum = 0.0;
+  for (std::uint64_t seed = 0; seed < num_runs; ++seed) {
+    Random random(seed, 1);
+    PoseMatrix draws(num_draws, 6);
+    for (Eigen::Index i = 0; i < num_draws; ++i)
+      draws.row(i) = deviation.cwiseProduct(random.normal6());
+    const PoseEstimate posterior = test::estimateOf(draws, meanPose(draws));
+    const PoseMeasurement measurement = withoutPrior(posterior, prior);
+    ASSERT_EQ(measurement.num_unmeasured, 3) << seed;
+    for (const int k : {0, 1, 5})
+      sum += measurement.estimate.covariance(left)(k, k) /
+             posterior.covariance(left)(k, k);
+  }
+  // A chi-square of three degrees of freedom has the variance 6; the three motions of a
+  // run have unmeasured draws in common, so they may count as one.
+  const double deviation_of_mean = added * std::sqrt(6.0 / num_runs);
+  EXPECT_NEAR(sum / (3.0 * num_runs), 1.0 + 3.0 * added, 5.0 * deviation_of_mean);
+  EXPECT_LT(std::sqrt(1.0 + 3.0 * added), 1.1);
+}
+
 TEST(WithoutPrior, NaNWithoutAPosterior)
 {
   const PoseMeasurement measurement =
