@@ -16,6 +16,15 @@ unmeasuredText(std::size_t num_unmeasured, std::size_t num_registrations)
          "assumption";
 }
 
+std::string
+complaintAboutEdge(const Summary& summary)
+{
+  const std::string complaint = complaintAboutExport(PoseEstimate(summary), false);
+  return complaint.empty() && summary.data.flags.wrong_basin
+             ? "the pose may be in another basin"
+             : complaint;
+}
+
 Matrix6d
 squareRootOf(const Matrix6d& covariance)
 {

@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include <bayesian_icp/pose.h>
+#include <bayesian_icp/exports.h>
 
 #include <string>
 #include <utility>
@@ -85,6 +85,11 @@ loopCandidates(const std::vector<GaussianPose>& poses, double radius);
  * motion; empty if there are none. */
 std::string
 unmeasuredText(std::size_t num_unmeasured, std::size_t num_registrations);
+
+/** \brief Why a posterior is no edge of a graph; empty if it is. Its pose may be in
+ * another basin, for example, where its covariance says nothing. */
+std::string
+complaintAboutEdge(const Summary& summary);
 
 /** \brief An edge that is no registration of scans. */
 constexpr SharedNoise independent_noise{0.0, 0.0};

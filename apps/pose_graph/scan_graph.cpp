@@ -149,10 +149,13 @@ private:
                                                                : "MISSING, ";
     std::string reason = result.status + ": " + result.message;
     if (result.run != nullptr) {
-      const PoseEstimate posterior(result.run->result.summary);
+      const Summary& summary = result.run->result.summary;
+      const PoseEstimate posterior(summary);
       const PoseMeasurement of_clouds = withoutPrior(posterior, priorOf(*result.run));
-      const std::string complaint = setEdge(
-          edge.kind == EdgeKind::Chain ? posterior : of_clouds.estimate, edge.edge);
+      std::string complaint = complaintAboutEdge(summary);
+      if (complaint.empty())
+        complaint = setEdge(
+            edge.kind == EdgeKind::Chain ? posterior : of_clouds.estimate, edge.edge);
       edge.is_in_graph = complaint.empty();
       if (edge.is_in_graph)
         edge.num_unmeasured = of_clouds.num_unmeasured;

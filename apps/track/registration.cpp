@@ -32,13 +32,10 @@ registered(const PreparedCloud& source,
     result.quality = Quality::Cancelled;
     return result;
   }
-  const PoseEstimate posterior(summary);
-  std::string complaint = complaintAboutExport(posterior, false);
-  if (complaint.empty() && summary.data.flags.wrong_basin)
-    complaint = "the pose may be in another basin";
+  std::string complaint = complaintAboutEdge(summary);
   if (complaint.empty()) {
-    const PoseMeasurement measurement =
-        withoutPrior(posterior, Prior(options.prior.mean, options.prior.variance));
+    const PoseMeasurement measurement = withoutPrior(
+        PoseEstimate(summary), Prior(options.prior.mean, options.prior.variance));
     complaint = complaintAboutExport(measurement.estimate, false);
     result.edge.num_unmeasured = measurement.num_unmeasured;
     result.edge.pose = {

@@ -195,10 +195,22 @@ TEST_F(GraphFile, IsRefusedWithTheLineThatIsWrong)
   EXPECT_THROW(app::readGraph(file()), io::FileError);
 }
 
+TEST(Edge, IsNoPosteriorThatMayBeInAnotherBasin)
+{
+  Summary summary;
+  EXPECT_FALSE(app::complaintAboutEdge(summary).empty());
+  summary.status = Status::Doubtful;
+  summary.mean.setZero();
+  summary.covariances.fill(Matrix6d::Identity());
+  EXPECT_EQ(app::complaintAboutEdge(summary), "");
+  summary.data.flags.wrong_basin = true;
+  EXPECT_NE(app::complaintAboutEdge(summary).find("another basin"), std::string::npos);
+}
+
 TEST(SquareRoot, IsFiniteBesideAMotionThatNothingSees)
 {
-  // The deviation of a motion that the clouds do not see is 100 times the prior's. A
-  // solver finds some of the other eigenvalues below 0.
+  // The deviation of a motion that the clouds do not see may be 100 m. A solver finds
+  // some of the other eigenvalues below 0.
   Random random(31, 0);
   int num_negative = 0;
   for (int k = 0; k < 20; ++k) {
