@@ -1,5 +1,6 @@
 #include "localization/localizer.h"
 
+#include "graph/pose_graph.h"
 #include "io/clocks.h"
 #include "io/errors.h"
 #include "io/field_triple.h"
@@ -131,12 +132,18 @@ report(const Summary& summary,
     result.draws = draws;
   if (!complaint.empty())
     return;
-  const PoseMeasurement measurement =
+  PoseMeasurement measurement =
       withoutPrior(posterior, Prior(prior.mean, prior.variance));
-  result.level = summary.status == Status::Ok ? Localization::Level::Ok
-                                              : Localization::Level::Warning;
+  const bool is_ok = summary.status == Status::Ok;
+  result.level = is_ok ? Localization::Level::Ok : Localization::Level::Warning;
   result.posterior = posterior;
-  result.measurement = measurement.estimate;
+  const DataFlags& flags = summary.data.flags;
+  if (!flags.wrong_basin && !flags.prior_conflict &&
+      complaintAboutExport(measurement.estimate, false).empty()) {
+    for (Matrix6d& covariance : measurement.estimate.covariances)
+      covariance *= is_ok ? 1.0 : doubt_factor;
+    result.measurement = measurement.estimate;
+  }
   result.draws = draws;
   addDeviations(posterior, result);
   result.values.emplace_back("directions that the prior alone holds",

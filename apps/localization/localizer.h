@@ -56,7 +56,10 @@ struct Localization {
   /** Pose of the cloud's frame in the map, the prior included. None with level Error.
    */
   std::optional<PoseEstimate> posterior;
-  /** The same without the prior, for a filter that the prior has come from. */
+  /** The same without the prior, for a filter that the prior has come from. A filter
+   * does not read diagnostics, so variances are multiplied by doubt_factor with level
+   * Warning, and there is none if the pose may be in another basin or conflicts with
+   * the prior. */
   std::optional<PoseEstimate> measurement;
   /** Draws of the posterior, a pose in each row [m, rad]: there if `posterior` is, or
    * if there are several modes. */

@@ -127,6 +127,9 @@ private:
       geometry_msgs::PoseWithCovarianceStamped pose;
       app::fillStampedPose(in_map, *localization.posterior, pose);
       posterior_.publish(pose);
+    }
+    if (localization.measurement) {
+      geometry_msgs::PoseWithCovarianceStamped pose;
       app::fillStampedPose(in_map, *localization.measurement, pose);
       measurement_.publish(pose);
     }

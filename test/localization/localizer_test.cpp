@@ -4,8 +4,11 @@
 #include "localization/parameters.h"
 #include "support/test_support.h"
 
+#include <bayesian_icp/measurement.h>
+
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <limits>
 
@@ -230,6 +233,47 @@ TEST_F(LocalizerTest, SaysWhyThereIsNoPosterior)
   EXPECT_EQ(result.level, Localization::Level::Error);
   EXPECT_FALSE(result.posterior) << result.message;
   EXPECT_FALSE(result.message.empty());
+}
+
+TEST_F(LocalizerTest, WidensTheMeasurementOfWhatIsDoubtful)
+{
+  // Three of four points of each cloud are of something that the other one lacks.
+  const auto withMore = [](const pcl::PCLPointCloud2& message,
+                           const std::array<float, 3>& heights) {
+    pcl::PointCloud<pcl::PointXYZ> cloud;
+    pcl::fromPCLPointCloud2(message, cloud);
+    const std::size_t num_points = cloud.size();
+    for (const float height : heights)
+      for (std::size_t i = 0; i < num_points; ++i)
+        cloud.push_back({cloud[i].x, cloud[i].y, cloud[i].z + height});
+    const auto more = pcl::make_shared<pcl::PCLPointCloud2>();
+    pcl::toPCLPointCloud2(cloud, *more);
+    more->header = message.header;
+    return more;
+  };
+  localizer_.setMap(withMore(*map_, {0.25F, 0.75F, 1.3F}));
+  localizer_.addPrior(somePrior());
+  const Localization result =
+      localizer_.localize(*withMore(*cloud_, {0.5F, 1.0F, 1.5F}), stamp_ns);
+  ASSERT_TRUE(result.posterior && result.measurement) << result.message;
+  ASSERT_EQ(result.level, Localization::Level::Warning) << result.message;
+  const PriorOptions prior = app::priorFrom(somePrior()).options;
+  const PoseMeasurement stated =
+      withoutPrior(*result.posterior, Prior(prior.mean, prior.variance));
+  const auto convention = CovarianceConvention::R3xSO3;
+  EXPECT_TRUE(result.measurement->covariance(convention)
+                  .isApprox(9.0 * stated.estimate.covariance(convention), 1e-12));
+}
+
+TEST_F(LocalizerTest, HasNoMeasurementThatConflictsWithThePrior)
+{
+  localizer_.setMap(map_);
+  const Vector6d offset = Vector6d::Constant(0.02);
+  localizer_.addPrior(statedPose(matrixOf(offset) * trueTablePose(), 0.002, stamp_ns));
+  const Localization result = localizer_.localize(*cloud_, stamp_ns);
+  EXPECT_EQ(result.level, Localization::Level::Warning) << result.message;
+  EXPECT_TRUE(result.posterior);
+  EXPECT_FALSE(result.measurement);
 }
 
 TEST_F(LocalizerTest, CanBeCancelled)
