@@ -67,6 +67,14 @@ settingsFrom(const po::variables_map& given, std::string& note)
   const std::string complaint = settings.validate();
   if (!complaint.empty())
     throw io::UsageError(complaint);
+  const ResidualOptions& residual = settings.options.exact.residual;
+  if (residual.kernel == RobustKernel::None)
+    io::refuseOptions(given, {"kernel-width"}, ": has no effect without --kernel");
+  if (residual.residual != Residual::DistributionToDistribution)
+    io::refuseOptions(
+        given,
+        {"regularization"},
+        ": has no effect without --residual=distribution-to-distribution");
   return settings;
 }
 

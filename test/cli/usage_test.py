@@ -208,7 +208,7 @@ class Values(ToolTest):
             "steps": ("exact", "steps", "langevin"),
             "particles": ("exact", "num_particles", 33),
             "regularization": ("exact", "regularization", "frobenius"),
-            "residual": ("exact", "residual", "point-to-plane"),
+            "residual": ("exact", "residual", "distribution-to-distribution"),
             "kernel": ("exact", "kernel", "tukey"),
             "kernel-width": ("exact", "kernel_width_m", 0.125),
             "max-source-points": ("exact", "max_source_points", 77),
@@ -239,6 +239,14 @@ class Values(ToolTest):
             groups = {group for group, _, _ in given.values()}
             self.assertEqual(set(options), groups)
 
+
+    def test_options_that_would_have_no_effect_are_refused(self):
+        for words, other in (
+            (["--kernel-width=0.05"], "--kernel"),
+            (["--regularization=frobenius", "--residual=point-to-plane"], "--residual"),
+        ):
+            result = run("a.pcd", "b.pcd", "--preset=exact", *words)
+            self.assert_refused(2, result, f"{words[0].split('=')[0]}: has no effect without", other)
 
     def test_options_of_other_presets_are_refused(self):
         for preset, own in self.OF_PRESETS.items():
