@@ -213,9 +213,9 @@ finish(CalibratedEstimate& e)
   const Matrix6d HT = e.curvature * e.transfer;
   const Matrix6d weights = HT.transpose() * J.solve(Matrix6d::Identity());
   e.information = weights * HT;
-  e.information = (0.5 * (e.information + e.information.transpose())).eval();
+  e.information = symmetrized(e.information);
   e.covariance = (e.information + e.prior.precision).inverse();
-  e.covariance = (0.5 * (e.covariance + e.covariance.transpose())).eval();
+  e.covariance = symmetrized(e.covariance);
   e.degrees_of_freedom = information_degrees_of_freedom;
   e.mean = -e.covariance * (weights * e.scores.total + e.prior.gradient);
 }

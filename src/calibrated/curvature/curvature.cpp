@@ -299,7 +299,7 @@ curvatureOf(const Secants& secants)
 {
   const Matrix6d products = secants.steps.transpose() * secants.differences;
   const Matrix6d inverse = secants.steps.inverse();
-  return inverse.transpose() * (0.5 * (products + products.transpose())) * inverse;
+  return inverse.transpose() * symmetrized(products) * inverse;
 }
 
 /** 0 up to \p from, 1 from \p to on, and linear in between. */

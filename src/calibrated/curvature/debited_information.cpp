@@ -71,8 +71,7 @@ debitedInformation(const Secants& secants,
   result.transfer = transferOf(secants.steps, result.keep);
   const Matrix6d HT = secants.curvature * result.transfer;
   result.information = HT.transpose() * J.solve(HT);
-  result.information =
-      (0.5 * (result.information + result.information.transpose())).eval();
+  result.information = symmetrized(result.information);
   return result;
 }
 
