@@ -20,7 +20,7 @@ std::string
 complaintAboutEdge(const Summary& summary)
 {
   const std::string complaint = complaintAboutExport(PoseEstimate(summary), false);
-  return complaint.empty() && summary.data.flags.wrong_basin
+  return complaint.empty() && summary.data.flags.mayBeInAnotherBasin()
              ? "the pose may be in another basin"
              : complaint;
 }

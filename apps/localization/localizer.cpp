@@ -138,7 +138,7 @@ report(const Summary& summary,
   result.level = is_ok ? Localization::Level::Ok : Localization::Level::Warning;
   result.posterior = posterior;
   const DataFlags& flags = summary.data.flags;
-  if (!flags.wrong_basin && !flags.prior_conflict &&
+  if (!flags.mayBeInAnotherBasin() && !flags.prior_conflict &&
       complaintAboutExport(measurement.estimate, false).empty()) {
     for (Matrix6d& covariance : measurement.estimate.covariances)
       covariance *= is_ok ? 1.0 : doubt_factor;

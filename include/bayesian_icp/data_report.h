@@ -94,6 +94,15 @@ struct DataFlags {
     return wrong_basin || low_support || few_patches || misfit || no_information ||
            prior_conflict;
   }
+
+  /** \brief Whether the pose may be much further off than the covariance states.
+   * Between scans of one real sequence that hardly overlap, low_support and misfit
+   * together were as often wrong as right. */
+  bool
+  mayBeInAnotherBasin() const
+  {
+    return wrong_basin || (low_support && misfit);
+  }
 };
 
 /** \brief The report of preset `calibrated`. If there are several modes, it describes
