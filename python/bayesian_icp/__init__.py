@@ -31,6 +31,10 @@ from ._core import (
     ResidualOptions,
     SgldOptions,
     Target,
+)
+from ._draws import ess, mcse, rhat
+from ._poses import (
+    convert_covariance,
     covariance_about,
     exp_se3,
     g2o_covariance,
@@ -42,7 +46,6 @@ from ._core import (
     pose_from_error,
     pose_from_matrix,
 )
-from ._draws import convert_covariance, ess, mcse, rhat
 from ._result import COORDINATES, Measurement, Mode, Prior, Result
 
 if TYPE_CHECKING:

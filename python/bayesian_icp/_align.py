@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional
 import numpy as np
 
 from . import _core
+from ._checks import numbers
 from ._progress import Bar
 from ._result import Result
 
@@ -99,6 +100,8 @@ def align(
     """
     if not isinstance(progress, bool) and not callable(progress):
         raise TypeError(f"progress is {progress!r}, but must be a bool or a function")
+    if not isinstance(options, (_core.Options, type(None))):
+        raise TypeError(f"options is {options!r}, but must be of bayesian_icp.Options")
     chosen = _core.Options() if options is None else _core.Options(options)
     guess = _pose("init_T_target_source", np.eye(4) if init_T_target_source is None else init_T_target_source)
     if preset is not None:
@@ -112,9 +115,9 @@ def align(
     if prior_std is not None and prior_variance is not None:
         raise ValueError("prior_std and prior_variance are both given, but say the same")
     if prior_std is not None:
-        chosen.prior.variance = _six("prior_std", prior_std) ** 2
+        chosen.prior.variance = _six("prior_std", prior_std, chosen.preset) ** 2
     if prior_variance is not None:
-        chosen.prior.variance = _six("prior_variance", prior_variance)
+        chosen.prior.variance = _six("prior_variance", prior_variance, chosen.preset)
     if prior_frame is not None:
         chosen.prior.frame = prior_frame
     if not isinstance(source, _core.Target):
@@ -132,34 +135,22 @@ def align(
     return Result(estimate, chosen, guess, (len(source), len(target)), time.monotonic() - start)
 
 
-def _numbers(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
-        raise ValueError(f"{name} is {value!r}, but none of its numbers may be masked")
-    try:
-        return np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} is {value!r}, but must be numbers") from None
-
-
-def _six(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    numbers = _numbers(name, value)
-    if numbers.shape == (2,):
-        numbers = np.repeat(numbers, 3)
-    if numbers.shape != (6,):
-        raise ValueError(f"{name} has the shape {numbers.shape}, but must have (6,) or (2,)")
-    if not np.all(numbers > 0):
+def _six(name: str, value: ArrayLike, preset: str) -> NDArray[np.float64]:
+    six = numbers(name, value, (6,), (2,))
+    if six.shape == (2,):
+        six = np.repeat(six, 3)
+    if not np.all(six > 0):
         raise ValueError(f"{name} is {value!r}, but must be positive")
-    return numbers
+    if preset == "calibrated" and np.isinf(six).any():
+        raise ValueError(f"{name} is {value!r}, but must be finite for preset calibrated")
+    return six
 
 
 def _pose(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    numbers = _numbers(name, value)
-    is_pose = numbers.shape == (6,) and name == "prior_mean"
-    if numbers.shape != (4, 4) and not is_pose:
-        raise ValueError(f"{name} has the shape {numbers.shape}, but must have (4, 4)")
-    if not np.isfinite(numbers).all():
-        raise ValueError(f"{name} is not finite: {numbers.tolist()}")
+    pose = numbers(name, value, (4, 4), *([(6,)] if name == "prior_mean" else []))
+    if not np.isfinite(pose).all():
+        raise ValueError(f"{name} is not finite: {pose.tolist()}")
     try:
-        return numbers if is_pose else _core.pose_from_matrix(numbers)
+        return pose if pose.shape == (6,) else _core.pose_from_matrix(pose)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
+from ._checks import convention as _convention
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,7 +55,7 @@ class Pose:
         ValueError
             If there is no such convention.
         """
-        return self._pose.covariance(convention)
+        return self._pose.covariance(_convention("convention", convention))
 
     @property
     def status(self) -> str:
@@ -120,7 +121,7 @@ class Pose:
     def __repr__(self) -> str:
         std = np.sqrt(np.diag(self.covariance()))
         numbers = ", ".join(
-            f"{name}={mean:.4g}±{deviation:.2g}" for name, mean, deviation in zip(COORDINATES, self.mean, std)
+            f"{name}={mean:.4g}±{deviation:.2g}" for name, mean, deviation in zip(COORDINATES, self.mean + 0.0, std)  # not -0
         )
         return f"<bayesian_icp.{type(self).__name__} {self.status}: {numbers}{self._remark()}>"
 
@@ -137,7 +138,7 @@ class Measurement(Pose):
     def __init__(self, pose: _core.PoseEstimate, num_unmeasured: int) -> None:
         super().__init__(pose)
         self.num_unmeasured = num_unmeasured
-        """Directions that the clouds do not see, 0 to 6; their deviation is 100 times
+        """Directions that the clouds do not see, 0 to 6; their deviation is 10 times
         the prior's. 6 without a posterior."""
 
     def _remark(self) -> str:
@@ -228,6 +229,8 @@ class Result(_Posterior):
 
     def chain(self, index: int) -> Array:
         """(draws, 6) of one chain, from 0 on, diverged or not; IndexError if there is none."""
+        if not hasattr(index, "__index__"):
+            raise TypeError(f"index is {index!r}, but must be an integer")
         return self._estimate.chain(index)
 
     @property
@@ -271,7 +274,7 @@ class Result(_Posterior):
     def init_T_target_source(self) -> Array:
         """(4, 4) initial guess of the run, which maps source points into the target
         frame [m]: the identity unless it was given."""
-        return _core.matrix_from_pose(self._guess)
+        return _core.matrix_from_pose(self._guess) + 0.0  # not -0
 
     @property
     def options(self) -> _core.Options:
@@ -290,7 +293,8 @@ class Result(_Posterior):
         Parameters
         ----------
         path : path_like
-        source, target : array_like, (N, 3)
+            Folders that are missing are made.
+        source, target : array_like, (N, 3), or Target
             The clouds of the run [m].
 
         Raises

@@ -48,6 +48,9 @@ def simulate(scene: str, *, seed: int = 1, **options: Any) -> ScanPair:
     >>> scans.source.shape[1], scans.T_target_source.shape
     (3, (4, 4))
     """
+    for name in ("help", "version", "list_scenes"):
+        if name in options:
+            raise ValueError(f"{name} is no option of simulate(); scenes() lists the scenes")
     arguments = [f"--scene={scene}", f"--seed={seed}", "--output=none"]
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
@@ -57,7 +60,11 @@ def simulate(scene: str, *, seed: int = 1, **options: Any) -> ScanPair:
             arguments.append(option + "=" + ",".join(repr(float(number)) for number in value))
         else:
             arguments.append(f"{option}={value}")
-    return ScanPair(*_tools.simulate(arguments))
+    try:
+        return ScanPair(*_tools.simulate(arguments))
+    except ValueError as error:
+        text = str(error).replace("--list-scenes shows all", "scenes() lists all")
+        raise ValueError(text.replace("unrecognised option '--", "simulate() has no option '")) from None
 
 
 def scenes() -> dict[str, str]:

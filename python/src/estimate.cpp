@@ -135,22 +135,52 @@ bindSummary(py::module_& module)
 {
   using C = CoordinateSummary;
   py::class_<C>(
-      module, "CoordinateSummary", "Marginal posterior of one coordinate [m, rad].")
-      .def_readonly("mean", &C::mean)
-      .def_readonly("standard_deviation", &C::standard_deviation)
-      .def_readonly("quantile_2_5", &C::quantile_2_5)
-      .def_readonly("median", &C::median)
-      .def_readonly("quantile_97_5", &C::quantile_97_5)
-      .def_readonly("rhat", &C::rhat)
-      .def_readonly("bulk_ess", &C::bulk_ess)
-      .def_readonly("tail_ess", &C::tail_ess)
-      .def_readonly("mcse", &C::mcse);
+      module,
+      "CoordinateSummary",
+      "Marginal posterior of one coordinate [m, rad]; what is undefined is NaN.")
+      .def_readonly("mean",
+                    &C::mean,
+                    "Mean of this coordinate alone, circular for an angle [m, rad].")
+      .def_readonly("standard_deviation",
+                    &C::standard_deviation,
+                    "About that mean; an angle is wrapped about it [m, rad].")
+      .def_readonly("quantile_2_5",
+                    &C::quantile_2_5,
+                    "2.5 % of the draws are below it; an angle is unwrapped about the "
+                    "mean [m, rad].")
+      .def_readonly("median", &C::median, "Unwrapped in the same way [m, rad].")
+      .def_readonly("quantile_97_5",
+                    &C::quantile_97_5,
+                    "97.5 % are below it; unwrapped in the same way [m, rad].")
+      .def_readonly("rhat", &C::rhat, "R-hat; up to 1.01 is good.")
+      .def_readonly(
+          "bulk_ess", &C::bulk_ess, "Effective sample size; 400 or more is good.")
+      .def_readonly("tail_ess", &C::tail_ess, "The same for the tails.")
+      .def_readonly(
+          "mcse", &C::mcse, "Monte Carlo standard error of the mean [m, rad].")
+      .def("__repr__", [](const C& c) {
+        return py::str("<{:.4g}±{:.2g}, rhat {:.3f}, bulk ESS {:.0f}>")
+            .format(c.mean, c.standard_deviation, c.rhat, c.bulk_ess);
+      });
   using D = DataDirection;
   py::class_<D>(module, "Direction", "One motion and how well it is known.")
-      .def_readonly("twist", &D::twist, "(6,) about the moved centroid [1, rad/m].")
-      .def_readonly("standard_deviation", &D::standard_deviation, "Posterior [m].")
-      .def_readonly("prior_standard_deviation", &D::prior_standard_deviation, "[m]")
-      .def_readonly("relative_information", &D::relative_information)
+      .def_readonly("twist",
+                    &D::twist,
+                    "(6,) left twist (v, w) about DataReport.centre, target frame [1, "
+                    "rad/m]. It moves the source's points by one in root mean square.")
+      .def_readonly("standard_deviation",
+                    &D::standard_deviation,
+                    "Posterior's along the twist, as root mean square displacement of "
+                    "the source's points [m]. Times the norm of twist[3:], it is the "
+                    "angle of the rotation [rad].")
+      .def_readonly("prior_standard_deviation",
+                    &D::prior_standard_deviation,
+                    "The same of the prior [m].")
+      .def_readonly(
+          "relative_information",
+          &D::relative_information,
+          "Information of the clouds along the twist, in units of the prior's: "
+          "standard_deviation is prior_standard_deviation / sqrt(1 + this).")
       .def_readonly("observability", &D::observability, "observed, weak or prior_only.")
       .def_readonly("description", &D::description, "The motion in words.")
       .def("__repr__", [](const D& direction) {
@@ -159,21 +189,69 @@ bindSummary(py::module_& module)
       });
   using R = DataReport;
   py::class_<R>(module, "DataReport", "What the clouds say about the pose.")
-      .def_readonly("is_available", &R::is_available)
-      .def_readonly("noise_scale", &R::noise_scale)
-      .def_readonly("residual_scale", &R::residual_scale)
-      .def_readonly("effective_patches", &R::effective_patches)
-      .def_readonly("active_fraction", &R::active_fraction)
-      .def_readonly("active_fraction_of_target", &R::active_fraction_of_target)
-      .def_readonly("correlation_factor", &R::correlation_factor)
-      .def_readonly("degrees_of_freedom", &R::degrees_of_freedom)
-      .def_readonly("basin_distance", &R::basin_distance)
-      .def_readonly("other_cost_ratio", &R::other_cost_ratio)
-      .def_readonly("prior_probability", &R::prior_probability)
-      .def_readonly("centre", &R::centre)
-      .def_readonly("directions", &R::directions)
-      .def_property_readonly("flags", &flagsOfReport)
-      .def_property_readonly("warnings", &describeFlags);
+      .def_readonly("is_available",
+                    &R::is_available,
+                    "False for presets exact and paper: all else is then meaningless.")
+      .def_readonly("noise_scale",
+                    &R::noise_scale,
+                    "Standard deviation of a source point's distance to the target's "
+                    "surface [m].")
+      .def_readonly(
+          "residual_scale",
+          &R::residual_scale,
+          "noise_scale in units of the target's own noise, or of the source's "
+          "if the target is far cleaner; normally 1 to 1.5.")
+      .def_readonly(
+          "effective_patches",
+          &R::effective_patches,
+          "Number of independent patches of surface with the same information; "
+          "about 96 if neighbouring points are independent.")
+      .def_readonly("active_fraction",
+                    &R::active_fraction,
+                    "Share of the source points on the target's surface, 0 to 1.")
+      .def_readonly("active_fraction_of_target",
+                    &R::active_fraction_of_target,
+                    "Share of the target points on the source's surface, 0 to 1; 0 if "
+                    "the source has no usable surface.")
+      .def_readonly("correlation_factor",
+                    &R::correlation_factor,
+                    "Factor by which correlation between neighbouring points inflates "
+                    "the covariance of the score.")
+      .def_readonly("degrees_of_freedom",
+                    &R::degrees_of_freedom,
+                    "nu of Student's t distribution, from which the draws are taken in "
+                    "the directions that the clouds determine.")
+      .def_readonly("basin_distance",
+                    &R::basin_distance,
+                    "Mahalanobis distance between the ends of the two starts, without "
+                    "prior_only directions.")
+      .def_readonly("other_cost_ratio",
+                    &R::other_cost_ratio,
+                    "Cost at the worse of the two ends, divided by that at the better "
+                    "one.")
+      .def_readonly(
+          "prior_probability",
+          &R::prior_probability,
+          "Probability of a posterior's mean further from the prior's mean, if "
+          "the prior is right, without prior_only directions.")
+      .def_readonly("centre",
+                    &R::centre,
+                    "(3,) centre of the twists: the moved source's centroid, target "
+                    "frame [m].")
+      .def_readonly(
+          "directions", &R::directions, "Six motions (Direction), best known first.")
+      .def_property_readonly(
+          "flags", &flagsOfReport, "Names of the raised flags, as Result.flags.")
+      .def_property_readonly("warnings",
+                             &describeFlags,
+                             "Each raised flag in words, with number and threshold.")
+      .def("__repr__", [](const R& r) {
+        if (!r.is_available)
+          return py::str("<bayesian_icp.DataReport: only preset calibrated has one>");
+        return py::str("<bayesian_icp.DataReport: noise {:.2g} m, {:.0f} patches, "
+                       "flags: {}>")
+            .format(r.noise_scale, r.effective_patches, flagsOfReport(r));
+      });
 }
 
 } // namespace
@@ -201,6 +279,12 @@ bindEstimate(py::module_& module)
            py::arg("name") = "target")
       .def("__len__",
            [](const Target& target) { return target.prepared.points().cols(); })
+      .def_property_readonly(
+          "points",
+          [](const Target& target) {
+            return Eigen::MatrixX3d(target.prepared.points().transpose());
+          },
+          "(N, 3) a copy of the points [m].")
       .def("__repr__", [](const Target& target) {
         return "<bayesian_icp.Target of " +
                std::to_string(target.prepared.points().cols()) + " points>";

@@ -23,9 +23,9 @@ valueOf(const py::object& value, const char* name, const char* doc)
   catch (const py::value_error& error) {
     throw py::value_error(std::string(name) + ": " + error.what());
   }
-  catch (const py::cast_error&) {
-    const std::string text =
-        py::str("{} is {!r}, but must be: {}").format(name, value, doc);
+  catch (const py::builtin_exception&) { // cast_error, or for None reference_cast_error
+    const std::string text = py::str("{} is {!r}, but must fit its description: {}")
+                                 .format(name, value, doc);
     if (PyIndex_Check(value.ptr()) != 0) // out of range, or an array of another shape
       throw py::value_error(text);
     throw py::type_error(text);
@@ -143,7 +143,9 @@ bindShared(py::module_& module)
       .add("num_draws",
            &ChainOptions::num_draws,
            "Draws kept over all chains, at least one per chain.")
-      .add("seed", &ChainOptions::seed, "Of all random numbers, 0 to 2^64-1.")
+      .add("seed",
+           &ChainOptions::seed,
+           "Seed of all random numbers, an integer from 0 to 2^64-1.")
       .add("num_threads",
            &ChainOptions::num_threads,
            "Threads, 1024 at most; 0: as many as OpenMP takes. No draw depends on it.");
@@ -275,7 +277,9 @@ bindOptions(py::module_& module)
   Fields<ExportOptions>(module, "ExportOptions", "What exports need besides the pose.")
       .add("target_frame", &ExportOptions::target_frame, "Name of the target's frame.")
       .add("source_frame", &ExportOptions::source_frame, "Name of the source's frame.")
-      .add("timestamp_ns", &ExportOptions::timestamp_ns, "Since the epoch [ns].")
+      .add("timestamp_ns",
+           &ExportOptions::timestamp_ns,
+           "Time since the epoch, an integer [ns].")
       .add("target_vertex", &ExportOptions::target_vertex, "Vertex of a pose graph.")
       .add("source_vertex", &ExportOptions::source_vertex, "Vertex of a pose graph.")
       .add("accept_unreliable",

@@ -42,6 +42,9 @@ def test_bad_files(tmp_path, name, content, pattern):
 def test_writes_the_report(mug, result, tmp_path):
     page = tmp_path / "report.html"
     result.write_report(page, source=mug[0], target=mug[1])
+    again = tmp_path / "new" / "folder" / "report.html"
+    result.write_report(again, source=bayesian_icp.Target(mug[0]), target=bayesian_icp.Target(mug[1]))
+    assert again.stat().st_size == page.stat().st_size
     text = page.read_text()
     assert "<svg" in text and "was not run" in text and "bayesian_icp.align" in text
     (tmp_path / "file").touch()
@@ -67,13 +70,15 @@ def test_simulates_as_the_program_did():
 
 
 @pytest.mark.parametrize("keywords, pattern", [
-    ({"scene": "castle"}, "castle"), ({"scene": "mug", "nois": 2}, "nois"),
+    ({"scene": "castle"}, r"castle.*scenes\(\)"), ({"scene": "mug", "nois": 2}, "nois"),
     ({"scene": "mug", "noise": -1}, "noise"), ({"scene": "mug", "noise": "loud"}, "loud"),
     ({"scene": "mug", "source_eye": (1, 2)}, "source-eye"), ({"scene": "mug", "help": True}, "help"),
+    ({"scene": "mug", "list_scenes": True}, r"list_scenes is no option .*scenes\(\)"),
 ])
-def test_bad_simulations(keywords, pattern):
-    with pytest.raises(ValueError, match=pattern):
+def test_bad_simulations(keywords, pattern, capfd):
+    with pytest.raises(ValueError, match=pattern) as error:
         bayesian_icp.simulate(**keywords)
+    assert "--list" not in str(error.value) and capfd.readouterr().out == ""
 
 
 def test_module_is_the_program(python, program, tmp_path):

@@ -66,13 +66,15 @@ def test_points_that_are_not_finite(value):
     ({"prior_mean": np.zeros(5)}, ValueError, r"prior_mean has the shape \(5,\)"),
     ({"prior_std": np.ones(3)}, ValueError, r"prior_std has the shape \(3,\)"),
     ({"prior_std": (0.1, -0.2)}, ValueError, r"prior_std is \(0.1, -0.2\), but must be positive"),
-    ({"prior_std": (np.inf, 1)}, ValueError, "variance"),
+    ({"prior_mean": np.eye(3)}, ValueError, r"prior_mean has the shape \(3, 3\), but must have \(4, 4\) or \(6,\)"),
+    ({"prior_std": (np.inf, 1)}, ValueError, r"prior_std is \(inf, 1\), but must be finite for preset calibrated"),
+    ({"options": {"preset": "exact"}}, TypeError, "options is {'preset': 'exact'}"),
     ({"prior_std": np.ma.masked_array(np.ones(6), [0, 1, 0, 0, 0, 0])}, ValueError, "masked"),
     ({"prior_std": (1, 1), "prior_variance": (1, 1)}, ValueError, "both given"),
     ({"prior_frame": "middle"}, ValueError, "frame: 'middle' is none of .'origin', 'source-centroid', 'automatic'"),
     ({"preset": "best"}, ValueError, "preset: 'best' is none of .'paper', 'exact', 'calibrated'"),
     ({"preset": 3}, ValueError, "preset: 3 is none of"),
-    ({"seed": -1}, ValueError, r"seed is -1, but must be: .*0 to 2\^64-1"),
+    ({"seed": -1}, ValueError, r"seed is -1, .*: Seed of all random numbers, an integer from 0 to 2\^64-1"),
     ({"seed": 1.5}, TypeError, "seed is 1.5"),
     ({"num_threads": -2}, ValueError, "num_threads is -2"),
     ({"progress": "bar"}, TypeError, "progress is 'bar'"),
@@ -92,7 +94,7 @@ T = bayesian_icp.matrix_from_pose(POSE)
     (np.diag([2, 2, 2, 1]) @ T, "det R is 8, "),
     (T.T, r"last row is \[500.  -2.   3.   1.\]"),
     (T @ (np.eye(4) + 0.1 * np.eye(4, k=1)), "must be 1, 0 and"),
-    (np.eye(3), r"the matrix has the shape \(3, 3\), but must have \(4, 4\)"),
+    (np.eye(3), r"(T_target_source|transform) has the shape \(3, 3\), but must have \(4, 4\)"),
     (np.full((4, 4), np.nan), "not finite"),
     (np.where(T == 500, np.inf, T), "not finite"),
 ])
@@ -100,6 +102,36 @@ T = bayesian_icp.matrix_from_pose(POSE)
 def test_matrices_that_are_not_rigid(function, matrix, pattern):
     with pytest.raises(ValueError, match=pattern):
         function(matrix)
+
+
+@pytest.mark.parametrize("function, arguments, name", [
+    ("matrix_from_pose", [np.zeros(5)], "pose"), ("pose_error", [POSE, np.eye(4)], "mean"),
+    ("pose_from_error", [np.zeros(3), POSE], "error"), ("mean_pose", [np.zeros((3, 5))], "draws"),
+    ("covariance_about", [POSE, np.zeros((4, 5, 7))], "draws"), ("exp_se3", [np.zeros(7)], "twist"),
+    ("gtsam_covariance", [np.eye(5)], "right_se3"), ("g2o_covariance", [np.ones(6)], "right_se3"),
+    ("convert_covariance", [np.eye(6), np.eye(4), "r3xso3", "r3xso3"], "mean"),
+])
+def test_wrong_shapes_and_kinds_are_named(function, arguments, name):
+    with pytest.raises(ValueError, match=rf"^{name} has the shape \(.*\), but must have \("):
+        getattr(bayesian_icp, function)(*arguments)
+    for value in ("here", np.array(1j), None):
+        with pytest.raises(TypeError, match=" is .*, but must be real numbers"):
+            getattr(bayesian_icp, function)(value, *arguments[1:])
+
+
+@pytest.mark.parametrize("function", [bayesian_icp.rhat, bayesian_icp.ess, bayesian_icp.mcse])
+@pytest.mark.parametrize("draws", ["abc", np.ones((4, 100)) * 1j, [[1, 2], [3]]])
+def test_draws_that_are_no_real_numbers(function, draws):
+    with pytest.raises(TypeError, match="draws is"):
+        function(draws)
+
+
+@pytest.mark.parametrize("bad", [np.diag([np.nan, 1, 1, 1, 1, 1]), np.eye(6) + 0.1 * np.eye(6, k=1), -np.eye(6)])
+def test_covariances_that_are_none(bad):
+    with pytest.raises(ValueError, match="covariance is .* finite and symmetric"):
+        bayesian_icp.convert_covariance(bad, POSE, "r3xso3", "left_se3")
+    with pytest.raises(ValueError, match="target: 'ros' is none of"):
+        bayesian_icp.convert_covariance(np.eye(6), POSE, "r3xso3", "ros")
 
 
 def test_matrices_of_32_bits_are_rigid():
@@ -129,6 +161,8 @@ def test_options_refuse_unknown_names_and_kinds():
         options.exact.residual.kernel = "round"
     with pytest.raises(ValueError, match="sampling: None is none of .'with-replacement', 'shuffled-epochs'.$"):
         options.paper.sampling = None
+    with pytest.raises(TypeError, match="chains is None"):
+        bayesian_icp.Options(chains=None)
     assert options.exact.thinning is None
     options.exact.thinning = 3
     assert bayesian_icp.Options(options).exact.thinning == 3

@@ -7,6 +7,8 @@ import pytest
 
 import bayesian_icp
 
+from conftest import DATA
+
 CONVENTIONS = ("parameters", "r3xso3", "left_se3", "right_se3")
 
 
@@ -16,7 +18,9 @@ def test_covariance_is_that_of_the_draws(result, convention):
     errors = np.array([bayesian_icp.pose_error(draw, result.mean, convention) for draw in draws])
     expected = errors.T @ errors / (len(draws) - 1)
     assert np.allclose(result.covariance(convention), expected, rtol=1e-9, atol=1e-16)
-    assert np.allclose(bayesian_icp.covariance_about(result.mean, draws, convention), expected, rtol=1e-9, atol=1e-16)
+    for some in (draws, result.samples):
+        assert np.allclose(bayesian_icp.covariance_about(result.mean, some, convention), expected, rtol=1e-9, atol=1e-16)
+    assert np.array_equal(bayesian_icp.mean_pose(result.samples), bayesian_icp.mean_pose(draws))
 
 
 @pytest.mark.parametrize("convention", CONVENTIONS)
@@ -42,7 +46,7 @@ def test_errors_and_poses_are_inverse():
 
 
 def test_no_such_convention(result):
-    with pytest.raises(ValueError, match="'ros' is none of .'parameters', 'r3xso3', 'left_se3', 'right_se3'"):
+    with pytest.raises(ValueError, match="convention: 'ros' is none of .'parameters', 'r3xso3', 'left_se3', 'right_se3'"):
         result.covariance("ros")
 
 
@@ -69,6 +73,10 @@ def test_texts(result):
 def test_exports_refuse_what_is_bad(result, mug):
     with pytest.raises(ValueError, match="frame"):
         result.to_ros(frame_id="no spaces here")
+    with pytest.raises(TypeError, match=r"timestamp_ns is 1.5, .*: Time since the epoch, an integer \[ns\]"):
+        result.to_tum(timestamp_ns=1.5)
+    with pytest.raises(TypeError, match="index is 1.5"):
+        result.chain(1.5)
     with pytest.raises(ValueError, match="-5"):
         result.to_tum(timestamp_ns=-5)
     with pytest.raises(ValueError, match="vert"):
@@ -203,4 +211,33 @@ def test_a_failed_result_has_a_guess_and_no_prior(failed):
 def test_result_shows_itself(result):
     assert repr(result).startswith("<bayesian_icp.Result ok: x=0.0")
     assert "observed" in repr(result.directions[0])
+    assert repr(result.data).startswith("<bayesian_icp.DataReport: noise 0.00")
+    assert repr(result.coordinates["x"]).startswith(f"<{result.coordinates['x'].mean:.4g}±")
+    assert not np.signbit(result.init_T_target_source).any() and "=-0±" not in repr(result.prior)
     assert result.seconds > 0
+
+
+@pytest.mark.parametrize("kind", [bayesian_icp.DataReport, bayesian_icp.CoordinateSummary, bayesian_icp.Direction])
+def test_fields_say_what_they_are(kind):
+    fields = [name for name in dir(kind) if not name.startswith("_")]
+    assert fields and all(getattr(kind, name).__doc__ for name in fields)
+
+
+def test_deviations_of_directions_are_displacements_of_the_source(result, mug):
+    points = mug[0] @ result.T_target_source[:3, :3].T + result.T_target_source[:3, 3]
+    for direction in result.directions:
+        v, w = direction.twist[:3], direction.twist[3:]
+        moved = v + np.cross(w, points - result.data.centre)
+        assert np.sqrt((moved**2).sum(axis=1).mean()) == pytest.approx(1, rel=0.1)
+        assert direction.standard_deviation == pytest.approx(
+            direction.prior_standard_deviation / np.sqrt(1 + direction.relative_information), rel=1e-6)
+
+
+def test_the_angle_of_a_direction():
+    folder = DATA / "can"
+    can = bayesian_icp.align(source=bayesian_icp.read_pcd(folder / "source.pcd"),
+                             target=bayesian_icp.read_pcd(folder / "target.pcd"))
+    turn = can.directions[-1]
+    norm = np.linalg.norm(turn.twist[3:])
+    assert turn.prior_standard_deviation * norm == pytest.approx(np.sqrt(0.125), rel=0.01)
+    assert turn.standard_deviation * norm == pytest.approx(0.3533, rel=0.01)
