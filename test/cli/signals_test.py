@@ -164,7 +164,7 @@ class EndedBySignal(FaultTest):
                 self.assertEqual(self.names_in(output), set())
 
     def test_track_goes_on_where_it_was_ended(self):
-        scans = [*self.small_pair()] * 10
+        scans = [*self.small_pair()] * 4
         alone = self.new_folder()
         self.assertIn(call(TRACK, *scans, "-o", alone).returncode, (0, 1))
         for number in SIGNALS:
