@@ -57,6 +57,8 @@ class ToolTest(unittest.TestCase):
 
     # The one that assert_refused() expects to speak.
     program = "pcl_bayesian_icp"
+    # Of run_to_files(): a report takes longer to draw than most runs take.
+    writing = ["--quiet", "--no-report"]
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -121,7 +123,7 @@ class ToolTest(unittest.TestCase):
     def run_to_files(self, *arguments):
         """Run with -o; (samples.csv as text, posterior.json parsed)."""
         output = self.folder / "output"
-        result = run(*arguments, "-o", output, "--quiet")
+        result = run(*arguments, "-o", output, *self.writing)
         self.assert_ran(result)
         self.assertEqual(result.stdout, "")
         samples = (output / "samples.csv").read_text()

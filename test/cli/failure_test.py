@@ -60,7 +60,7 @@ class RealScans(ToolTest):
         for guess in guesses:
             with self.subTest(pair=guess.parent.name):
                 pair = [guess.parent / f"{role}.pcd" for role in ("source", "target")]
-                options = ["--guess", guess, "-i", "10", "--no-report"]
+                options = ["--guess", guess, "-i", "10"]
                 samples, document = self.run_to_files(*pair, *options)
                 self.assertEqual(len(samples.splitlines()), document["posterior"]["draws"] + 1)
                 self.assertGreater(document["posterior"]["draws"], 0)

@@ -21,6 +21,8 @@ MAX_SIZE = 2_000_000
 
 
 class ReportTest(ToolTest):
+    writing = ["--quiet"]
+
     def report_of(self, *arguments):
         """The file and its text of a run with -o."""
         self.run_to_files(*arguments)
