@@ -33,5 +33,6 @@ source "$work/install/local_setup.sh"
 set -u
 for consumer in core_consumer consumer; do
   bash "$tree/test/packaging/build_and_run.sh" "$tree/test/packaging/$consumer" \
-    "$work/$consumer" "$consumer" "$cmake" -D CMAKE_CXX_COMPILER="$compiler"
+    "$work/$consumer" "$consumer" "$cmake" -D CMAKE_CXX_COMPILER="$compiler" \
+    -D CMAKE_CXX_COMPILER_LAUNCHER="$launcher"
 done

@@ -4,6 +4,7 @@ set -euo pipefail
 cmake=$1 build=$2 prefix=$3
 
 rm -rf "$prefix" "$prefix.first"
+mkdir -p "$prefix.first"
 "$cmake" --install "$build" --prefix "$prefix.first" >"$prefix.log"
 mv "$prefix.first" "$prefix"
 
