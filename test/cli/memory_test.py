@@ -2,6 +2,7 @@
 never half a file."""
 
 import array
+import functools
 import os
 import random
 import resource
@@ -23,6 +24,7 @@ NOT_LOADED = 127
 
 @unittest.skipIf(SANITIZER, "a sanitizer needs more address space than is left")
 class OutOfMemory(FaultTest):
+    @functools.lru_cache(maxsize=None)  # of programs that are several tools
     def least_limit(self, program):
         """Address space with which the program begins to run, to a mebibyte [bytes]."""
         too_little, enough = 0, 1024 * MEBIBYTE
