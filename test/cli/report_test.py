@@ -200,11 +200,15 @@ def is_orange(red, green, blue):
 class ReportInBrowser(ReportTest):
     DESKTOP, PHONE = 1200, 400
 
-    def setUp(self):
-        super().setUp()
-        self.browser = Browser()
-        self.file_of_report, _ = self.report_of(*scans("mug"), *CALIBRATED)
-        self.figures = sorted(FIGURES + ["directions"])
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        holder = ReportTest("report_of")
+        holder.setUp()
+        cls.addClassCleanup(holder.doCleanups)
+        cls.file_of_report, _ = holder.report_of(*scans("mug"), *CALIBRATED)
+        cls.browser = Browser()
+        cls.figures = sorted(FIGURES + ["directions"])
 
     def test_nothing_on_the_console(self):
         page = self.file("bad.html", "<script>console.error('seen')</script>")
