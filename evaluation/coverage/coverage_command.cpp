@@ -160,6 +160,9 @@ refuseMisplaced(const po::variables_map& given, const CoverageOptions& options)
   else
     for (const char* name : {"step", "pairs", "guess-sd", "rows"})
       refuse(name, "of recordings only: see --real");
+  if (!options.sequences.rows_file.empty())
+    for (const char* name : {"guess-sd", "first-seed"})
+      refuse(name, "of random guesses, which --rows replaces");
 }
 
 /** \return nothing if the command line asks for help, which has been printed
@@ -283,16 +286,6 @@ addMissing(Names& names, const Names& more)
       names.push_back(name);
 }
 
-/** \throws io::UsageError of a name asked for that is not known */
-void
-requireKnown(const Names& asked, const Names& known, const std::string& option)
-{
-  for (const std::string& name : asked)
-    if (!contains(known, name))
-      throw io::UsageError("--" + option + ": there is no " + io::inQuotes(name) +
-                           ", but " + boost::algorithm::join(known, " "));
-}
-
 /** The scenes asked for, the name of a set replaced by its scenes; without any, those
  * of the default sets, or the first few. */
 Names
@@ -311,7 +304,7 @@ scenesOf(const CoverageOptions& options, const Offer& offer)
         });
     addMissing(asked, set == offer.sets.end() ? Names{name} : set->scenes);
   }
-  requireKnown(asked, known, "scenes");
+  io::readOption("scenes", [&] { requireKnown(asked, known); });
   if (!asked.empty())
     return asked;
   if (options.is_quick)
@@ -357,7 +350,7 @@ methodsOf(const CoverageOptions& options)
       named.push_back(name);
   if (named.empty() && !of_exact.empty())
     return of_exact;
-  requireKnown(named, namesOf(known), "methods");
+  io::readOption("methods", [&] { requireKnown(named, namesOf(known)); });
   std::vector<CoverageMethod> methods;
   for (const CoverageMethod& method : known)
     if (named.empty() || contains(named, method.name))
@@ -376,7 +369,8 @@ studyOf(const CoverageOptions& options)
     addMissing(known_conditions, set.conditions);
     addMissing(known_conditions, set.rare_conditions);
   }
-  requireKnown(options.conditions, known_conditions, "conditions");
+  io::readOption("conditions",
+                 [&] { requireKnown(options.conditions, known_conditions); });
   CoverageStudy study;
   study.make_case = offer.make_case;
   study.num_threads = options.num_threads;

@@ -62,9 +62,8 @@ private:
   static void
   twistColumns(const std::string& prefix, Vector& values, const Column& column)
   {
-    constexpr std::array<const char*, 6> axes = {"vx", "vy", "vz", "wx", "wy", "wz"};
-    for (std::size_t k = 0; k < axes.size(); ++k)
-      column(prefix + axes[k], values[Eigen::Index(k)]);
+    for (std::size_t k = 0; k < twist_names.size(); ++k)
+      column(prefix + twist_names[k], values[Eigen::Index(k)]);
   }
 };
 

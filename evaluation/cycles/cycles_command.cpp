@@ -40,9 +40,8 @@ csvOf(const std::vector<ClosedCycle>& cycles)
   for (const std::string title :
        {"vertices", "length", "squared_error", "num_degrees", "probability"})
     header.add(title);
-  for (int k = 0; k < 6; ++k)
-    header.add(std::string("error_") + app::coordinate_names[k] +
-               (app::isAngle(k) ? "_rad" : "_m"));
+  for (std::size_t k = 0; k < twist_names.size(); ++k)
+    header.add(std::string("error_") + twist_names[k] + (k < 3 ? "_m" : "_rad"));
   std::string text = header.text() + '\n';
   for (const ClosedCycle& closed : cycles) {
     CsvRow row;

@@ -4,7 +4,7 @@ import numpy as np
 
 from report import frames, page
 
-COLUMNS = ("recording", "means", "covariances", "ate_m", "rpe_m", "nees", "cycle_nees")
+COLUMNS = ("recording", "means", "covariances", "ate_m", "rpe_m", "nees_per_degree", "cycle_nees_per_degree")
 LIKE_TIES = 1.02
 
 
@@ -16,7 +16,8 @@ def mean_of(rows):
     """Root mean squares of errors over the seeds, means of the rest; unknown if one is."""
     errors = ("ate_m", "rpe_m", "rpe_rad", "drift_m")
     root = {name: np.sqrt((rows[name] ** 2).mean(skipna=False)) for name in errors}
-    means = {name: rows[name].mean(skipna=False) for name in ("num_edges", "nees", "cycle_nees")}
+    others = ("num_edges", "nees_per_degree", "cycle_nees_per_degree")
+    means = {name: rows[name].mean(skipna=False) for name in others}
     return {**root, **means}
 
 
@@ -37,8 +38,8 @@ def rows_of(table):
                 f"{1e3 * one['rpe_m']:.2f}",
                 f"{np.degrees(one['rpe_rad']):.3f}",
                 f"{1e3 * one['drift_m']:.1f}",
-                frames.number(one["nees"], 2),
-                frames.number(one["cycle_nees"], 2),
+                frames.number(one["nees_per_degree"], 2),
+                frames.number(one["cycle_nees_per_degree"], 2),
             ])  # fmt: skip
     return rows
 
@@ -54,7 +55,7 @@ def plot_errors(output, name, table):
     for number, (key, runs) in enumerate(methods):
         ate = runs.groupby("recording").ate_m.apply(lambda ate: np.sqrt((ate**2).mean()))
         axis.plot(
-            [ate[r] / reference[r] for r in recordings], range(len(recordings)),
+            (ate / reference).reindex(recordings), range(len(recordings)),
             "o" if key[0] == "calibrated" else "x", label=name_of(*key), markersize=5,
             color=page.COLOURS[number % len(page.COLOURS)],
         )  # fmt: skip
@@ -75,7 +76,7 @@ def section_of(output, name, table, _tables):
         "after alignment (ATE; *: the smallest of the recording, or within 2 % of it), relative "
         "poses of neighbours (RPE), the last pose (drift). Normalised squared error per degree of freedom of the poses (NEES/6) "
         "and of the closures of cycles: 1 if covariances are right. The letter is the quality of "
-        "the true poses.",
+        "the true poses, whose accuracy is in NEES/6; those of C are of the same scans and have none.",
         ["recording", "edges of", "edges", "ATE [mm]", "RPE [mm]", "RPE [deg]", "drift [mm]", "NEES/6",
          "cycles"],
         rows_of(table),

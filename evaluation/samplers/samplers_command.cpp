@@ -97,8 +97,7 @@ listOf(const std::string& standard,
 std::string
 samplerOf(const std::string& name)
 {
-  if (!SamplersOptions().wants(name))
-    throw io::BadValue(": there is no " + io::inQuotes(name));
+  requireKnown({name}, SamplersOptions().samplers);
   return name;
 }
 

@@ -106,17 +106,19 @@ verdictOf(const std::vector<RankRun>& runs)
       continue;
     std::vector<std::string> cells = {
         sampler.name, std::to_string(ranks.size()) + '/' + std::to_string(num_runs)};
+    const bool is_enough = ranks.size() >= min_ranked_runs;
     bool is_uniform = ranks.size() == num_runs;
     for (int k = 0; k < 6; ++k) {
       const double statistic =
           ranks.empty() ? std::nan("") : chiSquareOf(rankHistogram(ranks, k));
-      is_uniform = is_uniform && statistic < max_rank_chi_square;
+      is_uniform = is_uniform && (!is_enough || statistic < max_rank_chi_square);
       cells.push_back(numberText(statistic, 1));
     }
     cells.emplace_back(!sampler.is_well_specified
                            ? "no model of the scans: for information"
-                       : is_uniform ? "uniform"
-                                    : "NOT UNIFORM");
+                       : !is_uniform ? "NOT UNIFORM"
+                       : is_enough   ? "uniform"
+                                     : "too few runs");
     result.table.add(cells);
     result.are_uniform &= is_uniform || !sampler.is_well_specified;
   }

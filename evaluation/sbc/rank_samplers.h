@@ -40,8 +40,8 @@ struct RankVerdict {
   /** A line for each sampler: runs, chi-square statistic of each coordinate, verdict.
    */
   TextTable table;
-  /** Whether every well-specified sampler has uniform ranks: all runs good and every
-   * statistic below max_rank_chi_square. */
+  /** Whether every well-specified sampler has uniform ranks: all runs good and, of at
+   * least min_ranked_runs, every statistic below max_rank_chi_square. */
   bool are_uniform = true;
 };
 

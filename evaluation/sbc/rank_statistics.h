@@ -21,6 +21,9 @@ constexpr int num_rank_bins = 10;
 /** \brief What the chi-square statistic of num_rank_bins equally probable bins exceeds
  * with a probability of 0.1 %. */
 constexpr double max_rank_chi_square = 27.9;
+/** \brief With fewer, less than five are expected in a bin, and the statistic is not
+ * chi-square. */
+constexpr std::size_t min_ranked_runs = 5 * num_rank_bins;
 
 /** \brief Rank of each coordinate, 0 ... num_ranked_draws. */
 using Ranks = Eigen::Matrix<int, 6, 1>;

@@ -52,7 +52,7 @@ samplersOf(const std::string& text)
         chosen.push_back(sampler);
     }
     if (!is_known)
-      throw io::BadValue(": there is no " + io::inQuotes(name));
+      requireKnown({name}, namesOf(rankSamplers()));
   }
   return chosen.empty() ? rankSamplers() : chosen;
 }

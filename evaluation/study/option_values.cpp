@@ -83,6 +83,16 @@ wordsOf(const std::string& list)
   return words;
 }
 
+void
+requireKnown(const std::vector<std::string>& asked,
+             const std::vector<std::string>& known)
+{
+  for (const std::string& name : asked)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw io::BadValue(": there is no " + io::inQuotes(name) + ", but " +
+                         boost::algorithm::join(known, " "));
+}
+
 int
 ResultOptions::report() const
 {

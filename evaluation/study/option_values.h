@@ -61,6 +61,11 @@ integer(Integer& value, int least, int most)
 std::vector<std::string>
 wordsOf(const std::string& list);
 
+/** \throws io::BadValue with the known names, of one asked for that is none of them */
+void
+requireKnown(const std::vector<std::string>& asked,
+             const std::vector<std::string>& known);
+
 /** \brief Where the rows of a study go, and what is made of them. */
 struct ResultOptions {
   std::string file;

@@ -21,6 +21,7 @@ namespace bayesian_icp::evaluate {
 namespace fs = std::filesystem;
 
 using Eigen::Isometry3d;
+using io::JsonNode;
 using nlohmann::json;
 
 namespace {
@@ -78,14 +79,14 @@ motionOf(const std::string& line)
   return motionOf(numbers);
 }
 
-/** \throws nlohmann::json::exception, std::runtime_error */
+/** \throws io::UsageError, std::runtime_error */
 Isometry3d
-motionAt(const json& object, const char* key)
+motionAt(const JsonNode& object, const char* key)
 {
   std::vector<double> numbers;
-  for (const json& row : object.at(key))
+  for (const json& row : object[key].json())
     for (const json& number : row)
-      numbers.push_back(number.get<double>());
+      numbers.push_back(JsonNode(number, key).number());
   try {
     return motionOf(numbers);
   }
@@ -94,11 +95,11 @@ motionAt(const json& object, const char* key)
   }
 }
 
-/** \throws nlohmann::json::exception, std::runtime_error if it is not at least 0 */
+/** \throws io::UsageError, std::runtime_error if it is not at least 0 */
 double
-lengthAt(const json& object, const char* key)
+lengthAt(const JsonNode& object, const char* key)
 {
-  const auto length = object.at(key).get<double>();
+  const double length = object[key].number();
   if (!(length >= 0.0) || std::isinf(length))
     throw std::runtime_error(std::string(key) + " must be finite and not negative");
   return length;
@@ -110,12 +111,6 @@ scanFile(const fs::path& folder, std::size_t scan)
   return (folder / format("scan_%04zu.pcd", scan)).string();
 }
 
-void
-tellLeftOut(const fs::path& folder, const std::string& what)
-{
-  std::cerr << folder.string() + ": note: " + what + " are left out\n";
-}
-
 Recording
 readRecording(const fs::path& folder)
 {
@@ -125,9 +120,10 @@ readRecording(const fs::path& folder)
     return io::readFinitePoints(scanFile(folder, scan)).cast<double>();
   };
   const std::string set_file = (folder / set_name).string();
-  const json set = io::readJson(set_file, max_set_size);
+  const json document = io::readJson(set_file, max_set_size);
   try {
-    recording.quality = set.at("quality");
+    const JsonNode set(document);
+    recording.quality = set["quality"].text();
     if (recording.quality != "A" && recording.quality != "B" &&
         recording.quality != "C")
       throw std::runtime_error("quality is " + io::inQuotes(recording.quality) +
@@ -139,13 +135,17 @@ readRecording(const fs::path& folder)
   catch (const std::exception& error) {
     throw io::FileError(set_file, error.what());
   }
-  forEachLine((folder / "poses.txt").string(), [&recording](const std::string& line) {
+  const std::string poses_file = (folder / "poses.txt").string();
+  forEachLine(poses_file, [&recording](const std::string& line) {
     recording.poses.push_back(motionOf(line));
   });
-  if (fs::exists(scanFile(folder, recording.poses.size())))
-    tellLeftOut(folder,
-                "scans from " + io::textOf(recording.poses.size()) +
-                    " on have no pose in poses.txt, and");
+  std::size_t num_scans = 0;
+  while (fs::exists(scanFile(folder, num_scans)))
+    ++num_scans;
+  if (num_scans != recording.poses.size())
+    throw io::FileError(poses_file,
+                        "there are " + io::textOf(num_scans) + " scans, but " +
+                            io::textOf(recording.poses.size()) + " lines");
   return recording;
 }
 
@@ -160,7 +160,8 @@ readRecordings(const std::string& folder)
     if (fs::exists(entry.path() / set_name))
       folders.push_back(entry.path());
     else if (fs::exists(scanFile(entry.path(), 0)))
-      tellLeftOut(entry.path(), std::string("has no ") + set_name + ", so its scans");
+      std::cerr << entry.path().string() + ": note: has no " + set_name +
+                       ", so its scans are left out\n";
   if (error)
     throw io::FileError(folder, error.message());
   if (folders.empty())
@@ -181,9 +182,14 @@ readPairPoses(
         void(const std::string& set, std::uint64_t pair, const PairPoses& poses)>& take)
 {
   forEachLine(file, [&take](const std::string& line) {
-    const json row = json::parse(line);
-    take(row.at("set").get<std::string>(),
-         row.at("pair").get<std::uint64_t>(),
+    const json object = json::parse(line, nullptr, false);
+    if (object.is_discarded())
+      throw std::runtime_error("broken JSON");
+    const JsonNode row(object), pair = row["pair"];
+    if (!pair.json().is_number_unsigned())
+      pair.refuse("the number of a scan");
+    take(row["set"].text(),
+         pair.json().get<std::uint64_t>(),
          {motionAt(row, "guess"), motionAt(row, "truth")});
   });
 }

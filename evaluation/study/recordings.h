@@ -40,7 +40,7 @@ struct Recording {
 };
 
 /** \brief Every folder in \p folder that has a set.json, by name, with its poses.txt.
- * Scans without either are left out, with a note to the standard error.
+ * Scans without a set.json are left out, with a note to the standard error.
  * \throws io::FileError if there is none, or what is wrong with a file */
 std::vector<Recording>
 readRecordings(const std::string& folder);

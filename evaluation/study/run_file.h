@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <fstream>
 #include <map>
@@ -136,6 +137,9 @@ runOf(const std::string& line, const std::string& header = headerOf<Run>())
   });
   return run;
 }
+
+/** \brief Components of a twist, as titles of columns have them. */
+constexpr std::array<const char*, 6> twist_names = {"vx", "vy", "vz", "wx", "wy", "wz"};
 
 /** \brief Columns of the six coordinates of a pose. */
 template <typename Vector, typename Column>

@@ -7,6 +7,7 @@
 #include "io/text_hash.h"
 #include "register/choices.h"
 #include "study/input_hash.h"
+#include "study/named.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
 #include "study/text_table.h"
@@ -69,16 +70,15 @@ recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
   }
   if (options.names.empty())
     return all;
+  io::readOption("recordings", [&] {
+    requireKnown(options.names, folder.empty() ? driveNames() : namesOf(real));
+  });
   std::vector<RegisteredRecording> chosen;
-  for (const std::string& name : options.names) {
-    const std::size_t before = chosen.size();
+  for (const std::string& name : options.names)
     std::copy_if(all.begin(),
                  all.end(),
                  std::back_inserter(chosen),
                  [&](const auto& one) { return one.recording.name == name; });
-    if (chosen.size() == before)
-      throw io::UsageError("--recordings: there is no " + io::inQuotes(name));
-  }
   return chosen;
 }
 
@@ -179,7 +179,7 @@ registerAll(const TrajectoriesOptions& options,
 std::string
 tableOf(const std::vector<TrajectoryRun>& runs)
 {
-  std::string text = format("%-30s %-2s %-11s %-11s %5s %8s %8s %8s %8s %7s %7s\n",
+  std::string text = format("%-30s %-5s %-11s %-11s %5s %8s %8s %8s %8s %7s %7s\n",
                             "recording (seed)",
                             "of",
                             "means",
@@ -192,7 +192,7 @@ tableOf(const std::vector<TrajectoryRun>& runs)
                             "NEES/6",
                             "cycles");
   for (const TrajectoryRun& run : runs)
-    text += format("%-30s %-2.1s %-11s %-11s %5d %8.2f %8.2f %8.3f %8.2f %7.2f %7.2f\n",
+    text += format("%-30s %-5s %-11s %-11s %5d %8.2f %8.2f %8.3f %8.2f %7.2f %7.2f\n",
                    (run.recording + " (" + io::textOf(run.seed) + ')').c_str(),
                    run.quality.c_str(),
                    run.means.c_str(),
@@ -202,8 +202,8 @@ tableOf(const std::vector<TrajectoryRun>& runs)
                    milli * run.score.rpe_translation,
                    app::degrees_per_radian * run.score.rpe_rotation,
                    milli * run.score.drift_translation,
-                   run.score.nees,
-                   run.cycle_nees);
+                   run.score.nees_per_degree,
+                   run.cycle_nees_per_degree);
   return text;
 }
 
@@ -234,7 +234,9 @@ The table has the error of positions after alignment (ATE), of relative poses
 of neighbours (RPE), of the last pose (drift), the normalised squared error of
 all poses per degree of freedom (NEES/6) and that of closures of cycles of up
 to four edges (1 if covariances are right).
-Errors include those of the true poses ("of": exact, or quality A, B, C).
+Errors include those of the true poses ("of": exact, or quality A, B, C), and
+NEES/6 has their accuracy. Poses of quality C are of the same scans, so they
+have no NEES/6. The constant covariance needs other recordings.
 
 Each registration is a row of a second CSV file, FILE_edges.csv, from which an
 interrupted study continues. Rows of other scans, other guesses or another
@@ -300,6 +302,11 @@ runTrajectoriesCommand(int argc, const char* const* argv)
   folder.add(std::filesystem::path(options.result.file).filename().string(), rows);
   folder.commit();
   io::print(tableOf(runs));
+  const auto isConstant = [](const auto& run) { return run.covariances == "constant"; };
+  const auto num_constant = std::count_if(runs.begin(), runs.end(), isConstant);
+  if (num_constant < 2 * static_cast<std::ptrdiff_t>(recordings.size()))
+    std::cerr << "note: rows of a constant covariance are left out where no other "
+                 "recording can give it\n";
   return options.result.report();
 }
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace bayesian_icp::evaluate {
@@ -38,11 +39,13 @@ absoluteError(const std::vector<Isometry3d>& estimate,
 }
 
 double
-normalizedSquaredError(const app::GaussianPose& estimate, const Isometry3d& truth)
+normalizedSquaredError(const app::GaussianPose& estimate,
+                       const Isometry3d& truth,
+                       const Matrix6d& truth_covariance)
 {
   const Vector6d error =
       logSE3(Isometry3d(matrixOf(estimate.mean)).inverse().matrix() * truth.matrix());
-  return error.dot(estimate.covariance.ldlt().solve(error)) / 6.0;
+  return error.dot((estimate.covariance + truth_covariance).ldlt().solve(error)) / 6.0;
 }
 
 constexpr const char* constant = "constant";
@@ -77,8 +80,8 @@ isFittedTo(const RegisteredRecording& other, const RegisteredRecording& judged)
          other.recording.quality != "C";
 }
 
-/** Of the errors of the edges of \p means in other recordings. */
-Matrix6d
+/** Of the errors of the edges of \p means in other recordings; nothing without any. */
+std::optional<Matrix6d>
 constantCovariance(const std::vector<RegisteredRecording>& recordings,
                    const RegisteredRecording& judged,
                    const std::string& means)
@@ -97,10 +100,9 @@ constantCovariance(const std::vector<RegisteredRecording>& recordings,
       count += 1.0;
     }
   }
-  // Without others there is nothing better than how well the guess is known.
-  return count > 0.0 ? covarianceOf({std::sqrt(translations / count),
-                                     std::sqrt(rotations / count)})
-                     : covarianceOf(guess_sd);
+  if (count == 0.0)
+    return std::nullopt;
+  return covarianceOf({std::sqrt(translations / count), std::sqrt(rotations / count)});
 }
 
 /** Edges with the means of one method and the covariances of another; what either does
@@ -160,14 +162,15 @@ scoreCycles(const std::vector<GraphEdge>& edges, TrajectoryRun& run)
   const std::vector<app::CycleStatistics> lines =
       app::statisticsOf(app::closedCycles(edges, max_cycle_length));
   run.num_cycles = lines.empty() ? 0 : static_cast<int>(lines.back().num_cycles);
-  run.cycle_nees = lines.empty() ? std::nan("") : lines.back().nees_per_degree;
+  run.cycle_nees_per_degree =
+      lines.empty() ? std::nan("") : lines.back().nees_per_degree;
 }
 
 TrajectoryRun
-trajectoryOf(const std::vector<RegisteredRecording>& recordings,
-             const RegisteredRecording& registered,
+trajectoryOf(const RegisteredRecording& registered,
              const std::string& means,
-             const std::string& covariances)
+             const std::string& covariances,
+             const Matrix6d& constant_covariance)
 {
   const Recording& recording = registered.recording;
   TrajectoryRun run;
@@ -177,21 +180,17 @@ trajectoryOf(const std::vector<RegisteredRecording>& recordings,
   run.means = means;
   run.covariances = covariances;
   run.num_scans = static_cast<int>(recording.poses.size());
-  std::vector<GraphEdge> edges = combinedEdges(
-      registered,
-      means,
-      covariances,
-      covariances == constant ? constantCovariance(recordings, registered, means)
-                              : Matrix6d::Identity());
+  std::vector<GraphEdge> edges =
+      combinedEdges(registered, means, covariances, constant_covariance);
   scoreCycles(edges, run);
   run.num_edges = static_cast<int>(edges.size());
   const std::vector<GraphEdge> odometry = odometryOf(registered);
   edges.insert(edges.begin(), odometry.begin(), odometry.end());
   const app::OptimizedPoses optimized = app::optimizedPoses(
       chained(edges, recording.poses.size()), edges, app::RobustLoss::None);
-  run.score = scoreOf(optimized.poses, recording.poses);
-  if (!optimized.complaint.empty())
-    run.score.nees = run.score.nees_of_last = std::nan("");
+  run.score = scoreOf(optimized.poses, recording.poses, recording.truth_sd);
+  if (!optimized.complaint.empty() || recording.quality == "C")
+    run.score.nees_per_degree = run.score.nees_per_degree_of_last = std::nan("");
   return run;
 }
 
@@ -199,7 +198,8 @@ trajectoryOf(const std::vector<RegisteredRecording>& recordings,
 
 TrajectoryScore
 scoreOf(const std::vector<app::GaussianPose>& estimate,
-        const std::vector<Isometry3d>& truth)
+        const std::vector<Isometry3d>& truth,
+        const AxisDeviation& truth_sd)
 {
   std::vector<Isometry3d> poses, true_poses;
   for (std::size_t k = 0; k < truth.size(); ++k) {
@@ -215,8 +215,9 @@ scoreOf(const std::vector<app::GaussianPose>& estimate,
                              (poses[k - 1].inverse() * poses[k]);
     translations += error.translation().squaredNorm();
     rotations += std::pow(angleOf(error), 2);
-    score.nees_of_last = normalizedSquaredError(estimate[k], true_poses[k]);
-    score.nees += score.nees_of_last / num_steps;
+    score.nees_per_degree_of_last =
+        normalizedSquaredError(estimate[k], true_poses[k], covarianceOf(truth_sd));
+    score.nees_per_degree += score.nees_per_degree_of_last / num_steps;
   }
   score.rpe_translation = std::sqrt(translations / num_steps);
   score.rpe_rotation = std::sqrt(rotations / num_steps);
@@ -239,8 +240,13 @@ trajectoriesOf(const std::vector<RegisteredRecording>& recordings)
       {"closed-form", "closed-form"}};
   std::vector<TrajectoryRun> runs;
   for (const RegisteredRecording& registered : recordings)
-    for (const auto& [means, covariances] : combinations)
-      runs.push_back(trajectoryOf(recordings, registered, means, covariances));
+    for (const auto& [means, covariances] : combinations) {
+      const std::optional<Matrix6d> fitted =
+          covariances == constant ? constantCovariance(recordings, registered, means)
+                                  : Matrix6d::Identity();
+      if (fitted)
+        runs.push_back(trajectoryOf(registered, means, covariances, *fitted));
+    }
   return runs;
 }
 

@@ -25,16 +25,19 @@ struct TrajectoryScore {
   double drift_rotation = 0.0;
   /** Normalised squared error per degree of freedom, mean over all poses but the first
    * and of the last one; 1 if covariances are right. */
-  double nees = 0.0;
-  double nees_of_last = 0.0;
+  double nees_per_degree = 0.0;
+  double nees_per_degree_of_last = 0.0;
 };
 
 /** \brief Score a trajectory.
  * \param[in] estimate of at least two poses in the frame of the first one
- * \param[in] truth as many, in any frame */
+ * \param[in] truth as many, in any frame
+ * \param[in] truth_sd accuracy of relative poses of the truth, which the normalised
+ * squared errors add to each covariance */
 TrajectoryScore
 scoreOf(const std::vector<app::GaussianPose>& estimate,
-        const std::vector<Eigen::Isometry3d>& truth);
+        const std::vector<Eigen::Isometry3d>& truth,
+        const AxisDeviation& truth_sd = {});
 
 /** \brief A recording and what its pairs have given, with every method. */
 struct RegisteredRecording {
@@ -53,11 +56,13 @@ struct TrajectoryRun {
   int num_scans = 0;
   /** Registrations that are of use. */
   int num_edges = 0;
+  /** Without normalised squared errors (NaN) if the quality is C: the true poses are
+   * of the same scans. */
   TrajectoryScore score;
   /** Closures of cycles of up to four edges, see closureOf(): their number, and the sum
    * of their squared errors over that of their degrees. */
   int num_cycles = 0;
-  double cycle_nees = 0.0;
+  double cycle_nees_per_degree = 0.0;
 
   template <typename Column>
   void
@@ -75,10 +80,10 @@ struct TrajectoryRun {
     column("rpe_rad", score.rpe_rotation);
     column("drift_m", score.drift_translation);
     column("drift_rad", score.drift_rotation);
-    column("nees", score.nees);
-    column("nees_of_last", score.nees_of_last);
+    column("nees_per_degree", score.nees_per_degree);
+    column("nees_per_degree_of_last", score.nees_per_degree_of_last);
     column("num_cycles", num_cycles);
-    column("cycle_nees", cycle_nees);
+    column("cycle_nees_per_degree", cycle_nees_per_degree);
   }
 };
 
@@ -89,7 +94,8 @@ struct TrajectoryRun {
  *
  * A constant covariance is that of one axis for translations and one for rotations: the
  * mean square of the errors of the edges that these means have in the other recordings
- * of the same kind, simulated or with poses of quality A and B. */
+ * of the same kind, simulated or with poses of quality A and B. Without such edges
+ * there is no trajectory of `constant`. */
 std::vector<TrajectoryRun>
 trajectoriesOf(const std::vector<RegisteredRecording>& recordings);
 

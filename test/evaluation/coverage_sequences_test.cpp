@@ -221,6 +221,12 @@ TEST_F(SequencesTest, WhatIsWrongIsNamed)
                              const SequenceOptions& options = SequenceOptions()) {
     expectIn(complaint(options), piece);
   };
+  writeFile(set_ / "poses.txt", poses + textOf(poseOfScan(4)) + '\n');
+  expect("poses.txt: there are 4 scans, but 5 lines");
+  std::string fewer = poses;
+  fewer.resize(poses.rfind('\n', poses.size() - 2) + 1);
+  writeFile(set_ / "poses.txt", fewer);
+  expect("poses.txt: there are 4 scans, but 3 lines");
   writeFile(set_ / "poses.txt", poses.substr(0, poses.rfind(' ')) + '\n');
   expect("poses.txt: line 4: has 11 numbers");
   writeFile(set_ / "poses.txt", "1 0 0 0 0 x\n");
@@ -234,7 +240,7 @@ TEST_F(SequencesTest, WhatIsWrongIsNamed)
   writeFile(set_ / "set.json", R"({"quality": "A")");
   expect("set.json: broken JSON");
   writeFile(set_ / "set.json", R"({"quality": "A"})");
-  expect("accuracy_translation_m");
+  expect("set.json: the key 'accuracy_translation_m' is missing");
   writeFile(set_ / "set.json", R"({"quality": "D"})");
   expect("set.json: quality is 'D'");
   writeFile(set_ / "set.json", set_text);
@@ -242,9 +248,12 @@ TEST_F(SequencesTest, WhatIsWrongIsNamed)
   SequenceOptions options = withRow(Isometry3d::Identity(), Isometry3d::Identity());
   const std::string row = contentOf(options.rows_file);
   for (const auto& [text, piece] :
-       {std::pair<std::string, std::string>{row + row.substr(0, 50), "line 2: "},
+       {std::pair<std::string, std::string>{row + row.substr(0, 50),
+                                            "line 2: broken JSON"},
         {row + row, "line 2: pair 1 of hall is there twice"},
-        {R"({"set": "x"})", "line 1: "},
+        {R"({"set": "x"})", "line 1: the key 'pair' is missing"},
+        {R"({"set": "hall", "pair": -1})",
+         "line 1: pair is '-1', but must be the number of a scan"},
         {R"({"set": "hall", "pair": 1, "guess": [[1]]})",
          "line 1: guess: has 1 numbers"}}) {
     writeFile(options.rows_file, text);
@@ -315,13 +324,8 @@ TEST_F(SequencesTest, ScansThatAreLeftOutAreTold)
 {
   fs::create_directories(folder_ / "yard");
   fs::copy(set_ / "scan_0000.pcd", folder_ / "yard");
-  std::string poses = contentOf(set_ / "poses.txt");
-  poses.resize(poses.rfind('\n', poses.size() - 2) + 1);
-  writeFile(set_ / "poses.txt", poses);
   const std::string output = run("--methods prior --output a.csv").output;
   expectIn(output, "yard: note: has no set.json, so its scans are left out");
-  expectIn(output,
-           "hall: note: scans from 3 on have no pose in poses.txt, and are left out");
 }
 
 TEST_F(SequencesTest, BadOptionsOfTheCommandExitWithTwo)
@@ -334,6 +338,8 @@ TEST_F(SequencesTest, BadOptionsOfTheCommandExitWithTwo)
                                 "--seeds 3",
                                 "--conditions same",
                                 "--scenes nowhere",
+                                "--rows x --guess-sd 0.1,0.03",
+                                "--rows x --first-seed 1",
                                 "--real '' --rows x",
                                 "--real '' --step 2"}) {
     const CommandResult result = run(arguments);

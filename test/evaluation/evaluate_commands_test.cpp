@@ -101,14 +101,14 @@ TEST_F(EvaluateCommands, SamplersAreComparedWithOneGoldStandardEach)
 TEST_F(EvaluateCommands, SbcTellsRanksThatAreNotUniform)
 {
   std::string rows = rank_header;
-  // Ten runs in one bin: a statistic of 90.
-  for (int seed = 1; seed <= 10; ++seed)
+  // 50 runs in one bin: a statistic of 450.
+  for (int seed = 1; seed <= 50; ++seed)
     rows += "calibrated," + std::to_string(seed) + ",1,0,10,20,30,40,99\n";
   writeFile(folder_ / "a.csv", rows);
-  const CommandResult result = run("sbc --sampler calibrated --runs 10 --output a.csv");
+  const CommandResult result = run("sbc --sampler calibrated --runs 50 --output a.csv");
   EXPECT_EQ(result.exit_code, 1) << result.output;
   expectIn(result.output, "NOT UNIFORM");
-  expectIn(result.output, "90.0");
+  expectIn(result.output, "450.0");
 }
 
 TEST_F(EvaluateCommands, BadOptionsExitWithTwoAndLeaveNothing)

@@ -164,14 +164,18 @@ TEST(Ranks, CountDrawsBelowTheTruth)
 TEST(Ranks, VerdictIsOfGoodRunsAlone)
 {
   std::vector<RankRun> runs;
-  for (std::uint64_t k = 0; k < 10; ++k)
+  for (std::uint64_t k = 0; k < 50; ++k)
     for (const char* sampler : {"calibrated", "calibrated-scans"})
-      runs.push_back({{sampler, k}, true, Ranks::Constant(static_cast<int>(10 * k))});
+      runs.push_back({{sampler, k}, true, Ranks::Constant(static_cast<int>(2 * k))});
   const RankVerdict good = verdictOf(runs);
   EXPECT_TRUE(good.are_uniform);
-  EXPECT_EQ(good.table.rows().at(2).at(1), "10/10");
+  EXPECT_EQ(good.table.rows().at(2).at(1), "50/50");
   EXPECT_EQ(good.table.rows().at(2).back(), "uniform");
   EXPECT_EQ(good.table.rows().at(3).back(), "no model of the scans: for information");
+  // Of 49 runs, less than five are expected in each of ten bins.
+  const RankVerdict few = verdictOf({runs.begin() + 2, runs.end()});
+  EXPECT_TRUE(few.are_uniform);
+  EXPECT_EQ(few.table.rows().at(2).back(), "too few runs");
   runs[1].is_valid = false;
   EXPECT_TRUE(verdictOf(runs).are_uniform);
   runs[0].is_valid = false;

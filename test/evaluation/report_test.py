@@ -90,7 +90,8 @@ class Trajectories(FolderTest):
             "means": ["calibrated"] * 4, "covariances": ["calibrated", "constant"] * 2,
             "num_edges": [40, 40, 38, 38],
             "ate_m": [0.003, 0.0042, 0.004, 0.0042], "rpe_m": 0.001, "rpe_rad": 0.01,
-            "drift_m": 0.02, "nees": [1.0, 2.0, 3.0, np.nan], "cycle_nees": 0.5,
+            "drift_m": 0.02, "nees_per_degree": [1.0, 2.0, 3.0, np.nan],
+            "cycle_nees_per_degree": 0.5,
         })  # fmt: skip
         # The root of (9 + 16) / 2 is 3.54.
         self.assertEqual(
@@ -102,6 +103,16 @@ class Trajectories(FolderTest):
         section = trajectories.section_of(self.output, "drives", rows, [])
         self.assertEqual(section.title, "Trajectories (drives.csv)")
         self.assertIn(b"</svg>", self.output.files["drives_errors.svg"])
+
+    def test_a_recording_may_have_no_row_of_a_method(self):
+        rows = pd.DataFrame({
+            "recording": ["street", "street", "room"], "quality": "B", "means": "calibrated",
+            "covariances": ["calibrated", "constant", "calibrated"], "num_edges": 40, "ate_m": 0.003,
+            "rpe_m": 0.001, "rpe_rad": 0.01, "drift_m": 0.02, "nees_per_degree": 1.0,
+            "cycle_nees_per_degree": 0.5,
+        })  # fmt: skip
+        trajectories.section_of(self.output, "some", rows, [])
+        self.assertIn(b"</svg>", self.output.files["some_errors.svg"])
 
 
 def coverage_rows(num_rows=10, **changes):

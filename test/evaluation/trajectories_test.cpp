@@ -190,8 +190,16 @@ TEST(Trajectories, ErrorsAreComparedWithTheirCovariances)
   last.translation().x() += 0.4; // two deviations
   const TrajectoryScore score = scoreOf(
       {known(truth[0]), known(truth[1], covariance), known(last, covariance)}, truth);
-  EXPECT_NEAR(score.nees_of_last, 4.0 / 6.0, 1e-9);
-  EXPECT_NEAR(score.nees, 2.0 / 6.0, 1e-9);
+  EXPECT_NEAR(score.nees_per_degree_of_last, 4.0 / 6.0, 1e-9);
+  EXPECT_NEAR(score.nees_per_degree, 2.0 / 6.0, 1e-9);
+  // With a reference that is as inaccurate as the estimate.
+  EXPECT_NEAR(
+      scoreOf({known(truth[0]), known(truth[1], covariance), known(last, covariance)},
+              truth,
+              {0.2, 0.0})
+          .nees_per_degree_of_last,
+      2.0 / 6.0,
+      1e-9);
 }
 
 TEST(Trajectories, EachScanIsRegisteredToThoseBeforeAndToItsPlaceOfLongAgo)
@@ -223,10 +231,10 @@ TEST(Trajectories, RightCovariancesMakeTheBestTrajectoriesAndSayHowGoodTheyAre)
     EXPECT_EQ(right.covariances, "calibrated");
     EXPECT_EQ(constant.covariances, "constant");
     EXPECT_EQ(bold.means + bold.covariances, "gicpgicp");
-    nees_of_last += right.score.nees_of_last / num_recordings;
-    cycles += right.cycle_nees / num_recordings;
+    nees_of_last += right.score.nees_per_degree_of_last / num_recordings;
+    cycles += right.cycle_nees_per_degree / num_recordings;
     num_better += right.score.ate < constant.score.ate ? 1 : 0;
-    EXPECT_GT(bold.score.nees, 5.0 * right.score.nees);
+    EXPECT_GT(bold.score.nees_per_degree, 5.0 * right.score.nees_per_degree);
     EXPECT_EQ(right.num_edges, 54);
     EXPECT_EQ(runs[k + 3].num_edges, 0) << "none has a covariance";
   }
@@ -236,6 +244,25 @@ TEST(Trajectories, RightCovariancesMakeTheBestTrajectoriesAndSayHowGoodTheyAre)
   EXPECT_NEAR(cycles, 1.0, 3.0 * std::sqrt(2.0 / 6.0 / 19.0 / num_recordings));
   // A coin would have 20 +- 3.2.
   EXPECT_GE(num_better, 30);
+}
+
+TEST(Trajectories, OfARecordingAloneHaveNoConstantCovariance)
+{
+  RegisteredRecording alone = drawnRecording("a", 1);
+  std::vector<TrajectoryRun> runs = trajectoriesOf({alone});
+  ASSERT_EQ(runs.size(), 5u);
+  for (const TrajectoryRun& run : runs)
+    EXPECT_NE(run.covariances, "constant");
+  const double of_exact = runs[0].score.nees_per_degree;
+  EXPECT_GT(of_exact, 0.0);
+  alone.recording.quality = "B";
+  alone.recording.truth_sd = {0.1, 0.01};
+  EXPECT_LT(trajectoriesOf({alone})[0].score.nees_per_degree, of_exact);
+  alone.recording.quality = "C";
+  runs = trajectoriesOf({alone});
+  EXPECT_TRUE(std::isnan(runs[0].score.nees_per_degree));
+  EXPECT_TRUE(std::isnan(runs[0].score.nees_per_degree_of_last));
+  EXPECT_GT(runs[0].score.ate, 0.0);
 }
 
 TEST(Trajectories, DrivesAreTheSameEachTimeAndMoveALittle)
@@ -263,7 +290,10 @@ TEST_F(TrajectoriesCommand, GoesOnWhereItStopped)
   EXPECT_EQ(first.exit_code, 0) << first.output;
   expectIn(first.output, "2 of 2 pairs");
   const std::string rows = contentOf(folder_ / "r/a.csv");
-  expectIn(rows, "office_floor,exact,1,calibrated,constant,3,");
+  expectIn(rows, "office_floor,exact,1,calibrated,closed-form,3,");
+  expectIn(first.output,
+           "office_floor (1)               exact calibrated  calibrated ");
+  EXPECT_EQ(count("note: rows of a constant covariance are left out", first.output), 1);
   const CommandResult other = run("--recordings office_floor --scans 2 --span 1 "
                                   "--output r/a.csv");
   expectIn(other.output, "1 of 1 pairs");
@@ -311,6 +341,8 @@ TEST_F(TrajectoriesCommand, SaysWhatItCannotUse)
     EXPECT_EQ(result.exit_code, 2) << arguments << ": " << result.output;
     EXPECT_TRUE(std::filesystem::is_empty(folder_)) << arguments;
   }
+  expectIn(run("--recordings sea").output,
+           "--recordings: there is no 'sea', but street corridor_loop office_floor");
   const CommandResult result = run("nowhere");
   EXPECT_EQ(result.exit_code, 3) << result.output;
   expectIn(result.output, "nowhere");
