@@ -21,7 +21,7 @@ from trajectories import (
     rows_of_file,
 )
 
-UNITS_OF_ERRORS = [f"error_{c}" for c in ("x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad")]
+UNITS_OF_ERRORS = [f"error_{c}" for c in ("vx_m", "vy_m", "vz_m", "wx_rad", "wy_rad", "wz_rad")]
 EYES = ["0,-1.2,0.7", "0.05,-1.19,0.71", "0.1,-1.18,0.71", "0.15,-1.16,0.7", "0.2,-1.14,0.7"]
 
 
