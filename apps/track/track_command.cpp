@@ -212,9 +212,10 @@ unknown as at the start, and the better result is used.
 If a scan is registered with status doubtful, its standard deviations are
 tripled ("widened"). A scan that cannot be registered, or that has the flag
 wrong_basin or both low_support and misfit, gets the predicted pose
-("predicted"), and the next one is registered to the same target. From the third such scan in a row on, a scan that
-can be read becomes the target ("split"). Directions that the clouds do not
-determine are left to the prediction.
+("predicted"), and the next one is registered to the same target. From the
+third such scan in a row on, a scan that can be read becomes the target
+("split"). Directions that the clouds do not determine are left to the
+prediction.
 
 FOLDER gets
   edges.jsonl                one line per scan: its edge without the prior, its
