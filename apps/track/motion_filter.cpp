@@ -55,11 +55,16 @@ rightJacobian(const Vector6d& xi)
 
 } // namespace
 
-MotionFilter::MotionFilter(const MotionModel& model)
-: model_(model)
-, velocity_(model.velocity)
+MotionFilter::MotionFilter(const MotionModel& model) : model_(model)
 {
-  covariance_.block<6, 6>(of_velocity, of_velocity) = model.velocity_covariance;
+  if (model.plane_normal) {
+    const Eigen::Matrix3d along = *model.plane_normal * model.plane_normal->transpose();
+    in_plane_.topLeftCorner<3, 3>() -= along;
+    in_plane_.bottomRightCorner<3, 3>() = along;
+  }
+  velocity_ = in_plane_ * model.velocity;
+  model_.velocity_covariance = in_plane_ * model.velocity_covariance * in_plane_;
+  covariance_.block<6, 6>(of_velocity, of_velocity) = model_.velocity_covariance;
   covariance_.bottomRightCorner<num_noises, num_noises>().setIdentity();
 }
 
@@ -92,7 +97,8 @@ MotionFilter::predict(double seconds)
         std::min(model_.acceleration * between_middles, largest)),
         Eigen::Vector3d::Constant(
             std::min(model_.angular_acceleration * between_middles, largest));
-    covariance_.block<6, 6>(of_velocity, of_velocity).diagonal() += change.cwiseAbs2();
+    covariance_.block<6, 6>(of_velocity, of_velocity) +=
+        in_plane_ * change.cwiseAbs2().asDiagonal() * in_plane_;
   }
   last_seconds_ = seconds;
   const Vector6d motion = velocity_ * seconds;
@@ -156,6 +162,14 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   return squared_innovation;
 }
 
+Matrix6d
+MotionFilter::keptInPlane(const Matrix6d& covariance) const
+{
+  const double variance = out_of_plane_deviation * out_of_plane_deviation;
+  return in_plane_ * covariance * in_plane_ +
+         variance * (Matrix6d::Identity() - in_plane_);
+}
+
 void
 MotionFilter::makeScanTheTarget()
 {
@@ -174,7 +188,8 @@ MotionFilter::makeScanTheTarget()
 GaussianPose
 MotionFilter::poseInTarget() const
 {
-  return {poseOf(scan_in_target_), covariance_.block<6, 6>(of_scan, of_scan)};
+  return {poseOf(scan_in_target_),
+          keptInPlane(covariance_.block<6, 6>(of_scan, of_scan))};
 }
 
 GaussianPose
@@ -182,7 +197,8 @@ MotionFilter::pose() const
 {
   MotionFilter moved = *this;
   moved.makeScanTheTarget();
-  return {poseOf(moved.target_), moved.covariance_.block<6, 6>(of_target, of_target)};
+  return {poseOf(moved.target_),
+          keptInPlane(moved.covariance_.block<6, 6>(of_target, of_target))};
 }
 
 } // namespace bayesian_icp::app

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include <optional>
+
 namespace bayesian_icp::app {
 
 /** \brief What is known about the motion before the scans are seen. */
@@ -19,7 +21,14 @@ struct MotionModel {
    * from the middle of the interval before to that of this one. */
   double acceleration = 1.0;
   double angular_acceleration = 1.0;
+  /** Normal of the plane in which the sensor moves, in its frame: that of a 2-D laser
+   * scanner's scans, which do not show any other motion. None: it moves in space. */
+  std::optional<Eigen::Vector3d> plane_normal;
 };
+
+/** \brief Stated standard deviation of motions out of MotionModel::plane_normal's
+ * plane, along and about each axis [m, rad]. */
+constexpr double out_of_plane_deviation = 1e-3;
 
 /** \brief An extended Kalman filter whose state is the target's pose in the frame of
  * scan 0, the scan's pose in the target's frame, and the scan's velocity.
@@ -58,6 +67,18 @@ public:
   double
   update(const GaussianPose& measured, const SharedNoise& shared = SharedNoise());
 
+  /** \brief Whether the model has a plane. */
+  bool
+  isInPlane() const
+  {
+    return model_.plane_normal.has_value();
+  }
+
+  /** \brief The covariance of a twist in the sensor's frame for a sensor that moves in
+   * the model's plane: out_of_plane_deviation out of it. As it is, without a plane. */
+  Matrix6d
+  keptInPlane(const Matrix6d& covariance) const;
+
   /** \brief From now on the scan is the target. */
   void
   makeScanTheTarget();
@@ -80,6 +101,8 @@ private:
   propagate(const Multiply& multiply);
 
   MotionModel model_;
+  /** The part of a twist that is in the model's plane. */
+  Matrix6d in_plane_ = Matrix6d::Identity();
   /** The interval before the last scan, 0 before there is one. */
   double last_seconds_ = 0.0;
   Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();

@@ -65,9 +65,11 @@ Track::take(const TrackStep& step)
 std::size_t
 Track::numUnmeasured() const
 {
+  const int num_excluded = filter_.isInPlane() ? 3 : 0;
   return static_cast<std::size_t>(
-      std::count_if(steps_.begin(), steps_.end(), [](const TrackStep& step) {
-        return step.kind <= StepKind::Widened && step.edge.num_unmeasured > 0;
+      std::count_if(steps_.begin(), steps_.end(), [&](const TrackStep& step) {
+        return step.kind <= StepKind::Widened &&
+               step.edge.num_unmeasured > num_excluded;
       }));
 }
 

@@ -83,6 +83,13 @@ public:
   GaussianPose
   prediction(bool is_velocity_doubted) const;
 
+  /** \brief MotionFilter::keptInPlane() */
+  Matrix6d
+  keptInPlane(const Matrix6d& covariance) const
+  {
+    return filter_.keptInPlane(covariance);
+  }
+
   /** \brief Go on to the next scan; \p step is about it. */
   void
   take(const TrackStep& step);
@@ -122,7 +129,8 @@ public:
     return steps_;
   }
 
-  /** \brief Steps that are registered, but leave a motion to the prediction. */
+  /** \brief Steps that are registered, but leave a motion to the prediction that the
+   * model does not exclude. */
   std::size_t
   numUnmeasured() const;
 

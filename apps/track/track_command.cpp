@@ -204,7 +204,8 @@ the trajectory of the sensor with its covariance. The scans of a folder are its
 
 The prior of each registration is a prediction with constant velocity. Its
 uncertainty follows from the earlier registrations and --acceleration. --guess
-and --prior-variance describe the first motion, from scan 0 to scan 1.
+and --prior-variance describe the first motion, from scan 0 to scan 1. If scan 0
+lies in a plane, as that of a 2-D laser scanner does, the sensor stays in it.
 
 If the status is not ok, the registration is repeated as if the velocity were as
 unknown as at the start, and the better result is used.

@@ -9,6 +9,8 @@
 
 #include <boost/functional/hash.hpp>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <array>
 #include <unordered_set>
@@ -32,6 +34,23 @@ thinned(const Eigen::Matrix3Xd& points, double voxel_size)
   return points(Eigen::all, kept);
 }
 
+/** A cloud lies in a plane if its thickness is below this fraction of its width: no
+ * noise of a 3-D sensor is as small. */
+constexpr double max_flatness = 1e-5;
+
+/** Normal of the plane in which \p points lie; none if they do not. */
+std::optional<Eigen::Vector3d>
+planeNormalOf(const Eigen::Matrix3Xd& points)
+{
+  const Eigen::Matrix3Xd arms = points.colwise() - points.rowwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(arms * arms.transpose());
+  const Eigen::Vector3d variances = solver.eigenvalues();
+  const double largest = max_flatness * max_flatness * variances[2];
+  if (!(variances[0] <= largest && variances[1] > largest))
+    return std::nullopt;
+  return solver.eigenvectors().col(0);
+}
+
 } // namespace
 
 MotionModel
@@ -46,6 +65,8 @@ motionModelOf(const TrackRequest& request)
   model.velocity_covariance = (prior.variance / (seconds * seconds)).asDiagonal();
   model.acceleration = request.acceleration;
   model.angular_acceleration = request.angular_acceleration;
+  model.plane_normal =
+      planeNormalOf(io::readFinitePoints(request.scans.front()).cast<double>());
   return model;
 }
 
@@ -146,6 +167,8 @@ Tracker::registerToMore(const PreparedCloud& source,
       continue;
     Options options = request_.settings.options;
     options.prior.mean = poseOf(poseIn0(other).inverse() * pose);
+    options.prior.variance =
+        track_.keptInPlane(options.prior.variance.asDiagonal()).diagonal();
     options.prior.frame = PriorFrame::Origin;
     Registration result = registered(source, preparedScan(other), options, progress);
     if (result.quality == Quality::Cancelled)

@@ -41,8 +41,9 @@ struct TrackRequest {
   filesState(int scan) const;
 };
 
-/** \brief The motion before the scans are seen: the velocity is that of the guess, as
- * uncertain as its prior. */
+/** \brief The motion before scans are registered: the velocity is that of the guess, as
+ * uncertain as its prior. If scan 0 lies in a plane, the sensor moves in this plane.
+ * \throws io::FileError if scan 0 cannot be read */
 MotionModel
 motionModelOf(const TrackRequest& request);
 

@@ -10,6 +10,7 @@
 #include "calibrated/modes/calibrated_modes.h"
 #include "summary/estimates.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -41,13 +42,15 @@ complaintAbout(const CalibratedEstimate& estimate)
 }
 
 /** Text about the motions that the prior alone holds, for the message; empty if there
- * are none. */
+ * are none. Those out of the plane of flat clouds go without saying. */
 std::string
-whatThePriorHolds(const std::vector<DataDirection>& directions)
+whatThePriorHolds(const std::vector<DataDirection>& directions,
+                  const std::optional<PlaneHold>& plane)
 {
   std::string text;
   for (const DataDirection& direction : directions)
-    if (direction.observability == Observability::PriorOnly)
+    if (direction.observability == Observability::PriorOnly &&
+        !(plane && isOutOf(*plane, direction.twist)))
       text +=
           (text.empty() ? "; held by the prior alone: " : ", ") + direction.description;
   return text;
@@ -86,8 +89,10 @@ estimateAndDraw(const SurfaceScorer& scorer,
     result.summary.message += "; the report of the data is of the heaviest";
   result.summary.data = dataReportOf(heaviest, scorer.noise());
   if (held.plane)
-    result.summary.message += "; both clouds lie in a plane";
-  result.summary.message += whatThePriorHolds(result.summary.data.directions);
+    result.summary.message += "; both clouds lie in a plane: the prior alone holds the "
+                              "motions out of it";
+  result.summary.message +=
+      whatThePriorHolds(result.summary.data.directions, held.plane);
   addDoubts(describeFlags(result.summary.data), result.summary);
   return result;
 }

@@ -167,6 +167,14 @@ addMotionOutOfPlane(const Prior& prior,
   }
 }
 
+bool
+isOutOf(const PlaneHold& plane, const Vector6d& twist)
+{
+  const Vector3d v = twist.head<3>(), w = twist.tail<3>();
+  const double v_out = plane.target_normal.dot(v), w_in = plane.target_normal.dot(w);
+  return v_out * v_out >= 0.5 * v.squaredNorm() && w_in * w_in <= 0.5 * w.squaredNorm();
+}
+
 std::vector<std::string>
 doubtsAboutTilt(const Prior& prior,
                 const SurfaceModel& source,

@@ -34,6 +34,11 @@ addMotionOutOfPlane(const Prior& prior,
                     std::uint64_t seed,
                     ChainSet& chains);
 
+/** \brief Whether a motion of flat clouds is a shift or a tilt out of their plane.
+ * \param[in] twist left, about a point of the plane, target frame */
+bool
+isOutOf(const PlaneHold& plane, const Vector6d& twist);
+
 /** \brief Doubt of a flat source on a target that is not flat, if the prior leaves the
  * tilt open: the source may fit well with a wrong one. */
 std::vector<std::string>

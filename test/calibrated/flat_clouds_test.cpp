@@ -116,6 +116,16 @@ TEST(FlatClouds, LeaveTheMotionOutOfThePlaneToThePrior)
     num_free += direction.observability == Observability::PriorOnly;
   EXPECT_EQ(num_free, 3);
   EXPECT_NE(summary.message.find("both clouds lie in a plane"), std::string::npos);
+  EXPECT_EQ(summary.message.find("held by the prior alone"), std::string::npos);
+}
+
+TEST(FlatClouds, NameTheFreeMotionInTheirPlane)
+{
+  const std::string message = Scans("tunnel", 3).estimate().summary.message;
+  EXPECT_NE(message.find("held by the prior alone: translation along"),
+            std::string::npos)
+      << message;
+  EXPECT_EQ(message.find("rotation"), std::string::npos) << message;
 }
 
 TEST(FlatClouds, KeepThePriorsMeanIfItIsFarFromThePlane)

@@ -211,6 +211,41 @@ class TrackWithUnseenMotions(TrackTest):
         self.assertEqual(len(read_graph(self.track / "graph.g2o")[1]), 3)
 
 
+class TrackOfAScannerInAPlane(TrackTest):
+    def test_stays_in_the_plane(self):
+        sensor = ["--scene", "room", "--sensor", "lidar", "--rings", 1, "--azimuth-step", 0.5]
+        sensor += ["--min-elevation", 0, "--max-elevation", 0]
+        num_scans = 10
+        views = []
+        for k in range(num_scans):
+            x, y, yaw = 0.05 * k, -0.5 + 0.04 * k, 0.3 + 0.05 * k
+            views.append((f"{x},{y},1", f"{x + np.cos(yaw)},{y + np.sin(yaw)},1"))
+        scans, from_world = self.trajectory_of(sensor, views)
+        options = (["--span", 2], ["--map", 0.02, "--map-scans", 3])
+        for number, words in enumerate(options):
+            self.track = self.folder / f"track{number}"
+            result = self.run_track(scans, *words)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("scan 0 lies in a plane", result.stderr)
+            # z, roll and pitch go without saying.
+            self.assertNotIn("unmeasured", result.stderr + (self.track / "report.html").read_text())
+            for k, line in enumerate(self.lines(), 1):
+                pose = line["pose_in_scan_0"]
+                for out in ("z_m", "roll_rad", "pitch_rad"):
+                    self.assertLess(abs(pose["mean"][out]), 1e-9, k)
+                covariance = np.array(pose["covariance"]["matrix"])
+                np.testing.assert_allclose(np.diag(covariance)[2:5], 1e-6, err_msg=str(k))
+                found = np.array(pose["mean"]["T_target_source"])
+                error = inv(found) @ from_world[0] @ inv(from_world[k])
+                turn = np.arctan2(error[1, 0], error[0, 0])
+                in_plane = np.array([error[0, 3], error[1, 3], turn])
+                stated = covariance[np.ix_([0, 1, 5], [0, 1, 5])]
+                self.assertLess(quadratic(in_plane, inv(stated)), CHI2_HIGH[3], k)
+                self.assertLess(abs(in_plane).max(), 0.03)
+            edges = read_graph(self.track / "graph.g2o")[1]
+            self.assertEqual(len(edges), 17 if number == 0 else 9)
+
+
 class TrackWithBadScans(TrackTest):
     def test_are_predicted_and_said(self):
         scans, from_world = self.trajectory(EYES)

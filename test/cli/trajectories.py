@@ -17,7 +17,7 @@ from robot_formats import read_g2o_edge
 FOUR_EYES = ["0,-1.2,0.7", "0.06,-1.19,0.72", "0.12,-1.17,0.71", "0.18,-1.14,0.7"]
 
 # 99.9 % and 0.1 % quantiles of chi-square, by degrees of freedom (R 4.2, qchisq).
-CHI2_HIGH = {1: 10.828, 6: 22.458, 18: 42.312}
+CHI2_HIGH = {1: 10.828, 3: 16.266, 6: 22.458, 18: 42.312}
 CHI2_LOW = {18: 4.905}
 # The posterior of one registration is Student's t with 20 degrees of freedom, of the covariance
 # that it states. 99.9 % of its squared errors of six: 6 18 / 20 qf(0.999, 6, 20).
@@ -73,15 +73,19 @@ class TrajectoryTest(ToolTest):
 
     def trajectory(self, eyes):
         """Scans of the table from a moving camera; (folder, maps from the world)."""
+        sensor = ["--scene", "table", "--width", 160, "--height", 120]
+        return self.trajectory_of(sensor, [(eye, "0,0,0") for eye in eyes])
+
+    def trajectory_of(self, sensor, views):
+        """Scans from (eye, point to look at); (folder, maps from the world)."""
         scans = self.folder / "scans"
         scans.mkdir()
         from_world = []
-        for k, eye in enumerate(eyes):
+        for k, (eye, look_at) in enumerate(views):
             output = self.folder / f"view{k}"
-            view = ["--source-eye", eye, "--source-look-at", "0,0,0", "--seed", k + 1]
+            view = ["--source-eye", eye, "--source-look-at", look_at, "--seed", k + 1]
             view += ["--frame", "sensor", "--offset", "0,0,0,0,0,0"]
-            size = ["--width", 160, "--height", 120]
-            result = call(SIMULATE, "--scene", "table", *view, *size, "-o", output)
+            result = call(SIMULATE, *sensor, *view, "-o", output)
             self.assertEqual(result.returncode, 0, result.stderr)
             (output / "source.pcd").rename(scans / f"scan_{k}.pcd")
             scene = json.loads((output / "scene.json").read_text())

@@ -229,3 +229,60 @@ TEST(MotionFilter, FollowsATurnThatTheCloudsHardlySee)
   EXPECT_LT(squaredErrorOf(filter.pose(), Eigen::Matrix4d::Identity()), chi_square_99);
   EXPECT_NEAR(std::sqrt(filter.pose().covariance(5, 5)), 0.02, 0.001);
 }
+
+TEST(MotionFilter, StaysInThePlaneOfAScannerThatDoesNotSeeOtherMotions)
+{
+  // The sensor is tilted, so that its plane is not that of x and y.
+  const Eigen::Matrix3d tilt =
+      Eigen::AngleAxisd(0.6, Eigen::Vector3d(0.6, 0.8, 0.0)).toRotationMatrix();
+  Matrix6d turned = Matrix6d::Zero();
+  turned.topLeftCorner<3, 3>() = turned.bottomRightCorner<3, 3>() = tilt;
+  MotionModel planar = model();
+  planar.plane_normal = tilt.col(2);
+  const Vector6d in_plane(1.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+  const Vector6d first_deviation(0.3, 0.1, 0.0, 0.0, 0.0, 0.05);
+  planar.velocity = turned * Vector6d(5.0, 0.5, -0.2, 0.1, -0.2, 0.8);
+  planar.velocity_covariance =
+      turned *
+      (first_deviation.cwiseAbs2() + Vector6d(Vector6d::Ones() - in_plane))
+          .asDiagonal() *
+      turned.transpose();
+  // As withoutPrior() has it: ten deviations of the prediction for what is not seen.
+  const Vector6d seen(0.004, 0.006, 0.01, 0.01, 0.01, 0.001);
+  const Matrix6d covariance =
+      turned * Matrix6d(seen.cwiseAbs2().asDiagonal()) * turned.transpose();
+  constexpr int num_planar_runs = 500, num_scans = 40;
+  Eigen::ArrayXd squared_errors(num_planar_runs);
+  for (int k = 0; k < num_planar_runs; ++k) {
+    Random random(static_cast<std::uint64_t>(k + 1), 1);
+    MotionFilter filter(planar);
+    Vector6d velocity = Vector6d(5.0, 0.5, 0.0, 0.0, 0.0, 0.8) +
+                        first_deviation.cwiseProduct(random.normal6());
+    Eigen::Matrix4d truth = Eigen::Matrix4d::Identity();
+    for (int scan = 1; scan <= num_scans; ++scan) {
+      Vector6d change = in_plane.cwiseProduct(random.normal6());
+      change.head<3>() *= planar.acceleration * seconds;
+      change.tail<3>() *= planar.angular_acceleration * seconds;
+      if (scan > 1)
+        velocity += change;
+      const Eigen::Matrix4d motion = expSE3(seconds * (turned * velocity));
+      truth = truth * motion;
+      filter.predict(seconds);
+      const Vector6d error =
+          turned * in_plane.cwiseProduct(seen).cwiseProduct(random.normal6());
+      filter.update({poseOf(motion * expSE3(error)), covariance},
+                    app::independent_noise);
+      filter.makeScanTheTarget();
+    }
+    const GaussianPose pose = filter.pose();
+    const Vector6d error =
+        turned.transpose() * logSE3(matrixOf(pose.mean).inverse() * truth);
+    const Matrix6d stated = turned.transpose() * pose.covariance * turned;
+    for (const int out : {2, 3, 4}) {
+      EXPECT_NEAR(error[out], 0.0, 1e-9);
+      EXPECT_NEAR(std::sqrt(stated(out, out)), app::out_of_plane_deviation, 1e-9);
+    }
+    squared_errors[k] = error.dot(stated.llt().solve(error));
+  }
+  EXPECT_NEAR(squared_errors.mean(), 3.0, 4.0 * std::sqrt(6.0 / num_planar_runs));
+}
