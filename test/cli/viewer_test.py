@@ -11,6 +11,7 @@ import tempfile
 import pathlib
 import unittest
 
+import numpy as np
 import PIL.Image
 
 import x_server
@@ -36,7 +37,10 @@ def view(*arguments, display=None):
 class Picture:
     def __init__(self, path):
         self.image = PIL.Image.open(path).convert("RGB")
-        self.colors = {color: n for n, color in self.image.getcolors(1 << 24)}
+        pixels = np.asarray(self.image).reshape(-1, 3)
+        codes, numbers = np.unique(pixels @ [1 << 16, 1 << 8, 1], return_counts=True)
+        parts = [(codes >> shift & 255).tolist() for shift in (16, 8, 0)]
+        self.colors = dict(zip(zip(*parts), numbers.tolist()))
 
     def count(self, color):
         return self.colors.get(color, 0)

@@ -21,9 +21,11 @@ protected:
   CommandResult
   run() const
   {
-    return runShell("cd '" + folder_.string() +
-                    "' && '" BAYESIAN_ICP_EVALUATE
-                    "' paper --quick --data '" BAYESIAN_ICP_DATA_DIR "' --output out");
+    return runShell(
+        "cd '" + folder_.string() +
+        "' && '" BAYESIAN_ICP_EVALUATE
+        "' paper --quick --baseline-runs 30 --points 200 --data '" BAYESIAN_ICP_DATA_DIR
+        "' --output out");
   }
 
   const std::filesystem::path folder_ = BAYESIAN_ICP_REPORT_DIR;
