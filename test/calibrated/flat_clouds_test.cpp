@@ -189,6 +189,26 @@ TEST(FlatClouds, HaveTheSamePosteriorInAnyPlaneWithATightTilt)
   EXPECT_NEAR(estimate.summary.mean[4], level.truth[5], 5.0 * sdOf(expected, 5));
 }
 
+TEST(FlatClouds, AreRecognisedByFewBeams)
+{
+  int num_recognised = 0;
+  constexpr int num_scans = 20, beams = 24;
+  for (int i = 0; i < num_scans; ++i) {
+    Scans scans("office_floor", static_cast<std::uint64_t>(100 + i));
+    // A beam every six degrees.
+    for (Matrix3Xd* points : {&scans.source, &scans.target})
+      *points = (*points)(Eigen::all, Eigen::seq(0, Eigen::last, beams)).eval();
+    const Summary summary = scans.estimate().summary;
+    const bool is_recognised =
+        summary.message.find("both clouds lie in a plane") != std::string::npos;
+    num_recognised += is_recognised;
+    EXPECT_TRUE(summary.status != Status::Ok ||
+                squaredErrorInPlane(summary, scans.truth) < 21.1)
+        << i;
+  }
+  EXPECT_EQ(num_recognised, num_scans);
+}
+
 TEST(FlatClouds, HaveTheSameDrawsForAnyNumberOfThreads)
 {
   const Scans scans("room", 6);
