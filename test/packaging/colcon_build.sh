@@ -18,12 +18,14 @@ export CCACHE_BASEDIR=$work
 export CMAKE_BUILD_PARALLEL_LEVEL=${CMAKE_BUILD_PARALLEL_LEVEL:-2}
 export MAKEFLAGS=-j$CMAKE_BUILD_PARALLEL_LEVEL
 cd "$work"
-# As the tests' build, of which the compiler cache has everything.
+# As the tests' build, of which the compiler cache has everything, but the libraries alone:
+# packaging.debian builds the programs.
 colcon --log-base "$work/log" build --base-paths "$tree" \
   --build-base "$work/build" --install-base "$work/install" \
   --cmake-args -G "$generator" -DCMAKE_UNITY_BUILD="$unity" \
   -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_COMPILER_LAUNCHER="$launcher" \
-  -DBAYESIAN_ICP_BUILD_TESTS=OFF -DBAYESIAN_ICP_WARNINGS_AS_ERRORS=ON
+  -DBAYESIAN_ICP_BUILD_APPS=OFF -DBAYESIAN_ICP_BUILD_TESTS=OFF \
+  -DBAYESIAN_ICP_WARNINGS_AS_ERRORS=ON
 names_in_tree | diff "$work/before" -
 
 # The workspace's environment is all that the consumer is told.
