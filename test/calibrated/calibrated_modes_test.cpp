@@ -1,5 +1,6 @@
 // Further modes of preset `calibrated`: a cube, whose sides look alike, scanned from
 // all sides.
+#include "calibrated/calibrated_stand_in.h"
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/modes/calibrated_modes.h"
 #include "calibrated/modes/mode_weights.h"
@@ -431,6 +432,45 @@ TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
   const std::vector<CalibratedMode> modes =
       findModes(problem.scorer, problem.prior, first, only_hops);
   EXPECT_LT(squaredErrorOf(modes.front().estimate, clouds.truth), test::chi_square_999);
+}
+
+TEST(CalibratedModes, WithinTheRegionOfAWiderOneAreNotModesOfTheirOwn)
+{
+  CalibratedMode wide = {test::StandIn({}).estimate, 0.0};
+  wide.estimate.scores.total.setZero();
+  const Eigen::LLT<Matrix6d> precision(wide.estimate.information);
+  // A hundred times as sure, so that the wide mode is far outside of its region.
+  const auto narrowAt = [&](double squared_distance) {
+    CalibratedMode narrow = wide;
+    CalibratedEstimate& e = narrow.estimate;
+    const Vector6d xi = precision.matrixU().solve(
+        Vector6d(std::sqrt(squared_distance / 6.0) * Vector6d::Ones()));
+    e.mode = Eigen::Translation3d(e.centre) * Eigen::Isometry3d(expSE3(xi)) *
+             Eigen::Translation3d(-e.centre) * e.mode;
+    e.curvature *= 100.0;
+    e.score_covariance *= 100.0;
+    e.information *= 100.0;
+    return narrow;
+  };
+  const auto informationsOf = [](const std::vector<CalibratedMode>& modes) {
+    std::vector<double> informations;
+    for (const CalibratedMode& mode : modes)
+      informations.push_back(mode.estimate.information(0, 0));
+    return informations;
+  };
+  const double of_wide = wide.estimate.information(0, 0);
+  using List = std::vector<double>;
+  // The 99 % quantile of the chi-square distribution with 6 degrees of freedom is 16.8.
+  for (const double near : {1.0, 15.5}) {
+    EXPECT_EQ(informationsOf(separateModes({wide, narrowAt(near)})), List{of_wide});
+    EXPECT_EQ(informationsOf(separateModes({narrowAt(near), wide})), List{of_wide});
+  }
+  EXPECT_EQ(separateModes({wide, narrowAt(18.0)}).size(), 2u);
+  EXPECT_EQ(separateModes({narrowAt(18.0), wide, narrowAt(40.0)}).size(), 3u);
+  // Of two that are within each other's region the first one, which is the heavier.
+  CalibratedMode lighter = wide;
+  lighter.estimate.information *= 1.1;
+  EXPECT_EQ(informationsOf(separateModes({wide, lighter})), List{of_wide});
 }
 
 TEST(CalibratedModes, ASlideFindsTheOtherPlacesAmongPillars)

@@ -86,6 +86,10 @@ constexpr double max_aside = 0.15;
 /** Smallest share of the posterior of a mode that is kept. */
 constexpr double min_share = 0.02;
 
+/** A mode is within another one if its squared Mahalanobis distance from it is below
+ * this, the 99 % quantile of the chi-square distribution with 6 degrees of freedom. */
+constexpr double region_of_mode = 16.81;
+
 std::array<bool, 6>
 wideCoordinates(const SurfaceScorer& scorer, const HeldPrior& prior)
 {
@@ -190,13 +194,14 @@ struct KnownMode {
   ProductCoordinates coordinates;
   Isometry3d pose;
   RobustFit fit;
-
-  double
-  squaredDistanceTo(const Isometry3d& other) const
-  {
-    return 2.0 * coordinates.linearEnergy(coordinates.heldPart(other));
-  }
 };
+
+/** Squared Mahalanobis distance of a pose from a mode, for the mode's clouds alone. */
+double
+squaredDistance(const ProductCoordinates& mode, const Isometry3d& pose)
+{
+  return 2.0 * mode.linearEnergy(mode.heldPart(pose));
+}
 
 /** Whether a path along motions that the prior alone holds leads from one mode to the
  * other on the surface. Their own axes cannot tell: they are not exact, and far along
@@ -410,7 +415,7 @@ addModes(const SurfaceScorer& scorer,
       return isClearlyWorse(mode.fit, end, hiding_margin);
     };
     if (std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
-          return mode.squaredDistanceTo(end.pose) < min_squared_distance &&
+          return squaredDistance(mode.coordinates, end.pose) < min_squared_distance &&
                  !isWorse(mode);
         }))
       continue;
@@ -420,8 +425,9 @@ addModes(const SurfaceScorer& scorer,
     const bool is_known =
         std::any_of(known.begin(), known.end(), [&](const KnownMode& mode) {
           constexpr double limit = min_squared_distance_of_modes;
-          return mode.squaredDistanceTo(estimate.mode) < limit &&
-                 (found.squaredDistanceTo(mode.pose) < limit || !isWorse(mode));
+          return squaredDistance(mode.coordinates, estimate.mode) < limit &&
+                 (squaredDistance(found.coordinates, mode.pose) < limit ||
+                  !isWorse(mode));
         });
     if (!is_known && std::any_of(modes.begin(), modes.end(), [&](const auto& mode) {
           return areConnected(ends.subset, prior, mode.estimate, estimate, max_cost);
@@ -501,13 +507,29 @@ significantModes(std::vector<CalibratedMode> modes)
 }
 
 std::vector<CalibratedMode>
+separateModes(std::vector<CalibratedMode> modes)
+{
+  for (std::size_t wide = 0; wide < modes.size(); ++wide) {
+    const ProductCoordinates region(modes[wide].estimate);
+    for (std::size_t other = modes.size(); other-- > 0;) {
+      if (other == wide ||
+          squaredDistance(region, modes[other].estimate.mode) >= region_of_mode)
+        continue;
+      modes.erase(modes.begin() + static_cast<std::ptrdiff_t>(other));
+      wide -= other < wide;
+    }
+  }
+  return modes;
+}
+
+std::vector<CalibratedMode>
 calibratedModes(const SurfaceScorer& scorer,
                 const HeldPrior& prior,
                 const ModeSearchOptions& options)
 {
   const CalibratedEstimate first = estimateCalibrated(scorer, prior, options.estimate);
   std::vector<CalibratedMode> modes =
-      significantModes(findModes(scorer, prior, first, options));
+      separateModes(significantModes(findModes(scorer, prior, first, options)));
   CalibratedEstimate& heaviest = modes.front().estimate;
   if (!isWide(scorer, prior) && doesPriorHold(heaviest))
     heaviest.better_fit = betterFitOf(scorer, prior, heaviest, options);

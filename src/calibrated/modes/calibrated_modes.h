@@ -55,7 +55,16 @@ findModes(const SurfaceScorer& scorer,
 std::vector<CalibratedMode>
 significantModes(std::vector<CalibratedMode> modes);
 
-/** \brief The significantModes() of the search from the first estimate, heaviest first.
+/** \brief The modes but those within the 99 % region of what another one's clouds say:
+ * a posterior that is as wide as the distance of two modes holds both, so the wider one
+ * alone is reported, even where the other one fits better.
+ * \param[in] modes heaviest first; of two that are within each other's, the heavier one
+ *            stays */
+std::vector<CalibratedMode>
+separateModes(std::vector<CalibratedMode> modes);
+
+/** \brief The significantModes() of the search from the first estimate that are
+ * separateModes(), heaviest first.
  * In a narrow prior that holds a motion, a better fit outside of it is looked for
  * (CalibratedEstimate::better_fit of the heaviest). */
 std::vector<CalibratedMode>
