@@ -90,6 +90,16 @@ expectNoResult(SgdIcp& icp)
               icp.getResult().end == bayesian_icp::DescentEnd::InvalidInput);
 }
 
+void
+useMeanIfItHasOne(BayesianIcp& icp, bool is_mean)
+{
+  icp.setUseMeanAsFinalTransformation(is_mean);
+}
+
+void
+useMeanIfItHasOne(SgdIcp&, bool)
+{}
+
 /** Counts the calls of every protected virtual function of PCL's ICP, and shows what
  * subclasses of ICP read after align(). */
 template <typename Registration>
@@ -212,6 +222,70 @@ TYPED_TEST(BothRegistrations, AlignIntoTheSourceGivesTheSameResult)
   expectSamePoints(*this->scans.source, this->output);
 }
 
+TYPED_TEST(BothRegistrations, AlignIntoTheSourceKeepsPointsThatAreNotSelected)
+{
+  TypeParam apart, in_place;
+  for (TypeParam* icp : {&apart, &in_place})
+    icp->setIndices(everyNth(100, 700, 2));
+  this->align(apart);
+  in_place.setInputSource(this->scans.source);
+  in_place.setInputTarget(this->scans.target);
+  in_place.align(*this->scans.source);
+  expectSameResult(in_place, apart);
+  expectSamePoints(*this->scans.source, this->output);
+}
+
+TYPED_TEST(BothRegistrations, ATargetThatChangedInPlaceIsSearchedAsItIsNow)
+{
+  for (const bool is_mean : {false, true}) {
+    TypeParam reused, fresh;
+    for (TypeParam* icp : {&reused, &fresh})
+      useMeanIfItHasOne(*icp, is_mean);
+    this->align(reused);
+    for (PointXYZ& point : *this->scans.target)
+      point.x += 0.02f;
+    reused.align(this->output);
+    this->align(fresh);
+    expectSameResult(reused, fresh);
+  }
+}
+
+TYPED_TEST(BothRegistrations, IndicesOfTheEstimationMayBeTakenBack)
+{
+  for (const bool is_mean : {false, true}) {
+    TypeParam reused, fresh;
+    for (TypeParam* icp : {&reused, &fresh})
+      useMeanIfItHasOne(*icp, is_mean);
+    const auto estimation = pcl::make_shared<Estimation>();
+    reused.setCorrespondenceEstimation(estimation);
+    estimation->setIndicesTarget(everyNth(0, 400));
+    this->align(reused);
+    estimation->setIndicesTarget(IndicesPtr());
+    reused.align(this->output);
+    this->align(fresh);
+    expectSameResult(reused, fresh);
+  }
+}
+
+TYPED_TEST(BothRegistrations, SourceIndicesOfTheEstimationMayBeAsManyAsTheLastSource)
+{
+  const Cloud::Ptr whole = this->scans.source;
+  const auto half = everyNth(0, static_cast<index_t>(whole->size()) / 2);
+  this->scans.source = pcl::make_shared<Cloud>(*whole, *half);
+  TypeParam reused, fresh;
+  const auto estimation = pcl::make_shared<Estimation>();
+  reused.setCorrespondenceEstimation(estimation);
+  this->align(reused);
+  this->align(fresh);
+  expectSameResult(reused, fresh);
+  estimation->setIndicesSource(half);
+  this->scans.source = whole;
+  this->align(reused);
+  fresh.setIndices(half);
+  this->align(fresh);
+  expectSameResult(reused, fresh);
+}
+
 TYPED_TEST(BothRegistrations, SourcePointsThatCannotBeSearchedForAreSkippedAndKept)
 {
   TypeParam clean;
@@ -272,6 +346,7 @@ TYPED_TEST(BothRegistrations, IndicesOutsideTheirCloudAreAnInvalidInput)
     EXPECT_FALSE(icp.hasConverged());
     expectInvalidInput(icp);
     EXPECT_EQ(this->output.size(), cloud->size());
+    EXPECT_TRUE(icp.getLastIncrementalTransformation().isIdentity(0.0f));
   };
   const auto size = static_cast<index_t>(source->size());
   for (const index_t wrong : {size, index_t(-1), std::numeric_limits<index_t>::max()}) {
@@ -340,6 +415,31 @@ TYPED_TEST(BothRegistrations, AMissingCloudIsAnInvalidInput)
     EXPECT_FALSE(icp.hasConverged());
     expectInvalidInput(icp);
   }
+}
+
+TYPED_TEST(BothRegistrations, ExceptionsOfTheSearchTreePassThrough)
+{
+  struct Tree : search::KdTree<PointXYZ> {
+    bool is_broken = false;
+
+    void
+    setInputCloud(const Cloud::ConstPtr& cloud, const IndicesConstPtr& indices) override
+    {
+      if (is_broken)
+        throw std::runtime_error("of the user");
+      search::KdTree<PointXYZ>::setInputCloud(cloud, indices);
+    }
+  };
+  TypeParam icp;
+  const auto tree = pcl::make_shared<Tree>();
+  icp.setSearchMethodTarget(tree);
+  this->align(icp);
+  expectResult(icp);
+  tree->is_broken = true;
+  icp.setInputTarget(pcl::make_shared<Cloud>(*this->scans.target));
+  EXPECT_THROW(icp.align(this->output), std::runtime_error);
+  EXPECT_FALSE(icp.hasConverged());
+  expectNotRun(icp);
 }
 
 TYPED_TEST(BothRegistrations, ExceptionsOfTheCallbackPassThrough)

@@ -159,10 +159,8 @@ public:
       indices_.resize(source.size());
       std::iota(indices_.begin(), indices_.end(), 0);
     }
-    // An estimation without indices has made a list of all points of its last input.
     const auto own = estimation.getIndicesSource();
-    const auto last_input = estimation.getInputSource();
-    if (!own || (last_input && isWholeCloud(*own, last_input->size())))
+    if (!own || Opened::madeItsIndices(estimation))
       return;
     taken_off_ = own;
     estimation_.setIndicesSource(IndicesPtr());
@@ -184,6 +182,15 @@ public:
   }
 
 private:
+  struct Opened : Estimation {
+    /** Without indices of the user's, PCL makes a list of all points of the input. */
+    static bool
+    madeItsIndices(const Estimation& estimation)
+    {
+      return (estimation.*(&Opened::fake_indices_));
+    }
+  };
+
   void
   keepOnlyThose(const Indices& own, std::size_t num_points)
   {
@@ -313,17 +320,34 @@ public:
 
   /** \brief Register, as PCL's. Indices outside their cloud, and a source or target
    * that was refused, are an invalid input. A pointer to PCL's class calls PCL's
-   * align(), which reads the points of all indices before they can be checked.
-   * \param[out] output the source, moved; empty if the source was refused
+   * align(), which reads the points of all indices before they can be checked, cuts an
+   * \p output that is the source to these points, and keeps the last result if the
+   * search tree throws as it gets the target.
+   * \param[out] output the source, moved; empty if the source was refused. It may be
+   *             the source itself
    * \param[in] guess initial source-to-target transformation */
   void
   align(PointCloudSource& output, const Matrix4& guess)
   {
     const std::string complaint = complaintAboutInput();
-    if (complaint.empty())
-      Base::align(output, guess);
-    else
+    if (!complaint.empty()) {
       fail(output, guess, false, complaint);
+      return;
+    }
+    try {
+      if (&output == input_.get()) { // PCL would cut it to the indices first
+        PointCloudSource moved;
+        Base::align(moved, guess);
+        output = std::move(moved);
+      }
+      else
+        Base::align(output, guess);
+    }
+    catch (...) { // of the user's search tree
+      forgetResult();
+      converged_ = false;
+      throw;
+    }
   }
 
   /** \brief Set the search tree of the target, as PCL's. Refused, with a message, are a
@@ -540,9 +564,8 @@ protected:
         rejector->setTargetNormals(target_blob);
     }
     // The default estimation does so when it is first asked.
-    const IndicesPtr selected = correspondence_estimation_->getIndicesTarget();
-    if (selected && !force_no_recompute_ && hasDefaultEstimation())
-      tree_->setInputCloud(target_, selected);
+    if (!force_no_recompute_ && hasDefaultEstimation())
+      tree_->setInputCloud(target_, correspondence_estimation_->getIndicesTarget());
   }
 
   /** A search among the pairs that the estimation and the rejectors would find for
@@ -685,6 +708,7 @@ private:
     keepFailure(is_input_valid, reason.c_str());
     nr_iterations_ = 0;
     converged_ = false;
+    this->transformation_ = this->previous_transformation_ = Matrix4::Identity();
     correspondences_->clear();
     convergence_criteria_->setConvergenceState(
         State::CONVERGENCE_CRITERIA_NO_CORRESPONDENCES);
