@@ -112,7 +112,8 @@ logSE3(const Eigen::Matrix4d& transform);
 BAYESIAN_ICP_EXPORT Vector6d
 poseError(const Vector6d& pose, const Vector6d& mean, CovarianceConvention convention);
 
-/** \brief The inverse of poseError: the pose that has \p error relative to \p mean. */
+/** \brief The inverse of poseError: the pose that has \p error relative to \p mean,
+ * angles in (-pi, pi]. In convention Parameters its pitch may be beyond pi/2. */
 BAYESIAN_ICP_EXPORT Vector6d
 poseFromError(const Vector6d& error,
               const Vector6d& mean,

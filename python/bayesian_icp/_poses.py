@@ -40,7 +40,10 @@ def pose_error(pose: ArrayLike, mean: ArrayLike, convention: str = "parameters")
 
 
 def pose_from_error(error: ArrayLike, mean: ArrayLike, convention: str = "parameters") -> Array:
-    """The (6,) pose that has a (6,) error relative to a mean: the inverse of `pose_error`."""
+    """The (6,) pose that has a (6,) error relative to a mean: the inverse of `pose_error`.
+
+    With "parameters" its pitch may be beyond pi/2.
+    """
     return _core.pose_from_error(numbers("error", error, (6,)), numbers("mean", mean, (6,)),
                                  _convention("convention", convention))
 
@@ -64,7 +67,7 @@ def convert_covariance(covariance: ArrayLike, mean: ArrayLike, source: str, targ
     Parameters
     ----------
     covariance : array_like, (6, 6)
-        In the convention `source` [m, rad]: finite, symmetric, no negative variance.
+        In the convention `source` [m, rad]: finite, symmetric, no negative eigenvalue.
     mean : array_like, (6,)
         Pose that it is about: x, y, z, roll, pitch, yaw [m, rad].
     source, target : {"parameters", "r3xso3", "left_se3", "right_se3"}
@@ -87,13 +90,17 @@ def convert_covariance(covariance: ArrayLike, mean: ArrayLike, source: str, targ
     True
     """
     given = numbers("covariance", covariance, (6, 6))
+    pose = numbers("mean", mean, (6,))
+    if not np.isfinite(pose).all():
+        raise ValueError(f"mean is {pose.tolist()}, but must be finite")
     std = np.sqrt(np.abs(np.diag(given)))
+    correlation = given / np.where(std > 0, std, 1) / np.where(std > 0, std, 1)[:, None]
     if not (np.isfinite(given).all() and np.all(np.diag(given) >= 0)
-            and np.all(np.abs(given - given.T) <= 1e-9 * np.outer(std, std))):
+            and np.all(np.abs(given - given.T) <= 1e-9 * np.outer(std, std))
+            and np.linalg.eigvalsh(correlation).min() >= -1e-9):
         raise ValueError(f"covariance is {given.tolist()}, but must be finite and symmetric, "
-                         "without negative variances")
-    return _core.convert_covariance(given, numbers("mean", mean, (6,)), _convention("source", source),
-                                    _convention("target", target))
+                         "without negative variances in any direction")
+    return _core.convert_covariance(given, pose, _convention("source", source), _convention("target", target))
 
 
 def exp_se3(twist: ArrayLike) -> Array:

@@ -4,6 +4,8 @@
 
 #include <bayesian_icp/measurement.h>
 
+#include <cmath>
+
 namespace bayesian_icp {
 
 using Eigen::Isometry3d;
@@ -13,25 +15,6 @@ namespace {
 
 /** Of a prior that is infinitely wide [1/m^2, 1/rad^2]. */
 constexpr double least_precision = 1e-12;
-
-/** Derivative of the error about \p mean in one convention by that in another, by
- * differences. */
-Matrix6d
-differencesBetween(const Vector6d& mean,
-                   CovarianceConvention from,
-                   CovarianceConvention to)
-{
-  constexpr double step = 1e-5;
-  Matrix6d derivative;
-  for (int k = 0; k < 6; ++k) {
-    const Vector6d error = step * Vector6d::Unit(k);
-    const auto errorOf = [&](const Vector6d& given) {
-      return poseError(poseFromError(given, mean, from), mean, to);
-    };
-    derivative.col(k) = (errorOf(error) - errorOf(-error)) / (2.0 * step);
-  }
-  return derivative;
-}
 
 /** Derivative of a twist about the point at \p offset by the same twist about the
  * origin: v' = v + w x offset. */
@@ -54,12 +37,17 @@ aboutPoint(const Isometry3d& T_target_source, const Vector3d& source_point)
   return turn * twistsAbout(source_point);
 }
 
-/** Derivative of an R3xSO3 error, a twist about the mean position, by that of another
- * kind of twists. */
+/** Derivative of an R3xSO3 error, a twist about the mean position, by that in another
+ * convention. */
 Matrix6d
 r3xSO3By(const Vector6d& mean, CovarianceConvention from)
 {
   Matrix6d derivative = Matrix6d::Identity();
+  if (from == CovarianceConvention::Parameters) {
+    // Roll turns about the source's x axis, yaw about the target's z axis.
+    derivative.block<3, 1>(3, 3) = rotationOf(mean).col(0);
+    derivative.block<3, 1>(3, 4) << -std::sin(mean[5]), std::cos(mean[5]), 0.0;
+  }
   if (from == CovarianceConvention::LeftSE3)
     derivative = twistsAbout(mean.head<3>());
   if (from == CovarianceConvention::RightSE3)
@@ -73,17 +61,14 @@ derivativeBetween(const Vector6d& mean,
                   CovarianceConvention from,
                   CovarianceConvention to)
 {
-  constexpr auto parameters = CovarianceConvention::Parameters;
-  constexpr auto between = CovarianceConvention::R3xSO3;
   if (from == to)
     return Matrix6d::Identity();
-  const Matrix6d first = from == parameters
-                             ? differencesBetween(mean, parameters, between)
-                             : r3xSO3By(mean, from);
-  if (to == parameters)
-    return differencesBetween(mean, between, parameters) * first;
-  const Matrix6d second = r3xSO3By(mean, to);
-  return second.inverse() * first;
+  const Matrix6d first = r3xSO3By(mean, from);
+  if (to != CovarianceConvention::Parameters)
+    return r3xSO3By(mean, to).inverse() * first;
+  Matrix6d second = Matrix6d::Identity();
+  second.bottomRightCorner<3, 3>() = angleRates(mean);
+  return second * first;
 }
 
 bool

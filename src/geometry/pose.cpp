@@ -229,9 +229,12 @@ poseFromError(const Vector6d& error,
               const Vector6d& mean,
               CovarianceConvention convention)
 {
+  Vector6d pose = mean + error;
   switch (convention) {
   case CovarianceConvention::Parameters:
-    return canonicalPose(mean + error);
+    for (int k = 3; k < 6; ++k)
+      pose[k] = wrapAngle(pose[k]);
+    return pose;
   case CovarianceConvention::R3xSO3:
     return poseOf(compose(expSO3(error.tail<3>()) * rotationOf(mean),
                           mean.head<3>() + error.head<3>()));
@@ -240,7 +243,7 @@ poseFromError(const Vector6d& error,
   case CovarianceConvention::RightSE3:
     return poseOf(matrixOf(mean) * expSE3(error));
   }
-  return mean;
+  return pose;
 }
 
 } // namespace bayesian_icp

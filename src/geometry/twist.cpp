@@ -11,10 +11,6 @@ using Eigen::Matrix3d;
 using Eigen::Translation3d;
 using Eigen::Vector3d;
 
-namespace {
-
-/** d(roll, pitch, yaw) / dw for a small rotation w about the target's fixed axes. At
- * gimbal lock it is that of a pitch a little off. */
 Matrix3d
 angleRates(const Vector6d& pose)
 {
@@ -29,6 +25,8 @@ angleRates(const Vector6d& pose)
       cos_yaw * tan_pitch, sin_yaw * tan_pitch, 1.0;      // yaw
   return rates;
 }
+
+namespace {
 
 /** The pose, with those angles that the prior prefers of two triples. */
 Vector6d

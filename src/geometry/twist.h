@@ -58,6 +58,11 @@ struct HeldPrior : Prior {
   std::optional<PlaneHold> plane;
 };
 
+/** \brief d(roll, pitch, yaw) / dw for a small rotation w about the target's fixed
+ * axes. At gimbal lock it is that of a pitch a little off. */
+Eigen::Matrix3d
+angleRates(const Vector6d& pose);
+
 /** \brief The prior near a pose, in twists about a centre. */
 struct TwistPrior {
   /** Positive semidefinite [1/m^2, 1/rad^2]. */

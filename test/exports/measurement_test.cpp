@@ -226,6 +226,29 @@ TEST(WithoutPrior, IsTheSameWhereverTheTargetsFrameIs)
   EXPECT_LT((far_shift - shift).norm(), 1e-8);
 }
 
+TEST(Estimate, IsTheSameForBothTriplesOfAnglesOfARotation)
+{
+  const Vector6d variance =
+      (Vector6d() << 0.01, 0.02, 0.03, 1e-4, 4e-4, 9e-4).finished();
+  for (const double pitch : {0.3, 1.3, 1.5}) {
+    Vector6d mean, other;
+    mean << 1.0, 2.0, 3.0, 0.2, pitch, -0.4;
+    other << 1.0, 2.0, 3.0, 0.2 + M_PI, M_PI - pitch, -0.4 + M_PI;
+    const PoseEstimate estimate = estimateOf(Prior(mean, variance));
+    const PoseEstimate same = estimateOf(Prior(other, variance));
+    for (const auto convention : covariance_conventions) {
+      const Matrix6d& expected = estimate.covariance(convention);
+      EXPECT_LT((same.covariance(convention).diagonal() - expected.diagonal())
+                    .cwiseAbs()
+                    .maxCoeff(),
+                1e-9);
+    }
+    const Matrix6d& of_angles = same.covariance(CovarianceConvention::Parameters);
+    EXPECT_LT((of_angles - Matrix6d(variance.asDiagonal())).cwiseAbs().maxCoeff(),
+              1e-9);
+  }
+}
+
 TEST(Estimate, InOtherConventionsIsThatOfTheAdjoint)
 {
   Vector6d far = some_pose;

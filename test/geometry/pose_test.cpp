@@ -197,6 +197,15 @@ TEST(Conventions, PoseFromErrorInvertsPoseError)
           1e-9)
           << toString(convention);
     }
+  // A pitch that passes 90 degrees.
+  const Vector6d mean = (Vector6d() << 1.0, 2.0, 3.0, 3.1, 1.56, -3.1).finished();
+  const Vector6d error = (Vector6d() << 0.1, 0.2, 0.3, 0.2, 0.05, -0.1).finished();
+  for (const auto convention : covariance_conventions)
+    EXPECT_LT(
+        (poseError(poseFromError(error, mean, convention), mean, convention) - error)
+            .norm(),
+        1e-9)
+        << toString(convention);
 }
 
 TEST(Conventions, AreDefinedByTheSideOfTheirPerturbation)

@@ -126,10 +126,16 @@ def test_draws_that_are_no_real_numbers(function, draws):
         function(draws)
 
 
-@pytest.mark.parametrize("bad", [np.diag([np.nan, 1, 1, 1, 1, 1]), np.eye(6) + 0.1 * np.eye(6, k=1), -np.eye(6)])
+INDEFINITE = np.eye(6) + 3 * (np.eye(6, k=1) + np.eye(6, k=-1))
+
+
+@pytest.mark.parametrize("bad", [np.diag([np.nan, 1, 1, 1, 1, 1]), np.eye(6) + 0.1 * np.eye(6, k=1), -np.eye(6),
+                                 INDEFINITE])
 def test_covariances_that_are_none(bad):
     with pytest.raises(ValueError, match="covariance is .* finite and symmetric"):
         bayesian_icp.convert_covariance(bad, POSE, "r3xso3", "left_se3")
+    with pytest.raises(ValueError, match="mean is .* finite"):
+        bayesian_icp.convert_covariance(np.eye(6), np.full(6, np.nan), "r3xso3", "left_se3")
     with pytest.raises(ValueError, match="target: 'ros' is none of"):
         bayesian_icp.convert_covariance(np.eye(6), POSE, "r3xso3", "ros")
 
