@@ -39,6 +39,7 @@ public:
   points() const;
 
   /** \brief Prepare what \p preset needs, so that the first estimate does not have to.
+   * Preset `calibrated` prepares more for a cloud of another size.
    * \param[in] preset that will be used
    * \param[in] num_threads OpenMP threads, 0 is automatic */
   void

@@ -65,7 +65,8 @@ toString(DescentEnd end);
 
 /** \brief Where the descent ended. */
 struct StochasticGradientIcpResult {
-  /** The last finite pose, T_target_source, canonical [m, rad]. */
+  /** The last finite pose, T_target_source, canonical [m, rad]; zero if there is none.
+   */
   Vector6d pose = Vector6d::Zero();
   /** Number of steps; mini-batches with too few correspondences make none. */
   int num_iterations = 0;

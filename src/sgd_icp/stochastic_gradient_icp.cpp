@@ -120,11 +120,13 @@ stochasticGradientIcp(const Eigen::Matrix3Xd& source_points,
                       const StochasticGradientIcpProgress& progress)
 {
   StochasticGradientIcpResult result;
-  result.pose = initial_pose;
+  if (initial_pose.allFinite())
+    result.pose = canonicalPose(initial_pose);
   const auto num_points = static_cast<std::size_t>(source_points.cols());
   if (!options.validate().empty() || num_points < min_batch_pairs ||
       !initial_pose.allFinite())
     return result;
+  result.pose = initial_pose;
   result.end = descend(source_points, search, options, progress, result);
   result.pose = canonicalPose(result.pose);
   result.has_converged = result.end == DescentEnd::Converged;

@@ -381,8 +381,10 @@ TEST(StochasticGradientIcp, RefusesBadInput)
   const NoisyPair pair(0.0);
   const KnownPairs search(pair.target);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(stochasticGradientIcp(pair.source, search, nan * Vector6d::Ones()).end,
-            DescentEnd::InvalidInput);
+  const auto from_nan =
+      stochasticGradientIcp(pair.source, search, nan * Vector6d::Ones());
+  EXPECT_EQ(from_nan.end, DescentEnd::InvalidInput);
+  EXPECT_EQ(from_nan.pose, Vector6d::Zero());
   EXPECT_EQ(
       stochasticGradientIcp(pair.source.leftCols(2), search, Vector6d::Zero()).end,
       DescentEnd::InvalidInput);
