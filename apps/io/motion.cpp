@@ -66,19 +66,28 @@ readMotionFile(const std::string& file)
   return mean;
 }
 
+bool
+areAnglesWithinATurn(const Vector6d& pose)
+{
+  return pose.tail<3>().cwiseAbs().maxCoeff() <= 2.0 * M_PI;
+}
+
 Eigen::Matrix4d
 readMotion(const std::string& option, const std::string& text)
 {
   if (Vector6d pose; readNumbers(text, pose)) {
     if (!pose.allFinite())
       throw UsageError("--" + option + ": must be finite");
+    if (!areAnglesWithinATurn(pose))
+      throw UsageError("--" + option + ": " + io::inQuotes(text) +
+                       " has an angle of more than a turn; angles are in radians");
     return matrixOf(pose);
   }
   std::error_code ignored;
   if (text.find(',') != std::string::npos && !std::filesystem::exists(text, ignored))
     throw UsageError("--" + option + ": " + io::inQuotes(text) +
-                     " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad] nor "
-                     "a file");
+                     " is neither the six numbers x,y,z,roll,pitch,yaw [m, rad], "
+                     "without spaces, nor a file");
   return readMotionFile(text);
 }
 

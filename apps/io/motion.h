@@ -3,6 +3,8 @@
  */
 #pragma once
 
+#include <bayesian_icp/pose.h>
+
 #include <Eigen/Core>
 
 #include <string>
@@ -26,11 +28,16 @@ readMatrixFile(const std::string& file);
 Eigen::Matrix4d
 readMotionFile(const std::string& file);
 
+/** \brief Whether no angle of (x, y, z, roll, pitch, yaw) is above 2 pi. One that is
+ * has been written in degrees. */
+bool
+areAnglesWithinATurn(const Vector6d& pose);
+
 /** \brief The matrix of "x,y,z,roll,pitch,yaw" [m, rad], or of a file as
  * readMotionFile() takes it.
  * \param[in] option its name in errors, without the dashes
- * \throws UsageError if it is none of them or not finite, FileError if the file has
- * something else */
+ * \throws UsageError if it is none of them, not finite or in degrees, FileError if the
+ * file has something else */
 Eigen::Matrix4d
 readMotion(const std::string& option, const std::string& text);
 

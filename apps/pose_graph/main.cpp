@@ -2,9 +2,11 @@
  * \brief pcl_bayesian_icp_pose_graph: scans in, a pose graph and its most likely poses
  * out.
  */
+#include "graph/sensor_plane.h"
 #include "graph/trajectory_files.h"
 #include "io/cloud_file.h"
 #include "io/command_line.h"
+#include "io/errors.h"
 #include "io/folders.h"
 #include "io/interrupt.h"
 #include "io/numbers.h"
@@ -265,6 +267,18 @@ addOptimum(const GraphCommand& command,
             folder);
 }
 
+/** None of a scan that cannot be read: the edge to it tells. */
+std::optional<Eigen::Vector3d>
+planeNormalOfScan(const std::string& file)
+{
+  try {
+    return planeNormalOf(io::readFinitePoints(file).cast<double>());
+  }
+  catch (const io::FileError&) {
+    return std::nullopt;
+  }
+}
+
 int
 makeGraph(const GraphCommand& command)
 {
@@ -282,9 +296,13 @@ makeGraph(const GraphCommand& command)
   bool is_good = true;
   if (!command.is_quiet)
     tellNotesOfFirst(command.request.scans.front(), command.request.settings);
+  GraphRequest request = command.request;
+  request.plane_normal = planeNormalOfScan(request.scans.front());
+  if (request.plane_normal && !command.is_quiet)
+    io::tell(plane_note);
   io::catchInterrupt();
   const ScanGraph graph =
-      registerScans(command.request, [&](bool is_ok, const std::string& line) {
+      registerScans(request, [&](bool is_ok, const std::string& line) {
         is_good = is_good && is_ok;
         if (!is_ok || !command.is_quiet)
           io::tell(line);

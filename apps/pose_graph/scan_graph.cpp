@@ -1,5 +1,6 @@
 #include "pose_graph/scan_graph.h"
 
+#include "graph/sensor_plane.h"
 #include "graph/trajectory_files.h"
 #include "io/coordinates.h"
 #include "io/numbers.h"
@@ -63,7 +64,11 @@ public:
             const std::function<void(bool, const std::string&)>& tell)
   : request_(request)
   , tell_(tell)
-  {}
+  , wide_variance_(inPlane(PriorOptions().variance))
+  {
+    Vector6d& variance = request_.settings.options.prior.variance;
+    variance = inPlane(variance);
+  }
 
   ScanGraph
   run()
@@ -78,6 +83,16 @@ public:
   }
 
 private:
+  /** Variances of a prior that keeps the sensor in its plane. */
+  Vector6d
+  inPlane(const Vector6d& variance) const
+  {
+    if (!request_.plane_normal || !variance.allFinite())
+      return variance;
+    return keptInPlane(variance.asDiagonal(), projectionToPlane(request_.plane_normal))
+        .diagonal();
+  }
+
   static ScanEdge
   unregistered(EdgeKind kind, int target, int source)
   {
@@ -101,7 +116,7 @@ private:
     if (edge.kind != EdgeKind::Chain) {
       const Way way =
           wayAlong(steps_, scans.target, pathBetween(scans.target, scans.source));
-      const Matrix6d wide = PriorOptions().variance.asDiagonal();
+      const Matrix6d wide = wide_variance_.asDiagonal();
       pair.settings.guess = way.T_begin_end;
       pair.settings.options.prior =
           priorFrom(statedPoseOf(poseOf(way.T_begin_end), way.covariance() + wide))
@@ -158,7 +173,10 @@ private:
             edge.kind == EdgeKind::Chain ? posterior : of_clouds.estimate, edge.edge);
       edge.is_in_graph = complaint.empty();
       if (edge.is_in_graph)
-        edge.num_unmeasured = of_clouds.num_unmeasured;
+        edge.num_unmeasured =
+            std::max(0,
+                     of_clouds.num_unmeasured -
+                         (request_.plane_normal ? num_motions_out_of_plane : 0));
       else
         reason += "; not used: " + complaint;
     }
@@ -269,8 +287,10 @@ private:
     return edges;
   }
 
-  const GraphRequest& request_;
+  GraphRequest request_;
   const std::function<void(bool, const std::string&)>& tell_;
+  /** Of a prior about what the chain says. */
+  Vector6d wide_variance_;
   ScanGraph graph_;
   /** From each scan to the next, all of them. */
   std::vector<GraphEdge> steps_;

@@ -26,6 +26,9 @@ struct GraphRequest {
   double loop_radius = 0.0;
   /** The guess is that of each scan's pose in the frame of the one before. */
   Settings settings;
+  /** Normal of the plane in which the sensor moves, in its frame: that of a 2-D laser
+   * scanner's scans. None: it moves in space. */
+  std::optional<Eigen::Vector3d> plane_normal;
   /** Whether the prior takes the place of a registration of the chain that is of no
    * use. */
   bool has_weak_edges = false;
@@ -53,7 +56,8 @@ struct ScanEdge {
   /** Without pose and covariance if there is no posterior of use. */
   GraphEdge edge;
   bool is_in_graph = false;
-  /** Motions that the clouds do not determine, 0 to 6; 0 without a posterior of use. */
+  /** Motions that the clouds do not determine, 0 to 6, but those out of the sensor's
+   * plane; 0 without a posterior of use. */
   int num_unmeasured = 0;
   /** Of the registration's status; names the motions that the prior alone holds. */
   std::string message;

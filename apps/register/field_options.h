@@ -79,6 +79,8 @@ readNumbers(const std::string& text, bool may_be_one, Vector6d& value)
     io::refuseValue(text,
                     std::string("six numbers separated by commas") +
                         (may_be_one ? ", or one for all" : ""));
+  if (!may_be_one && !io::areAnglesWithinATurn(numbers))
+    io::refuseValue(text, "a pose; its angles, in radians, are at most a turn");
   value = numbers;
 }
 

@@ -199,8 +199,7 @@ makeTrack(const TrackCommand& command)
   io::OutputFolder folder(command.output_folder);
   const MotionModel model = motionModelOf(request);
   if (model.plane_normal && !command.is_quiet)
-    io::tell("note: scan 0 lies in a plane, like that of a 2-D laser scanner, so the "
-             "trajectory stays in it");
+    io::tell(plane_note);
   Track track(model, request.times, request.voxel_size > 0.0 ? request.map_scans : 1);
   const std::string edges =
       (std::filesystem::path(command.output_folder) / "edges.jsonl").string();

@@ -55,13 +55,10 @@ rightJacobian(const Vector6d& xi)
 
 } // namespace
 
-MotionFilter::MotionFilter(const MotionModel& model) : model_(model)
+MotionFilter::MotionFilter(const MotionModel& model)
+: model_(model)
+, in_plane_(projectionToPlane(model.plane_normal))
 {
-  if (model.plane_normal) {
-    const Eigen::Matrix3d along = *model.plane_normal * model.plane_normal->transpose();
-    in_plane_.topLeftCorner<3, 3>() -= along;
-    in_plane_.bottomRightCorner<3, 3>() = along;
-  }
   velocity_ = in_plane_ * model.velocity;
   model_.velocity_covariance = in_plane_ * model.velocity_covariance * in_plane_;
   covariance_.block<6, 6>(of_velocity, of_velocity) = model_.velocity_covariance;
@@ -160,14 +157,6 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   const State noise = taken * own * taken.transpose();
   covariance_ += 0.5 * (noise + noise.transpose());
   return squared_innovation;
-}
-
-Matrix6d
-MotionFilter::keptInPlane(const Matrix6d& covariance) const
-{
-  const double variance = out_of_plane_deviation * out_of_plane_deviation;
-  return in_plane_ * covariance * in_plane_ +
-         variance * (Matrix6d::Identity() - in_plane_);
 }
 
 void

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "graph/pose_graph.h"
+#include "graph/sensor_plane.h"
 
 #include <Eigen/Core>
 
@@ -25,10 +26,6 @@ struct MotionModel {
    * scanner's scans, which do not show any other motion. None: it moves in space. */
   std::optional<Eigen::Vector3d> plane_normal;
 };
-
-/** \brief Stated standard deviation of motions out of MotionModel::plane_normal's
- * plane, along and about each axis [m, rad]. */
-constexpr double out_of_plane_deviation = 1e-3;
 
 /** \brief An extended Kalman filter whose state is the target's pose in the frame of
  * scan 0, the scan's pose in the target's frame, and the scan's velocity.
@@ -74,10 +71,12 @@ public:
     return model_.plane_normal.has_value();
   }
 
-  /** \brief The covariance of a twist in the sensor's frame for a sensor that moves in
-   * the model's plane: out_of_plane_deviation out of it. As it is, without a plane. */
+  /** \brief app::keptInPlane() with the model's plane. */
   Matrix6d
-  keptInPlane(const Matrix6d& covariance) const;
+  keptInPlane(const Matrix6d& covariance) const
+  {
+    return app::keptInPlane(covariance, in_plane_);
+  }
 
   /** \brief From now on the scan is the target. */
   void
@@ -102,7 +101,7 @@ private:
 
   MotionModel model_;
   /** The part of a twist that is in the model's plane. */
-  Matrix6d in_plane_ = Matrix6d::Identity();
+  Matrix6d in_plane_;
   /** The interval before the last scan, 0 before there is one. */
   double last_seconds_ = 0.0;
   Eigen::Matrix4d target_ = Eigen::Matrix4d::Identity();

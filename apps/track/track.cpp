@@ -65,7 +65,7 @@ Track::take(const TrackStep& step)
 std::size_t
 Track::numUnmeasured() const
 {
-  const int num_excluded = filter_.isInPlane() ? 3 : 0;
+  const int num_excluded = filter_.isInPlane() ? num_motions_out_of_plane : 0;
   return static_cast<std::size_t>(
       std::count_if(steps_.begin(), steps_.end(), [&](const TrackStep& step) {
         return step.kind <= StepKind::Widened &&

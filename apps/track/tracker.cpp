@@ -1,5 +1,6 @@
 #include "track/tracker.h"
 
+#include "graph/sensor_plane.h"
 #include "io/clocks.h"
 #include "io/cloud_file.h"
 #include "io/errors.h"
@@ -8,8 +9,6 @@
 #include "localization/stated_pose.h"
 
 #include <boost/functional/hash.hpp>
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
@@ -32,23 +31,6 @@ thinned(const Eigen::Matrix3Xd& points, double voxel_size)
       kept.push_back(i);
   }
   return points(Eigen::all, kept);
-}
-
-/** A cloud lies in a plane if its thickness is below this fraction of its width: no
- * noise of a 3-D sensor is as small. */
-constexpr double max_flatness = 1e-5;
-
-/** Normal of the plane in which \p points lie; none if they do not. */
-std::optional<Eigen::Vector3d>
-planeNormalOf(const Eigen::Matrix3Xd& points)
-{
-  const Eigen::Matrix3Xd arms = points.colwise() - points.rowwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(arms * arms.transpose());
-  const Eigen::Vector3d variances = solver.eigenvalues();
-  const double largest = max_flatness * max_flatness * variances[2];
-  if (!(variances[0] <= largest && variances[1] > largest))
-    return std::nullopt;
-  return solver.eigenvectors().col(0);
 }
 
 } // namespace

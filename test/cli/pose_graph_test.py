@@ -74,6 +74,32 @@ class PoseGraphOfSimulatedScans(PoseGraphTest):
         self.assertLess(quadratic(error, information) / 2, CHI2_HIGH[6])
 
 
+class PoseGraphOfAScannerInAPlane(PoseGraphTest):
+    def test_stays_in_the_plane_and_its_edges_are_as_sure_as_the_chain(self):
+        num_scans = 6
+        scans, from_world = self.trajectory_in_a_plane(num_scans)
+        result = call(POSE_GRAPH, scans, "-o", self.graph, "--span", 3, "--loop", "0,5", "--optimize", self.folder / "best")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("scan 0 lies in a plane", result.stderr)
+        # z, roll and pitch go without saying.
+        self.assertNotIn("unmeasured", result.stderr)
+        in_plane = np.ix_([0, 1, 5], [0, 1, 5])
+        _, edges = read_graph(self.graph)
+        self.assertEqual(len(edges), 5 + 4 + 3 + 1)
+        deviations = {}
+        for (i, j), (pose, information) in edges.items():
+            error = g2o_error(pose, from_world[i] @ inv(from_world[j]))[[0, 1, 5]]
+            covariance = inv(information)[in_plane]
+            self.assertLess(quadratic(error, inv(covariance)), CHI2_HIGH[3], (i, j))
+            deviations[i, j] = np.sqrt(np.diag(covariance))
+        chain = np.median([deviations[k, k + 1] for k in range(num_scans - 1)], axis=0)
+        for key, deviation in deviations.items():
+            self.assertTrue((deviation < 3 * chain).all(), (key, deviation, chain))
+        for row in rows_of_file(self.folder / "best/trajectory_covariance.txt"):
+            covariance = np.reshape(row[1:], (6, 6))
+            self.assertLess(np.sqrt(np.diag(covariance)[2:5]).max(), 0.01)
+
+
 class PoseGraphLoops(PoseGraphTest):
     """A camera that goes once around a table."""
 

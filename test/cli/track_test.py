@@ -213,14 +213,7 @@ class TrackWithUnseenMotions(TrackTest):
 
 class TrackOfAScannerInAPlane(TrackTest):
     def test_stays_in_the_plane(self):
-        sensor = ["--scene", "room", "--sensor", "lidar", "--rings", 1, "--azimuth-step", 0.5]
-        sensor += ["--min-elevation", 0, "--max-elevation", 0]
-        num_scans = 10
-        views = []
-        for k in range(num_scans):
-            x, y, yaw = 0.05 * k, -0.5 + 0.04 * k, 0.3 + 0.05 * k
-            views.append((f"{x},{y},1", f"{x + np.cos(yaw)},{y + np.sin(yaw)},1"))
-        scans, from_world = self.trajectory_of(sensor, views)
+        scans, from_world = self.trajectory_in_a_plane(10)
         options = (["--span", 2], ["--map", 0.02, "--map-scans", 3])
         for number, words in enumerate(options):
             self.track = self.folder / f"track{number}"

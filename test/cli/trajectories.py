@@ -76,6 +76,16 @@ class TrajectoryTest(ToolTest):
         sensor = ["--scene", "table", "--width", 160, "--height", 120]
         return self.trajectory_of(sensor, [(eye, "0,0,0") for eye in eyes])
 
+    def trajectory_in_a_plane(self, num_scans):
+        """Scans of a room from a moving 2-D laser scanner; (folder, maps from the world)."""
+        sensor = ["--scene", "room", "--sensor", "lidar", "--rings", 1, "--azimuth-step", 0.5]
+        sensor += ["--min-elevation", 0, "--max-elevation", 0]
+        views = []
+        for k in range(num_scans):
+            x, y, yaw = 0.05 * k, -0.5 + 0.04 * k, 0.3 + 0.05 * k
+            views.append((f"{x},{y},1", f"{x + np.cos(yaw)},{y + np.sin(yaw)},1"))
+        return self.trajectory_of(sensor, views)
+
     def trajectory_of(self, sensor, views):
         """Scans from (eye, point to look at); (folder, maps from the world)."""
         scans = self.folder / "scans"

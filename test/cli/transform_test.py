@@ -205,6 +205,11 @@ class TransformRefusals(TransformTest):
         self.assertEqual(result.returncode, 2, result.stderr)
         self.assertIn("is neither the six numbers", result.stderr)
 
+    def test_pose_in_degrees(self):
+        result = transform(self.cloud(), self.folder / "out.pcd", "--pose", "0.1,0,0,0,0,90")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("angles are in radians", result.stderr)
+
     def test_files(self):
         source, output = self.cloud(), self.folder / "out.pcd"
         result = transform(source, self.folder / "out.xyz", "--pose", WORDS)
