@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace bayesian_icp {
@@ -467,6 +468,10 @@ TEST(CalibratedModes, WithinTheRegionOfAWiderOneAreNotModesOfTheirOwn)
   }
   EXPECT_EQ(separateModes({wide, narrowAt(18.0)}).size(), 2u);
   EXPECT_EQ(separateModes({narrowAt(18.0), wide, narrowAt(40.0)}).size(), 3u);
+  // An estimate that is not finite holds none.
+  CalibratedMode broken = wide;
+  broken.estimate.information.setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(separateModes({broken, narrowAt(1.0)}).size(), 2u);
   // Of two that are within each other's region the first one, which is the heavier.
   CalibratedMode lighter = wide;
   lighter.estimate.information *= 1.1;

@@ -512,8 +512,9 @@ separateModes(std::vector<CalibratedMode> modes)
   for (std::size_t wide = 0; wide < modes.size(); ++wide) {
     const ProductCoordinates region(modes[wide].estimate);
     for (std::size_t other = modes.size(); other-- > 0;) {
-      if (other == wide ||
-          squaredDistance(region, modes[other].estimate.mode) >= region_of_mode)
+      const bool is_within =
+          squaredDistance(region, modes[other].estimate.mode) < region_of_mode;
+      if (other == wide || !is_within)
         continue;
       modes.erase(modes.begin() + static_cast<std::ptrdiff_t>(other));
       wide -= other < wide;
