@@ -32,8 +32,9 @@ Matrix6d
 projectionToPlane(const std::optional<Eigen::Vector3d>& normal);
 
 /** \brief The covariance of a twist in the sensor's frame for a sensor that stays in
- * its plane: out_of_plane_deviation out of it. As it is, without a plane. \param[in]
- * to_plane projectionToPlane() */
+ * its plane: out_of_plane_deviation out of it. As it is, without a plane.
+ *
+ * \param[in] to_plane projectionToPlane() */
 Matrix6d
 keptInPlane(const Matrix6d& covariance, const Matrix6d& to_plane);
 

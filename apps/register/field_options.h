@@ -66,20 +66,20 @@ struct Describer {
   }
 };
 
-/** \brief Read six numbers separated by commas, or one for all where that makes sense.
+/** \brief Read six numbers separated by commas, or one for all unless they are a pose.
  * \throws io::BadValue */
 inline void
-readNumbers(const std::string& text, bool may_be_one, Vector6d& value)
+readNumbers(const std::string& text, bool is_pose, Vector6d& value)
 {
   Vector6d numbers;
   double number = 0.0;
-  if (may_be_one && io::readNumber(text, number))
+  if (!is_pose && io::readNumber(text, number))
     numbers.setConstant(number);
   else if (!io::readNumbers(text, numbers))
     io::refuseValue(text,
                     std::string("six numbers separated by commas") +
-                        (may_be_one ? ", or one for all" : ""));
-  if (!may_be_one && !io::areAnglesWithinATurn(numbers))
+                        (is_pose ? "" : ", or one for all"));
+  if (is_pose && !io::areAnglesWithinATurn(numbers))
     io::refuseValue(text, "a pose; its angles, in radians, are at most a turn");
   value = numbers;
 }
@@ -91,7 +91,7 @@ void
 convert(const std::string& option, const std::string& text, T& value)
 {
   if constexpr (std::is_same_v<T, Vector6d>)
-    readNumbers(text, option != "prior-mean", value);
+    readNumbers(text, option == "prior-mean", value);
   else if constexpr (std::is_same_v<T, Eigen::Matrix4d>)
     value = io::readMotion(option, text);
   else if constexpr (!std::is_enum_v<T>)
