@@ -24,8 +24,8 @@ protected:
     return runShell(
         "cd '" + folder_.string() +
         "' && '" BAYESIAN_ICP_EVALUATE
-        "' paper --quick --baseline-runs 30 --points 200 --data '" BAYESIAN_ICP_DATA_DIR
-        "' --output out");
+        "' paper --quick --pairs can,table_top --baseline-runs 30 --points 200"
+        " --data '" BAYESIAN_ICP_DATA_DIR "' --output out");
   }
 
   const std::filesystem::path folder_ = BAYESIAN_ICP_REPORT_DIR;
@@ -51,8 +51,7 @@ TEST_F(PaperReport, QuickOneIsComplete)
   }
   std::vector<std::string> figures = {
       "divergences", "samples", "burn_in", "runtime", "accuracy"};
-  for (const char* object :
-       {"bowl", "can", "mug_hidden_handle", "table_top", "mug", "table"}) {
+  for (const char* object : {"can", "table_top"}) {
     figures.push_back(std::string("densities_") + object);
     figures.push_back(std::string("clouds_") + object);
   }
