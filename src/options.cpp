@@ -62,12 +62,7 @@ check(const PriorOptions& prior, Preset preset, Checker& checker)
                   "prior.mean",
                   prior.mean.transpose(),
                   "six finite numbers (m, rad)");
-  checker.require(prior.frame == PriorFrame::Automatic ||
-                      prior.frame == PriorFrame::Origin ||
-                      prior.frame == PriorFrame::SourceCentroid,
-                  "prior.frame",
-                  static_cast<int>(prior.frame),
-                  "one of PriorFrame");
+  checker.oneOf("PriorFrame", "prior.frame", prior.frame);
 }
 
 void
@@ -146,6 +141,7 @@ check(const PaperOptions& paper, Checker& checker)
 {
   check(paper.scale, checker);
   checker.atLeast("batch_size", paper.batch_size, 1);
+  checker.oneOf("MiniBatchSampling", "sampling", paper.sampling);
   check(paper.sgld, checker);
   checkGate(paper.max_distance, checker);
   checkSteps(paper.num_burn_in, paper.thinning, checker);
@@ -156,9 +152,14 @@ void
 check(const ExactOptions& exact, int num_chains, Checker& checker)
 {
   check(exact.scale, checker);
+  checker.oneOf("Residual", "residual", exact.residual.residual);
+  checker.oneOf(
+      "CovarianceRegularization", "regularization", exact.residual.regularization);
+  checker.oneOf("RobustKernel", "kernel", exact.residual.kernel);
   checker.positive("kernel_width", exact.residual.kernel_width, " (m)");
   checkGate(exact.residual.max_distance, checker);
   checker.atLeast("batch_size", exact.batch_size.valueOr(1), 1);
+  checker.oneOf("ExactSteps", "steps", exact.steps);
   checker.require(!exact.batch_size.isGiven() || exact.steps == ExactSteps::Automatic ||
                       exact.steps == ExactSteps::Langevin,
                   "steps",
@@ -258,11 +259,7 @@ std::string
 Options::validate() const
 {
   Checker checker;
-  checker.require(preset == Preset::Paper || preset == Preset::Exact ||
-                      preset == Preset::Calibrated,
-                  "preset",
-                  static_cast<int>(preset),
-                  "one of Preset");
+  checker.oneOf("Preset", "preset", preset);
   check(prior, preset, checker);
   check(chains, checker);
   switch (preset) {

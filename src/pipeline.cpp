@@ -130,6 +130,12 @@ estimatePosterior(const Eigen::Matrix3Xd& source_points,
                              options,
                              progress);
   const bool is_exact = options.preset == Preset::Exact;
+  const Residual residual = options.exact.residual.residual;
+  if (is_exact && residual != Residual::PointToPoint && target_tree.size() < 3)
+    return failure(Status::TooFewCorrespondences,
+                   std::string("residual ") + toString(residual) +
+                       " needs a target of at least 3 points, which has " +
+                       std::to_string(target_tree.size()));
   const double max_distance =
       is_exact ? options.exact.residual.max_distance : options.paper.max_distance;
   return estimate(source_points,

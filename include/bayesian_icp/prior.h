@@ -33,7 +33,9 @@ struct PriorOptions {
   Vector6d mean = Vector6d::Constant(std::numeric_limits<double>::quiet_NaN());
   /** Variance of x, y, z [m^2] and 1/kappa of roll, pitch, yaw [rad^2], eqs. (6) and
    * (7). At least 1e-24; infinity means no prior on that coordinate, which preset
-   * `calibrated` does not accept. */
+   * `calibrated` does not accept. Nor does it accept variances so far apart that double
+   * precision loses the large ones about the source's centroid: tiny ones of x, y and z
+   * about an origin aside, with large ones of the angles. */
   Vector6d variance = Vector6d::Constant(0.125);
   /** The point whose translation x, y, z describe. */
   PriorFrame frame = PriorFrame::Automatic;

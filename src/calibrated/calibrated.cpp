@@ -2,6 +2,7 @@
 // docs/calibration.md.
 #include "calibrated/calibrated.h"
 
+#include "algebra/decompositions.h"
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibrated_report.h"
 #include "calibrated/cloud_parts.h"
@@ -39,6 +40,19 @@ complaintAbout(const CalibratedEstimate& estimate)
     return "the scores of the source points do not give a finite covariance (clouds "
            "without noise have no scale)";
   return std::string();
+}
+
+/** Whether the precision of the prior about the source's centroid keeps what it says of
+ * the motions that it holds least, by double precision. */
+bool
+isResolved(const Prior& prior, const Eigen::Vector3d& centroid)
+{
+  constexpr double smallest = 1e-14;
+  const Eigen::Isometry3d mean = isometryOf(prior.mean());
+  const Matrix6d precision = twistPrior(prior, mean, mean * centroid).precision;
+  const Vector6d unit = precision.diagonal().cwiseSqrt().cwiseInverse();
+  const Matrix6d scaled = unit.asDiagonal() * precision * unit.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix6d>(scaled).eigenvalues()[0] > smallest;
 }
 
 /** Text about the motions that the prior alone holds, for the message; empty if there
@@ -130,6 +144,11 @@ estimateCalibratedPosterior(const PreparedCloud& source,
                    "surface to compare its points with");
   // 2: what the points of both clouds say.
   const Prior prior = priorOf(options, initial_pose, source_points);
+  if (!isResolved(prior, source_points.rowwise().mean()))
+    return failure(
+        Status::InvalidOptions,
+        "the prior's variances differ too much for double precision: state "
+        "the smallest ones larger, or the prior about the source's centroid");
   const SurfaceScorer scorer =
       scorerOf(source_points,
                source_surface,

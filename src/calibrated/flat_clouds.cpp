@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
 
 namespace bayesian_icp {
@@ -25,9 +26,10 @@ constexpr std::uint64_t first_stream = std::uint64_t(1) << 41;
 constexpr double signs[4][3] = {
     {1.0, 1.0, 1.0}, {1.0, -1.0, -1.0}, {-1.0, 1.0, -1.0}, {-1.0, -1.0, 1.0}};
 
-/** How far the held motions are free, in units of the noise at a flat cloud's rim: far
- * less than any motion in the plane is known. */
-constexpr double slack = 1e-5;
+/** How far the held motions are free, in units of the cloud's size or of the prior's
+ * deviations: less than any motion in the plane is known, and as much as a double
+ * resolves of the prior in a plane that is oblique to the axes. */
+constexpr double slack = 1e-6;
 
 /** Largest deviation of a tilt about which there is no doubt [rad]. Of 40 simulated
  * scans in a map, 11 ended tilted by half a radian where the prior's is 0.35, and one
@@ -135,8 +137,10 @@ heldInPlane(const Prior& prior, const SurfaceModel& source, const SurfaceModel& 
   const Vector3d aside = prior.referencePoint() - source.origin();
   plane.source_point =
       prior.referencePoint() - plane.source_normal * plane.source_normal.dot(aside);
-  plane.distance_sd = slack * target.medianSigma();
-  plane.angle_sd = plane.distance_sd / spreadOf(source.tree().points());
+  plane.distance_sd =
+      slack * std::max(spreadOf(source.tree().points()),
+                       std::sqrt(prior.variance().head<3>().maxCoeff()));
+  plane.angle_sd = slack;
   const Isometry3d mean = laidInPlane(isometryOf(prior.mean()), plane);
   HeldPrior held(Prior(poseOf(mean.matrix()), prior.variance(), plane.source_point));
   held.plane = plane;

@@ -39,6 +39,18 @@ public:
     require(value >= minimum, field, value, allowed.c_str());
   }
 
+  /** \param[in] type the enumeration's name, of whose values toString() knows all */
+  template <typename Enumeration>
+  void
+  oneOf(const char* type, const char* field, Enumeration value)
+  {
+    const std::string allowed = std::string("one of ") + type;
+    require(toString(value) != std::string("unknown"),
+            field,
+            static_cast<int>(value),
+            allowed.c_str());
+  }
+
   const std::string&
   complaint() const
   {

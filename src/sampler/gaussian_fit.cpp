@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace bayesian_icp {
 
@@ -89,8 +90,11 @@ Gaussian::Gaussian(const Vector6d& mean, const Matrix6d& precision)
 : mean_(mean)
 , precision_(symmetrized(precision))
 {
-  const Matrix6d root = Eigen::LLT<Matrix6d>(precision_).matrixL();
-  inverse_factor_ = root.transpose();
+  const Eigen::LLT<Matrix6d> root(precision_);
+  if (root.info() == Eigen::Success)
+    inverse_factor_ = root.matrixU();
+  else
+    inverse_factor_.setConstant(std::numeric_limits<double>::quiet_NaN());
   factor_ = inverse_factor_.triangularView<Eigen::Upper>().solve(Matrix6d::Identity());
 }
 

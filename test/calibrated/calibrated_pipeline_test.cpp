@@ -49,6 +49,36 @@ estimateFrom(const Scans& scans, const Options& options = calibratedOptions())
   return estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options);
 }
 
+TEST(Calibrated, APriorThatDoublePrecisionCannotHoldIsRefused)
+{
+  // The fixed origin is 2 m from the cloud, which turns about it.
+  const Eigen::Vector3d aside(2.0, 1.0, 0.5);
+  Scans scans;
+  scans.source.colwise() += aside;
+  const Eigen::Matrix3Xd target = surface(92, 6000).colwise() + aside;
+  scans.target = test::moved({0.0, 0.0, 0.0, 0.02, -0.03, 0.025}, target);
+  Options options = calibratedOptions();
+  options.prior.frame = PriorFrame::Origin;
+  for (const double variance : {1e-12, 1e-16, 1e-20}) {
+    options.prior.variance.head<3>().setConstant(variance);
+    const Summary summary = estimateFrom(scans, options).summary;
+    if (variance < 1e-14) {
+      EXPECT_EQ(summary.status, Status::InvalidOptions) << variance;
+      EXPECT_NE(summary.message.find("double precision"), std::string::npos);
+      continue;
+    }
+    EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+    EXPECT_TRUE(summary.covariance(CovarianceConvention::R3xSO3).allFinite());
+  }
+  // A robot in its plane, whose sensor is tilted.
+  options.prior.variance << 0.01, 0.01, 1e-24, 1e-24, 1e-24, 0.01;
+  const Vector6d tilted{0.0, 0.0, 0.0, 0.1, 0.3, 0.2};
+  scans.target = test::moved(tilted, target);
+  const Summary summary =
+      estimatePosterior(scans.source, scans.target, tilted, options).summary;
+  EXPECT_EQ(summary.status, Status::Ok) << summary.message;
+}
+
 TEST(Calibrated, APreparedCloudIsForManySourcesPresetsAndThreads)
 {
   const Scans scans;

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
 
 namespace bayesian_icp {
@@ -16,12 +18,14 @@ using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
+/** \param[in] noise of the ranges [m] */
 simulator::SimulationOptions
-scannerIn(const std::string& scene, std::uint64_t seed)
+scannerIn(const std::string& scene, std::uint64_t seed, double noise = 0.02)
 {
   simulator::SimulationOptions options = simulator::defaultOptions(scene);
   options.sensor.kind = simulator::SensorKind::Lidar;
   options.sensor.lidar.azimuth_step = 0.25;
+  options.sensor.lidar.range_noise = noise;
   options.sensor.lidar.rings = 1;
   options.sensor.lidar.min_elevation = options.sensor.lidar.max_elevation = 0.0;
   options.frame = simulator::CloudFrame::Sensor;
@@ -32,9 +36,9 @@ scannerIn(const std::string& scene, std::uint64_t seed)
 
 /** Two scans of a robot that has moved by about 15 cm and 0.1 rad. */
 struct Scans {
-  Scans(const std::string& scene, std::uint64_t seed)
+  Scans(const std::string& scene, std::uint64_t seed, double noise = 0.02)
   {
-    simulator::SimulationOptions options = scannerIn(scene, seed);
+    simulator::SimulationOptions options = scannerIn(scene, seed, noise);
     Random random(seed, 77);
     const Vector6d motion = random.normal6();
     options.source_view = options.target_view;
@@ -187,6 +191,41 @@ TEST(FlatClouds, HaveTheSamePosteriorInAnyPlaneWithATightTilt)
     EXPECT_NEAR(sdOf(estimate, in_turned[std::size_t(i)]), sd, 0.4 * sd);
   }
   EXPECT_NEAR(estimate.summary.mean[4], level.truth[5], 5.0 * sdOf(expected, 5));
+}
+
+/** The direction in which points are spread most. */
+Vector3d
+longestAxis(const Matrix3Xd& points)
+{
+  const Matrix3Xd offsets = points.colwise() - points.rowwise().mean();
+  const Matrix3d scatter = offsets * offsets.transpose();
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(scatter).eigenvectors().col(2);
+}
+
+TEST(FlatClouds, KeepTheirFreeMotionInAPlaneObliqueToTheAxes)
+{
+  // So little noise that the held motions are known far better than the free one.
+  const Matrix3d R = rotationOf({0.0, 0.0, 0.0, 0.5, 0.4, 0.7});
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Scans scans("tunnel", seed, seed % 2 ? 0.001 : 0.003);
+    const Vector3d level_along = longestAxis(scans.target);
+    const Vector3d along = R * level_along;
+    const Vector3d across = R * Vector3d::UnitZ().cross(level_along);
+    const Vector3d motion = R * scans.truth.head<3>();
+    scans.source = (R * scans.source).eval();
+    scans.target = (R * scans.target).eval();
+    const Summary summary = scans.estimate().summary;
+    ASSERT_EQ(summary.status, Status::Ok) << seed << ": " << summary.message;
+    const Matrix3d covariance =
+        summary.covariance(CovarianceConvention::R3xSO3).topLeftCorner<3, 3>();
+    const double sd_along = std::sqrt(along.dot(covariance * along));
+    const double sd_across = std::sqrt(across.dot(covariance * across));
+    // The prior's, to within what draws of four chains with one magnitude say of it.
+    EXPECT_NEAR(sd_along, std::sqrt(0.125), 0.2 * std::sqrt(0.125)) << seed;
+    EXPECT_LT(sd_across, 0.05) << seed;
+    EXPECT_LT(std::abs(across.dot(summary.mean.head<3>() - motion)), 4.5 * sd_across)
+        << seed;
+  }
 }
 
 TEST(FlatClouds, AreRecognisedByFewBeams)

@@ -188,6 +188,24 @@ TEST(Exact, ASearchOfTheUsersOwnGivesTheSamePosterior)
   }
 }
 
+TEST(Exact, TwoTargetPointsHaveNoSurface)
+{
+  const Scans scans;
+  Options options = exactOptions();
+  const auto statusWith = [&](Residual residual) {
+    options.exact.residual.residual = residual;
+    return estimatePosterior(scans.source,
+                             KdTree(scans.target.points().leftCols(2)),
+                             Vector6d::Zero(),
+                             options)
+        .summary.status;
+  };
+  EXPECT_NE(statusWith(Residual::PointToPoint), Status::TooFewCorrespondences);
+  EXPECT_EQ(statusWith(Residual::PointToPlane), Status::TooFewCorrespondences);
+  EXPECT_EQ(statusWith(Residual::DistributionToDistribution),
+            Status::TooFewCorrespondences);
+}
+
 TEST(Exact, OptionsAreChecked)
 {
   const auto complaintOf = [](const std::function<void(Options&)>& set) {
@@ -201,6 +219,18 @@ TEST(Exact, OptionsAreChecked)
   };
   expect("preset is 7", [](Options& o) { o.preset = static_cast<Preset>(7); });
   expect("frame is 9", [](Options& o) { o.prior.frame = static_cast<PriorFrame>(9); });
+  expect("residual is 3",
+         [](Options& o) { o.exact.residual.residual = static_cast<Residual>(3); });
+  expect("kernel is 3",
+         [](Options& o) { o.exact.residual.kernel = static_cast<RobustKernel>(3); });
+  expect("regularization is -1", [](Options& o) {
+    o.exact.residual.regularization = static_cast<CovarianceRegularization>(-1);
+  });
+  expect("steps is 9", [](Options& o) { o.exact.steps = static_cast<ExactSteps>(9); });
+  expect("sampling is 5", [](Options& o) {
+    o.preset = Preset::Paper;
+    o.paper.sampling = static_cast<MiniBatchSampling>(5);
+  });
   expect("variance[y]", [](Options& o) { o.prior.variance[1] = 1e-25; });
   expect("kernel_width", [](Options& o) { o.exact.residual.kernel_width = 0.0; });
   expect("max_distance", [](Options& o) { o.exact.residual.max_distance = -1.0; });
