@@ -208,7 +208,9 @@ and --prior-variance describe the first motion, from scan 0 to scan 1. If scan 0
 lies in a plane, as that of a 2-D laser scanner does, the sensor stays in it.
 
 If the status is not ok, the registration is repeated as if the velocity were as
-unknown as at the start, and the better result is used.
+unknown as at the start, and the better result is used. ICP is not run:
+--iterations, --reciprocal, --one-to-one and --mean are errors, and so is
+--max-distance with preset calibrated.
 
 If a scan is registered with status doubtful, its standard deviations are
 tripled ("widened"). A scan that cannot be registered, or that has the flag

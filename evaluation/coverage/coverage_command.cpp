@@ -62,8 +62,9 @@ scores and deviations of the six coordinates of a twist about the source's
 centroid, mean displacement of the source's points [m], time,
 nearest-neighbour queries, flags. The table goes to standard output, progress
 to standard error.
-For recordings, the prior is the default one about a guess. Log scores are in
-metres and radians, and at least -50 for a pair. The table counts lost pairs
+For recordings, the prior is the default one about a guess, with the source's
+centroid as its origin. Log scores are in metres and radians, and at least -50
+for a pair. The table counts lost pairs
 (displaced by more than the recording's limit; NEES/6 leaves them out), alarms
 (flags on good pairs: not lost, NEES below 16.812) and misses (bad pairs
 without a flag: lost, or NEES above 27.856).

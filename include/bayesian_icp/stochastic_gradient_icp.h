@@ -47,7 +47,8 @@ struct StochasticGradientIcpOptions {
 enum class DescentEnd {
   Converged,
   MaxIterations,
-  /** A hundred mini-batches had fewer than three points with a correspondence. */
+  /** A hundred mini-batches (one, if it is the whole source) had fewer than three
+   * points with a correspondence. */
   TooFewCorrespondences,
   /** The pose became non-finite. */
   Diverged,
