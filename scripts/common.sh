@@ -13,6 +13,13 @@ num_jobs() {
   echo "${CMAKE_BUILD_PARALLEL_LEVEL:-$((memory < 1 ? 1 : memory < processors ? memory : processors))}"
 }
 
+# The option of CMake for a linker that takes a third of the time, where it is installed.
+fast_linker() {
+  if command -v ld.lld >/dev/null; then
+    echo -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld
+  fi
+}
+
 # Configures build/. Arguments go to CMake; an existing build folder keeps its generator.
 # Files are compiled several at once, which saves 40 % of a build from nothing.
 configure() {

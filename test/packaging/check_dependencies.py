@@ -5,7 +5,8 @@ import re
 import sys
 import xml.etree.ElementTree as ElementTree
 
-# Debian's packages whose key in rosdep is another name; None: comes with every ROS.
+# Debian's packages whose key in rosdep is another name; None: comes with every ROS, or the
+# scripts do without it.
 KEYS = {
     "chromium": "chromium-browser",
     "colcon": "python3-colcon-common-extensions",
@@ -18,6 +19,7 @@ KEYS = {
     "libgtsam-dev": "gtsam",
     "libnav-msgs-dev": "nav_msgs",
     "libopenmpi-dev": "mpi",
+    "lld": None,
     "libpcl-conversions-dev": "pcl_conversions",
     "libpcl-dev": "libpcl-all-dev",
     "libroscpp-dev": "roscpp",
