@@ -4,6 +4,7 @@
 //
 // Processor time, so that other work of the machine matters less; every run is timed by
 // itself, which gives the standard error of their mean.
+#include "../apps/io/clocks.h"
 #include "baselines/monte_carlo_icp.h"
 #include "benchmark_clouds.h"
 #include "geometry/twist.h"
@@ -12,7 +13,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <vector>
 
 namespace {
@@ -20,12 +20,6 @@ namespace {
 using namespace bayesian_icp;
 
 constexpr double num_paper_runs = 10000.0;
-
-double
-cpuSeconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 struct Mean {
   double value = 0.0;
@@ -54,9 +48,9 @@ timeOurs(const Eigen::Matrix3Xd& source,
   options.num_threads = 1;
   for (int i = 0; i < num_runs; ++i) {
     options.first_run = i;
-    const double begin = cpuSeconds();
+    const double begin = io::cpuSeconds();
     runs.push_back(monteCarloIcp(source, target, options).front());
-    seconds.push_back(cpuSeconds() - begin);
+    seconds.push_back(io::cpuSeconds() - begin);
   }
   return seconds;
 }
@@ -73,9 +67,9 @@ timePcl(const Cloud::Ptr& source,
   icp.setInputTarget(target);
   icp.setMaximumIterations(MonteCarloIcpOptions().icp.max_iterations);
   Cloud moved;
-  const double begin = cpuSeconds();
+  const double begin = io::cpuSeconds();
   icp.align(moved, isometryOf(run.start).matrix().cast<float>());
-  return cpuSeconds() - begin;
+  return io::cpuSeconds() - begin;
 }
 
 void

@@ -7,6 +7,7 @@
 //
 // The chains start about the given pose (identity without a file). Times are CPU time
 // of all threads, but for the scaling in threads, which is in real time.
+#include "../apps/io/clocks.h"
 #include "benchmark_clouds.h"
 
 #include <bayesian_icp/pipeline.h>
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -58,12 +58,6 @@ makeOptions(Preset preset, const Scale& scale, int num_threads = 1)
   if (scale.sigma < 0.1)
     options.exact.initial_spread = spread;
   return options;
-}
-
-double
-cpuSeconds()
-{
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 /** 1000 of them. */
@@ -129,7 +123,7 @@ secondsOfSteps(const Pair& pair, Options options)
   estimatePosterior(
       pair.source, *pair.target, pair.guess, options, [&](const Progress& progress) {
         if (progress.total_steps > 0)
-          (begin == 0.0 ? begin : end) = cpuSeconds();
+          (begin == 0.0 ? begin : end) = io::cpuSeconds();
         return true;
       });
   return end - begin;

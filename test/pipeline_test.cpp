@@ -1,7 +1,6 @@
 // The front door without PCL: options, statuses, and the posterior of small problems.
 #include "support/test_support.h"
 
-#include <bayesian_icp/diagnostics.h>
 #include <bayesian_icp/pipeline.h>
 #include <bayesian_icp/pose.h>
 

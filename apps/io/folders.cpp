@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 namespace bayesian_icp::io {
 

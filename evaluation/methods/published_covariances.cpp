@@ -1,6 +1,6 @@
 #include "methods/published_covariances.h"
 
-#include "calibrated/median.h"
+#include "sampler/median.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,4 +1,3 @@
-#include "geometry/twist.h"
 #include "io/clocks.h"
 #include "io/text_hash.h"
 #include "paper/paper_experiment.h"

@@ -1,6 +1,9 @@
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
 
+#include <boost/range/algorithm/max_element.hpp>
+#include <boost/range/algorithm/min_element.hpp>
+
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -24,18 +27,6 @@ collect(const Scores& scores, const Number& number)
   for (const Score& score : scores)
     values.push_back(std::invoke(number, score));
   return values;
-}
-
-double
-largest(const std::vector<double>& values)
-{
-  return *std::max_element(values.begin(), values.end());
-}
-
-double
-smallest(const std::vector<double>& values)
-{
-  return *std::min_element(values.begin(), values.end());
 }
 
 double
@@ -73,13 +64,13 @@ cellsOf(const std::string& sampler, const Scores& scores)
   return {sampler,
           std::to_string(scores.size()),
           numberText(median(kl), 4),
-          numberText(largest(kl), 4),
+          numberText(*boost::max_element(kl), 4),
           numberText(medianCoordinateKl(scores), 4),
           numberText(median(w1), 3),
           numberText(100.0 * shareOfGoodMarginals(scores), 0),
-          numberText(largest(rhat), 3),
-          numberText(smallest(bulk), 0),
-          numberText(smallest(tail), 0),
+          numberText(*boost::max_element(rhat), 3),
+          numberText(*boost::min_element(bulk), 0),
+          numberText(*boost::min_element(tail), 0),
           numberText(median(rate), 1),
           numberText(median(seconds), 3),
           std::to_string(num_mixed)};

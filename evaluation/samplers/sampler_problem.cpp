@@ -14,14 +14,6 @@ namespace {
 
 constexpr double half_turn = 3.14159265358979323846;
 
-ResidualOptions
-withResidual(Residual residual)
-{
-  ResidualOptions options;
-  options.residual = residual;
-  return options;
-}
-
 } // namespace
 
 Scene
@@ -39,7 +31,7 @@ readScene(const std::string& folder, const std::string& name, std::size_t max_po
 Problem::Problem(const Scene& scene, const Cell& cell, Residual residual)
 : scene_(scene)
 , cell_(cell)
-, residual_(withResidual(residual))
+, residual_{residual}
 , target_(treeTargetFor(residual_, scene.target))
 , energy_(scene.source,
           target_,

@@ -1,6 +1,7 @@
 #include "sampler/stein.h"
 
 #include "algebra/decompositions.h"
+#include "sampler/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +23,7 @@ struct Kernel {
     for (Eigen::Index i = 0; i < x.cols(); ++i)
       for (Eigen::Index j = 0; j < i; ++j)
         squared_distances.push_back(values(j, i));
-    const auto middle = squared_distances.begin() +
-                        static_cast<std::ptrdiff_t>(squared_distances.size() / 2);
-    std::nth_element(squared_distances.begin(), middle, squared_distances.end());
-    width = std::max(*middle, std::numeric_limits<double>::min()) /
+    width = std::max(medianOf(squared_distances), std::numeric_limits<double>::min()) /
             std::log(static_cast<double>(x.cols()) + 1.0);
     values = (-values / width).array().exp();
   }

@@ -15,10 +15,6 @@ struct EightFloats {
   static Vector load(const float* from) { return _mm256_load_ps(from); }
   static void store(float* to, Vector a) { _mm256_store_ps(to, a); }
   static Vector fill(float a) { return _mm256_set1_ps(a); }
-  static Vector add(Vector a, Vector b) { return _mm256_add_ps(a, b); }
-  static Vector sub(Vector a, Vector b) { return _mm256_sub_ps(a, b); }
-  static Vector mul(Vector a, Vector b) { return _mm256_mul_ps(a, b); }
-  static Vector div(Vector a, Vector b) { return _mm256_div_ps(a, b); }
   static Vector min(Vector a, Vector b) { return _mm256_min_ps(a, b); }
   static Vector max(Vector a, Vector b) { return _mm256_max_ps(a, b); }
   static unsigned lessEqual(Vector a, Vector b) { return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ))); }

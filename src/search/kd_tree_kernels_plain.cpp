@@ -12,10 +12,6 @@ struct OneFloat {
   static Vector load(const float* from) { return *from; }
   static void store(float* to, Vector a) { *to = a; }
   static Vector fill(float a) { return a; }
-  static Vector add(Vector a, Vector b) { return a + b; }
-  static Vector sub(Vector a, Vector b) { return a - b; }
-  static Vector mul(Vector a, Vector b) { return a * b; }
-  static Vector div(Vector a, Vector b) { return a / b; }
   static Vector min(Vector a, Vector b) { return b < a ? b : a; }
   static Vector max(Vector a, Vector b) { return a < b ? b : a; }
   static float smallest(Vector a) { return a; }

@@ -14,10 +14,6 @@ struct FourFloats {
   static Vector load(const float* from) { return _mm_load_ps(from); }
   static void store(float* to, Vector a) { _mm_store_ps(to, a); }
   static Vector fill(float a) { return _mm_set1_ps(a); }
-  static Vector add(Vector a, Vector b) { return _mm_add_ps(a, b); }
-  static Vector sub(Vector a, Vector b) { return _mm_sub_ps(a, b); }
-  static Vector mul(Vector a, Vector b) { return _mm_mul_ps(a, b); }
-  static Vector div(Vector a, Vector b) { return _mm_div_ps(a, b); }
   static Vector min(Vector a, Vector b) { return _mm_min_ps(a, b); }
   static Vector max(Vector a, Vector b) { return _mm_max_ps(a, b); }
   static unsigned lessEqual(Vector a, Vector b) { return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a, b))); }

@@ -4,10 +4,10 @@
  * are the nearest to a query close by (Rivals).
  *
  * Included by the kernels only. A kernel says what its vectors can do: a Pack is
- * `width` floats with load(), fill(), sub(), add(), mul(), div(), min(), max(),
- * lessEqual() and equal() (a bit for each float), smallest() and store(). Everything
- * here is in an unnamed namespace, so that no kernel's code is ever taken for
- * another's.
+ * `width` floats, which the compiler's operators add, subtract, multiply and divide,
+ * with load(), fill(), min(), max(), lessEqual() and equal() (a bit for each float),
+ * smallest() and store(). Everything here is in an unnamed namespace, so that no
+ * kernel's code is ever taken for another's.
  *
  * The kernels agree to the last bit: the same operations in the same order, none fused.
  * A rounded difference, square and sum are monotonous, so that the bound of a box,
@@ -73,7 +73,7 @@ template <typename Pack>
 inline typename Pack::Vector
 squaredNorm(typename Pack::Vector x, typename Pack::Vector y, typename Pack::Vector z)
 {
-  return Pack::add(Pack::add(Pack::mul(x, x), Pack::mul(y, y)), Pack::mul(z, z));
+  return x * x + y * y + z * z;
 }
 
 inline float
@@ -92,7 +92,7 @@ template <typename Pack>
 inline typename Pack::Vector
 pointOffset(const Leaf& leaf, std::size_t axis, std::size_t place, const float* query)
 {
-  return Pack::sub(Pack::load(leaf.coordinates[axis] + place), Pack::fill(query[axis]));
+  return Pack::load(leaf.coordinates[axis] + place) - Pack::fill(query[axis]);
 }
 
 /** Squared distances of the points of a leaf from \p place on. */
@@ -113,10 +113,9 @@ squaredReach(typename Pack::Vector squared_query_distance,
              typename Pack::Vector squared_distance,
              const Rivals& found)
 {
-  const auto excess = Pack::max(
-      Pack::sub(squared_query_distance, Pack::fill(found.threshold)), Pack::fill(0.f));
-  return Pack::div(Pack::mul(excess, excess),
-                   Pack::mul(Pack::fill(4.f), squared_distance));
+  const auto excess =
+      Pack::max(squared_query_distance - Pack::fill(found.threshold), Pack::fill(0.f));
+  return excess * excess / (Pack::fill(4.f) * squared_distance);
 }
 
 /** What points are ranked by: their squared distances, ... */
@@ -143,8 +142,8 @@ inline typename Pack::Vector
 boxOffset(const Node& node, std::size_t axis, std::size_t child, const float* query)
 {
   const auto coordinate = Pack::fill(query[axis]);
-  const auto below = Pack::sub(Pack::load(node.lower[axis] + child), coordinate);
-  const auto above = Pack::sub(coordinate, Pack::load(node.upper[axis] + child));
+  const auto below = Pack::load(node.lower[axis] + child) - coordinate;
+  const auto above = coordinate - Pack::load(node.upper[axis] + child);
   return Pack::max(Pack::max(below, above), Pack::fill(0.f));
 }
 
@@ -212,8 +211,8 @@ inline typename Pack::Vector
 farOffset(const Node& node, std::size_t axis, std::size_t child, const float* query)
 {
   const auto coordinate = Pack::fill(query[axis]);
-  return Pack::max(Pack::sub(coordinate, Pack::load(node.lower[axis] + child)),
-                   Pack::sub(Pack::load(node.upper[axis] + child), coordinate));
+  return Pack::max(coordinate - Pack::load(node.lower[axis] + child),
+                   Pack::load(node.upper[axis] + child) - coordinate);
 }
 
 /** Not above the ranks of the points in boxes. */

@@ -1,5 +1,6 @@
 #include "summary/estimates.h"
 
+#include "sampler/median.h"
 #include "summary/plain_text.h"
 
 #include <Eigen/Eigenvalues>
@@ -72,11 +73,7 @@ usualCoordinate(const Eigen::Matrix3Xd& points)
   for (const auto& point : points.colwise())
     if (point.allFinite())
       largest.push_back(point.cwiseAbs().maxCoeff());
-  if (largest.empty())
-    return 0.0;
-  const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
-  std::nth_element(largest.begin(), middle, largest.end());
-  return *middle;
+  return medianOf(std::move(largest));
 }
 
 void

@@ -6,9 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
-
-#include <numeric>
 
 namespace bayesian_icp {
 namespace {

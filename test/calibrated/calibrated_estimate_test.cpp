@@ -1,6 +1,5 @@
 #include "calibrated/calibrated_estimate.h"
 #include "calibrated/calibration_test_support.h"
-#include "calibrated/surface/even_choice.h"
 #include "search/finite_columns.h"
 #include "support/test_support.h"
 

@@ -1,9 +1,9 @@
 // Draws of preset `calibrated` on simulated scans of things with and without an axis.
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/draws/calibrated_draws.h"
-#include "calibrated/median.h"
 #include "calibrated/modes/look_alikes.h"
 #include "calibrated/modes/mode_weights.h"
+#include "sampler/median.h"
 #include "simulator/simulation.h"
 #include "summary/estimates.h"
 #include "support/test_support.h"

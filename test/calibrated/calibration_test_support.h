@@ -8,7 +8,6 @@
 #include <bayesian_icp/random.h>
 
 #include <cmath>
-#include <vector>
 
 namespace bayesian_icp {
 namespace test {

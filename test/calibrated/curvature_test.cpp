@@ -8,7 +8,6 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include <cmath>

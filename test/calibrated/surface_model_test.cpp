@@ -1,5 +1,6 @@
 #include "calibrated/calibration_test_support.h"
 #include "calibrated/surface/surface_model.h"
+#include "sampler/median.h"
 
 #include <bayesian_icp/pose.h>
 
@@ -695,13 +696,8 @@ TEST(SurfaceModel, PatchesCoverATargetEvenlyHoweverDenseItIs)
   EXPECT_NEAR(double(dense_radii.size()) / double(model.patches().size()),
               dense,
               1.0 / 31.0 + 0.01);
-  const auto middle = [](std::vector<double>& radii) {
-    std::nth_element(
-        radii.begin(), radii.begin() + Index(radii.size() / 2), radii.end());
-    return radii[radii.size() / 2];
-  };
   // 16 times as dense, four times as narrow, if neighbours were of all points.
-  EXPECT_LT(middle(other_radii) / middle(dense_radii), 1.25);
+  EXPECT_LT(medianOf(other_radii) / medianOf(dense_radii), 1.25);
 }
 
 } // namespace

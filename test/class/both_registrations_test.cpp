@@ -8,7 +8,6 @@
 
 #include <limits>
 #include <stdexcept>
-#include <vector>
 
 namespace pcl::test {
 namespace {

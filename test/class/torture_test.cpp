@@ -45,16 +45,6 @@ finiteColumns(const Eigen::Matrix3Xd& points)
   return finite.leftCols(num_finite);
 }
 
-pcl::PointCloud<pcl::PointXYZ>::Ptr
-cloudOf(const Eigen::Matrix3Xd& points)
-{
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  for (const auto& point : points.cast<float>().colwise())
-    cloud->push_back({point.x(), point.y(), point.z()});
-  cloud->is_dense = points.allFinite();
-  return cloud;
-}
-
 template <typename Scalar>
 PosteriorEstimate
 estimateOf(const TorturePair& pair, const Options& options)
@@ -65,8 +55,8 @@ estimateOf(const TorturePair& pair, const Options& options)
     icp.setMaxCorrespondenceDistance(options.exact.residual.max_distance);
   const pcl::test::QuietConsole quiet;
   pcl::test::aligned(icp,
-                     cloudOf(pair.source),
-                     cloudOf(pair.target),
+                     pcl::test::cloudOf(pair.source),
+                     pcl::test::cloudOf(pair.target),
                      matrixOf(pair.guess).template cast<Scalar>());
   PosteriorEstimate estimate;
   estimate.summary = icp.getSummary();

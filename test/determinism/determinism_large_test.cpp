@@ -11,20 +11,11 @@
 namespace bayesian_icp::test {
 namespace {
 
-pcl::PointCloud<pcl::PointXYZ>::Ptr
-cloudOf(const Eigen::Matrix3Xd& points)
-{
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
-  for (const auto& point : points.cast<float>().colwise())
-    cloud->push_back({point.x(), point.y(), point.z()});
-  return cloud;
-}
-
 TEST(DeterminismLarge, NumberOfThreadsChangesNoBit)
 {
   // A thread for every 50 000 points of a tree, and several from 32 768 queries on.
-  const auto source = cloudOf(wavySurface(96, 40000)),
-             target = cloudOf(wavySurface(97, 400000));
+  const auto source = pcl::test::cloudOf(wavySurface(96, 40000)),
+             target = pcl::test::cloudOf(wavySurface(97, 400000));
   pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ> icp;
   icp.setInputSource(source);
   icp.setNumberOfSamples(40);

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <fstream>

@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;

@@ -3,7 +3,6 @@
 #include "evaluation/evaluate_tool.h"
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>

@@ -16,7 +16,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <string>
 #include <tuple>
 

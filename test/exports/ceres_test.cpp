@@ -10,7 +10,6 @@
 #include <ceres/manifold.h>
 #include <ceres/rotation.h>
 
-#include <utility>
 #include <vector>
 
 using namespace bayesian_icp;

@@ -11,7 +11,6 @@
 
 #include <Eigen/Cholesky>
 
-#include <numeric>
 #include <utility>
 
 namespace bayesian_icp {

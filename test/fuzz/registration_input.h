@@ -10,7 +10,6 @@
 #include <bayesian_icp/stochastic_gradient_icp.h>
 
 #include <cstdint>
-#include <string_view>
 
 namespace bayesian_icp::fuzz {
 

@@ -47,6 +47,16 @@ bumpySurface(std::uint64_t seed, std::size_t num_points = 900)
   return (cloud);
 }
 
+inline Cloud::Ptr
+cloudOf(const Eigen::Matrix3Xd& points)
+{
+  Cloud::Ptr cloud(new Cloud);
+  for (const auto& point : points.cast<float>().colwise())
+    cloud->push_back({point.x(), point.y(), point.z()});
+  cloud->is_dense = points.allFinite();
+  return (cloud);
+}
+
 /** A small source-to-target motion. */
 inline bayesian_icp::Vector6d
 smallPose()

@@ -7,7 +7,6 @@
 #include "threads/for_each_piece.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,6 @@
 #include "calibrated/score/surface_score.h"
 
-#include "calibrated/median.h"
+#include "sampler/median.h"
 #include "threads/for_each_piece.h"
 
 #include <algorithm>

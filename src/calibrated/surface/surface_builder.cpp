@@ -1,8 +1,8 @@
 // SurfaceModel::build(), and its stages.
-#include "calibrated/median.h"
 #include "calibrated/surface/even_choice.h"
 #include "calibrated/surface/patch_fit.h"
 #include "calibrated/surface/surface_model.h"
+#include "sampler/median.h"
 #include "threads/first_exception.h"
 #include "threads/num_threads.h"
 
