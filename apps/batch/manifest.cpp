@@ -2,6 +2,7 @@
 
 #include "io/input_file.h"
 #include "io/json_file.h"
+#include "io/motion.h"
 #include "io/text_hash.h"
 #include "register/settings_json.h"
 
@@ -73,12 +74,13 @@ takeGuess(const JsonNode& guess, BatchPair& pair)
   if (numbers.is_string() && !guess.text().empty())
     pair.guess_file = guess.text();
   else if (numbers.is_array() && numbers.size() == 6 &&
-           std::all_of(numbers.begin(), numbers.end(), isNumber))
+           std::all_of(numbers.begin(), numbers.end(), isNumber) &&
+           io::areAnglesWithinATurn(guess.matrix<Vector6d>()))
     pair.settings.guess = matrixOf(guess.matrix<Vector6d>());
   else
     guess.refuse(
-        "the six numbers [x, y, z, roll, pitch, yaw] [m, rad] or the name of a "
-        "file with a 4x4 matrix");
+        "the six numbers [x, y, z, roll, pitch, yaw] [m, rad], angles within a turn, "
+        "or the name of a file with a 4x4 matrix");
 }
 
 void
@@ -117,11 +119,29 @@ takeDataSetEntry(const JsonNode& files, BatchPair& pair)
 void
 identify(BatchPair& pair)
 {
-  pair.settings.options.chains.num_threads = 0;
-  const std::string all = jsonOf(pair.settings).dump() + '\n' + pair.source_file +
-                          '\n' + pair.target_file + '\n' + pair.guess_file + '\n' +
-                          BAYESIAN_ICP_VERSION;
+  Settings& settings = pair.settings;
+  settings.options.chains.num_threads = 0;
+  std::string all = jsonOf(settings).dump() + '\n' + pair.source_file + '\n' +
+                    pair.target_file + '\n' + pair.guess_file + '\n' +
+                    BAYESIAN_ICP_VERSION;
+  for (const bool is_in_units_of_cloud : {settings.are_lengths_scaled,
+                                          settings.is_step_size_times_points,
+                                          settings.is_effective_points_source_size})
+    all += is_in_units_of_cloud ? '1' : '0';
   pair.settings_id = io::textOfHash(io::hashOf(all));
+}
+
+/** Whether an entry states a pose or a distance of its own. */
+bool
+hasLengths(const JsonNode& entry)
+{
+  if (entry.has("guess") || (entry.has("files") && entry["files"].has("initial_guess")))
+    return true;
+  const auto isStated = [&entry](const char* group) {
+    return entry["settings"].has(group);
+  };
+  return entry.has("settings") &&
+         (isStated("prior") || isStated("registration") || isStated("paper"));
 }
 
 BatchPair
@@ -130,6 +150,9 @@ pairOf(const JsonNode& entry, const Settings& settings, bool use_suggested_prior
   BatchPair pair;
   pair.settings = settings;
   pair.name = nameOf(entry["name"]);
+  if (settings.are_lengths_scaled && (use_suggested_prior || hasLengths(entry)))
+    throw io::UsageError("lengths of a pair are in metres, but with normalize-cloud "
+                         "those of --config are in units of the clouds");
   if (use_suggested_prior)
     pair.settings.options.prior = suggestedPrior(entry["suggested_prior_sigma"]);
   if (entry.has("files"))

@@ -25,7 +25,7 @@ public:
         const bool is_float = field.datatype == pcl::PCLPointField::FLOAT32;
         const std::size_t end =
             field.offset + (is_float ? sizeof(float) : sizeof(double));
-        if (field.name != name || field.count != 1 || !(is_float || isDouble(field)) ||
+        if (field.name != name || field.count > 1 || !(is_float || isDouble(field)) ||
             end > cloud.point_step)
           continue;
         fields_.push_back(field);

@@ -56,8 +56,17 @@ struct NumberedName {
   }
 };
 
-/** Of the same name but for the number, which is smaller. Decimals of a number are
- * none.
+/** What is in a text beside numbers, which may have decimals. */
+std::string
+withoutNumbers(std::string text)
+{
+  const auto isOfNumber = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
+  text.erase(std::remove_if(text.begin(), text.end(), isOfNumber), text.end());
+  return text;
+}
+
+/** Of the same name but for numbers, of which the first that differs is smaller.
+ * Decimals of a number are none.
  */
 bool
 isNumberedBefore(const std::string& file, const std::string& other_file)
@@ -70,8 +79,8 @@ isNumberedBefore(const std::string& file, const std::string& other_file)
       a.begin());
   const NumberedName name(a, first), other(b, first);
   const bool has_decimals = !name.before.empty() && name.before.back() == '.';
-  return !has_decimals && name.after == other.after && !name.number.empty() &&
-         name.number.size() < other.number.size();
+  return !has_decimals && withoutNumbers(name.after) == withoutNumbers(other.after) &&
+         !name.number.empty() && name.number.size() < other.number.size();
 }
 
 } // namespace

@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <fstream>
 #include <new>
+#include <random>
+#include <string>
 #include <system_error>
 
 namespace bayesian_icp::io {
@@ -24,15 +26,20 @@ namespace {
 std::string
 makeTemporaryFile(const std::string& name)
 {
-  std::string temporary_name = name + ".XXXXXX";
-  const int descriptor = mkstemp(temporary_name.data());
-  if (descriptor < 0)
-    throw FileError(name, reasonNotWritten(errno));
-  const mode_t mask = umask(0);
-  umask(mask);
-  fchmod(descriptor, 0666 & ~mask);
-  close(descriptor);
-  return temporary_name;
+  constexpr int max_attempts = 100;
+  std::random_device random;
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
+    const std::string temporary_name = name + '.' + std::to_string(random());
+    const int descriptor =
+        open(temporary_name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) {
+      close(descriptor);
+      return temporary_name;
+    }
+    if (errno != EEXIST)
+      break;
+  }
+  throw FileError(name, reasonNotWritten(errno));
 }
 
 /** Keeps other processes out of commit() to the same folder, as far as its file system

@@ -6,6 +6,9 @@
 
 #include "io/errors.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <functional>
 #include <iostream>
@@ -61,6 +64,12 @@ runProgram(
 {
   program_name = program;
   std::signal(SIGXFSZ, SIG_IGN);
+  // So that no output file takes the place of a closed standard error.
+  for (int descriptor = 0; (descriptor = open("/dev/null", O_RDONLY)) >= 0;)
+    if (descriptor > STDERR_FILENO) {
+      close(descriptor);
+      break;
+    }
   int exit_code = NotGood;
   try {
     return work();

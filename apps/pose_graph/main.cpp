@@ -114,7 +114,8 @@ check(const po::variables_map& given, const GraphCommand& command)
   const GraphRequest& request = command.request;
   if (command.output_file.empty() && command.optimized_folder.empty())
     throw io::UsageError("--output or --optimize is needed");
-  if (std::filesystem::is_directory(command.output_file))
+  std::error_code unknown;
+  if (std::filesystem::is_directory(command.output_file, unknown))
     throw io::UsageError("--output: " + io::inQuotes(command.output_file) +
                          " is a folder; --optimize takes one");
   for (const std::string& scan : request.scans)

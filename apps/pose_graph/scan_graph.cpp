@@ -113,6 +113,7 @@ private:
     pair.target_file = request_.scans.at(static_cast<std::size_t>(scans.target));
     pair.source_file = request_.scans.at(static_cast<std::size_t>(scans.source));
     pair.settings = request_.settings;
+    pair.settings.options.chains.num_threads = 0; // runBatch() shares them out
     if (edge.kind != EdgeKind::Chain) {
       const Way way =
           wayAlong(steps_, scans.target, pathBetween(scans.target, scans.source));

@@ -260,6 +260,8 @@ parseTrackCommand(int argc, const char* const* argv)
   TrackRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);
+  if (!times.source.empty())
+    io::refuseOptions(given, {"period"}, " and --times exclude each other");
   requireWithin(times.period, shortest_interval, io::time_limit, "period");
   request.settings = settingsFrom(given, command.note);
   Options& options_of_presets = request.settings.options;

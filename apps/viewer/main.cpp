@@ -43,9 +43,10 @@ readCloudOf(const std::filesystem::path& posterior_file,
 {
   if (!given.empty())
     return io::readCloud(given);
+  std::error_code unknown;
   for (const std::filesystem::path& file :
        {std::filesystem::path(named), posterior_file.parent_path() / named})
-    if (std::filesystem::exists(file))
+    if (std::filesystem::exists(file, unknown))
       return io::readCloud(file.string());
   throw io::FileError(named,
                       "no such file, though " + posterior_file.string() +

@@ -11,6 +11,7 @@ import unittest
 
 import cloud_files
 from cli_tool import FAST, ToolTest, call, run, strict_json
+from config_test import AUTHORS_CONFIG
 from faults import BATCH
 
 # About 0.3 s a pair.
@@ -200,6 +201,7 @@ class BatchRefused(BatchTest):
             ([{"name": "a", "source": "s.pcd"}], "'target' is missing"),
             ([{**good, "gues": "x"}], "unknown key 'gues'"),
             ([{**good, "guess": [1, 2]}], "six numbers"),
+            ([{**good, "guess": [0, 0, 0, 0, 0, 90]}], "angles within a turn"),
             ([{**good, "settings": {"chains": {"sed": 1}}}], "chains.sed"),
             ([{**good, "settings": {"exact": {"kernel": "huber"}}}], "exact belongs to preset"),
             ([{**good, "settings": {"chains": {"num_draws": -1}}}], "num_draws", "-1"),
@@ -209,6 +211,19 @@ class BatchRefused(BatchTest):
                 manifest = self.file("manifest.json", text)
                 self.assert_refused(3, run_batch(manifest), manifest, *parts)
         self.assert_refused(3, run_batch(self.folder / "none"), "no such file")
+
+    def test_lengths_in_two_units(self):
+        """Those of the authors' file in units of the clouds, those of a pair in metres."""
+        config = self.file("c.json", json.dumps({**AUTHORS_CONFIG, "normalize-cloud": True}))
+        self.small_pair()
+        pair = {"name": "a", "source": "source.pcd", "target": "target.pcd"}
+        for own in ({"guess": [0] * 6}, {"settings": {"registration": {"max_distance_m": 1}}}):
+            manifest = self.manifest([{**pair, **own}])
+            result = run_batch(manifest, "--config", config)
+            self.assertEqual(result.returncode, 3, result.stderr)
+            self.assertRegex(result.stderr, f"{manifest}: pair 1 .* are in units of the clouds")
+        manifest = self.manifest([{**pair, "settings": {"chains": {"seed": 3}}}])
+        self.assertIn(run_batch(manifest, "--config", config).returncode, (0, 1))
 
     def test_an_output_folder_that_cannot_be_made(self):
         """Before any pair is registered."""
@@ -325,6 +340,23 @@ class BatchResume(BatchTest):
             self.assertEqual(result.returncode, 1)
             (line,) = results_of(result.stdout).values()
             self.assertIn("0,0,0,0,0,0: no such file", line["message"])
+
+    def test_a_step_size_in_other_units(self):
+        """A number of the authors' file is multiplied, the same number of an option is not."""
+        manifest = self.seeds(2)
+        config = self.file("c.json", json.dumps(AUTHORS_CONFIG))
+        options = ["--config", config, "--samples", 40]
+        self.resumed(manifest, *options)
+        other = run_batch(manifest, *options, "--step-size", 0.003, "--results", self.results)
+        self.assertEqual(other.returncode, 3, other.stderr)
+        self.assertIn("with other settings", other.stderr)
+
+    def test_without_a_standard_error(self):
+        """Nothing of what goes there gets into the results."""
+        manifest = self.seeds(1)
+        command = [BATCH, manifest, *FAST, "--results", self.results]
+        subprocess.run(command, preexec_fn=lambda: os.close(2), check=False)
+        self.assertEqual(len(results_of(self.results.read_text())), 1)
 
     def test_results_of_something_else(self):
         manifest = self.seeds(2)

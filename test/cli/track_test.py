@@ -178,6 +178,11 @@ class TrackOfSimulatedScans(TrackTest):
         for scan in scans.iterdir():
             scan.rename(scans / f"{scan.stem.split('_')[1]}_scan.pcd")
         self.assert_refused(3, self.run_track(scans), "_scan.pcd", "by number")
+        # An index and a time, and seconds with decimals.
+        for rest in ("_1305031102.{}.pcd", ".{}.pcd"):
+            for k, scan in enumerate(sorted(scans.iterdir())):
+                scan.rename(scans / (re.split(r"[_.]", scan.name)[0] + rest.format(9 - k)))
+            self.assert_refused(3, self.run_track(scans), ".pcd", "by number")
 
 
 class TrackWithUnseenMotions(TrackTest):
@@ -333,6 +338,7 @@ class TrackUsage(TrackTest):
             (2, [target], "at least two scans"),
             (2, [*two, "--acceleration", 0], "--acceleration is 0, but must be from 1e-09 to"),
             (2, [*two, "--period", "-1"], "--period is -1"),
+            (2, [*two, "--period", "1", "--times", "names"], "--period and --times exclude"),
             (2, [*two, "--map", 0], "--map is 0"),
             (2, [*two, "--span", 0], "--span is 0"),
             (2, [*two, "--span", 2, "--map", 1], "--span excludes --map"),
