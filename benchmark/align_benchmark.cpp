@@ -55,10 +55,11 @@ readInput(fs::path folder)
       source = scans[1];
     }
   }
+  const fs::path guess = folder / "T_init.txt";
   return {folder.filename().string(),
           readCloud(source),
           readCloud(target),
-          readGuess((folder / "T_init.txt").string())};
+          readGuess(fs::exists(guess) ? guess.string() : "")};
 }
 
 template <typename Registration>

@@ -11,25 +11,37 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <random>
 #include <string>
 #include <vector>
 
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 
-/** The finite points of a .pcd file; empty if it cannot be read. */
+/** End a benchmark whose input is of no use. */
+[[noreturn]] inline void
+giveUp(const std::string& file)
+{
+  std::cerr << file << " cannot be read, or is empty\n";
+  std::exit(1);
+}
+
+/** The finite points of a .pcd file, of which there are some. */
 inline Cloud::Ptr
 readCloud(const std::string& file)
 {
   Cloud all;
   const Cloud::Ptr finite(new Cloud);
   if (pcl::io::loadPCDFile(file, all) < 0)
-    return finite;
+    giveUp(file);
   for (const auto& point : all)
     if (pcl::isFinite(point))
       finite->push_back(point);
+  if (finite->empty())
+    giveUp(file);
   return finite;
 }
 
@@ -45,16 +57,20 @@ scansIn(const std::string& folder)
   return files;
 }
 
-/** A 4 x 4 matrix in a text file; identity without a file name. */
+/** A 4 x 4 matrix in a text file; identity without a file. */
 inline Eigen::Matrix4f
 readGuess(const std::string& file)
 {
   Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+  if (file.empty())
+    return guess;
   std::ifstream stream(file);
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
       stream >> guess(row, column);
-  return stream ? guess : Eigen::Matrix4f::Identity();
+  if (!stream)
+    giveUp(file);
+  return guess;
 }
 
 /** Columns x, y, z [m]. */

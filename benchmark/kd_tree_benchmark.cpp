@@ -147,9 +147,7 @@ scenes(int argc, char** argv)
 {
   std::vector<Scene> scenes;
   if (argc > 1) {
-    const Cloud::Ptr cloud = readCloud(argv[1]);
-    if (!cloud->empty())
-      scenes.push_back(makeScene(pointsOf(*cloud)));
+    scenes.push_back(makeScene(pointsOf(*readCloud(argv[1]))));
     return scenes;
   }
   for (const int width : {144, 460, 1000, 2280})

@@ -95,12 +95,12 @@ main(int argc, char** argv)
   const std::string folder = argv[1];
   const int num_runs = argc > 2 ? std::atoi(argv[2]) : 100;
   const int num_pcl_runs = std::min(num_runs, argc > 3 ? std::atoi(argv[3]) : 5);
+  if (num_pcl_runs < 2) {
+    std::fprintf(stderr, "%s: a mean needs two runs or more\n", argv[0]);
+    return 2;
+  }
   const Cloud::Ptr source = readCloud(folder + "/source.pcd");
   const Cloud::Ptr target = readCloud(folder + "/target.pcd");
-  if (source->empty() || target->empty() || num_pcl_runs < 1) {
-    std::fprintf(stderr, "%s: no clouds, or no runs\n", folder.c_str());
-    return 3;
-  }
   std::vector<MonteCarloIcpRun> runs;
   const std::vector<double> ours = timeOurs(
       pointsOf(*source).cast<double>(), KdTree(pointsOf(*target)), num_runs, runs);

@@ -246,15 +246,14 @@ int
 main(int argc, char** argv)
 {
   benchmark::Initialize(&argc, argv);
-  const Cloud::Ptr source = argc > 2 ? readCloud(argv[1]) : Cloud::Ptr(new Cloud);
-  const Cloud::Ptr target = argc > 2 ? readCloud(argv[2]) : Cloud::Ptr(new Cloud);
-  if (source->empty() || target->empty()) {
+  if (argc < 3) {
     std::fprintf(stderr,
                  "Usage: %s source.pcd target.pcd [T_target_source.txt] "
                  "[--benchmark_...]\n",
                  argv[0]);
     return 2;
   }
+  const Cloud::Ptr source = readCloud(argv[1]), target = readCloud(argv[2]);
   const Eigen::Matrix4f guess = readGuess(argc > 3 ? argv[3] : "");
   const Pair pair{pointsOf(*source).cast<double>(),
                   std::make_shared<KdTree>(pointsOf(*target)),

@@ -46,11 +46,8 @@ std::vector<Cloud::Ptr>
 readScans(const std::string& folder)
 {
   std::vector<Cloud::Ptr> scans;
-  for (const auto& file : scansIn(folder)) {
+  for (const auto& file : scansIn(folder))
     scans.push_back(readCloud(file));
-    if (scans.back()->empty())
-      throw std::runtime_error(file + " has no points, or cannot be read");
-  }
   if (scans.size() < 2)
     throw std::runtime_error(folder + " has fewer than two .pcd files");
   return scans;
@@ -80,21 +77,28 @@ run(const Request& request)
   pcl::BayesianIterativeClosestPoint<Point, Point> icp;
   icp.setUseMeanAsFinalTransformation(true);
   icp.setNumberOfThreads(request.num_threads);
-  icp.setInputTarget(scans[0]);
+  Cloud::ConstPtr target = scans[0];
+  icp.setInputTarget(target);
   std::vector<double> latencies; // [ms]
   std::size_t num_usable = 0;
   double memory_at_tenth = 0.0;
   Cloud output;
   for (std::size_t step = 1; step <= request.num_scans; ++step) {
+    const std::size_t scan = request.is_target_kept ? 1 + step % (scans.size() - 1)
+                                                    : scanAt(step, scans.size());
+    // No two scans of a sensor are the same, and the object remembers the last two.
+    const auto source = scans[scan]->makeShared();
+    source->front().x += 1e-6f * static_cast<float>(step);
     const auto start = std::chrono::steady_clock::now();
     if (!request.is_target_kept)
-      icp.setInputTarget(scans[scanAt(step - 1, scans.size())]);
-    icp.setInputSource(scans[scanAt(step, scans.size())]);
+      icp.setInputTarget(target);
+    icp.setInputSource(source);
     icp.align(output);
     const std::chrono::duration<double, std::milli> elapsed =
         std::chrono::steady_clock::now() - start;
     latencies.push_back(elapsed.count());
-    num_usable += icp.hasConverged();
+    num_usable += bayesian_icp::hasUsableMean(icp.getSummary().status);
+    target = source;
     if (step == std::max<std::size_t>(1, request.num_scans / 10))
       memory_at_tenth = residentMemory();
     if (step % 50 == 0)

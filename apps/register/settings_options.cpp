@@ -67,14 +67,28 @@ settingsFrom(const po::variables_map& given, std::string& note)
   const std::string complaint = settings.validate();
   if (!complaint.empty())
     throw io::UsageError(complaint);
-  const ResidualOptions& residual = settings.options.exact.residual;
-  if (residual.kernel == RobustKernel::None)
-    io::refuseOptions(given, {"kernel-width"}, ": has no effect without --kernel");
-  if (residual.residual != Residual::DistributionToDistribution)
-    io::refuseOptions(
-        given,
-        {"regularization"},
-        ": has no effect without --residual=distribution-to-distribution");
+  const auto refuse = [&](bool is_refused,
+                          const std::vector<std::string>& names,
+                          const std::string& needed) {
+    if (is_refused)
+      io::refuseOptions(given, names, ": has no effect " + needed);
+  };
+  const ExactOptions& exact = settings.options.exact;
+  refuse(exact.residual.kernel == RobustKernel::None,
+         {"kernel-width"},
+         "without --kernel");
+  refuse(exact.residual.residual != Residual::DistributionToDistribution,
+         {"regularization"},
+         "without --residual=distribution-to-distribution");
+  if (settings.options.preset == Preset::Exact) {
+    refuse(!usesParticles(exact.steps), {"particles"}, "without Stein steps (--steps)");
+    refuse(usesParticles(exact.steps),
+           {"samples", "burn-in", "thinning", "max-step-size"},
+           "with Stein steps");
+    refuse(exact.steps == ExactSteps::Metropolis,
+           {"max-step-size"},
+           "with Metropolis steps");
+  }
   return settings;
 }
 

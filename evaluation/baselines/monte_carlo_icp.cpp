@@ -42,36 +42,20 @@ makeRun(const MonteCarloIcpOptions& options, int index, IcpRunner& icp)
 std::vector<MonteCarloIcpRun>
 monteCarloIcp(const Eigen::Matrix3Xd& source,
               const KdTree& target,
-              const MonteCarloIcpOptions& options,
-              const MonteCarloIcpProgress& progress)
+              const MonteCarloIcpOptions& options)
 {
   const int max_runs = std::numeric_limits<int>::max() - std::max(0, options.first_run);
   const int num_runs = std::clamp(options.num_runs, 0, max_runs);
   const int num_threads = numThreadsFor(options.num_threads, num_runs);
-  ProgressCallback callback;
-  if (progress)
-    callback = [&progress](const Progress& state) {
-      return progress(static_cast<int>(state.steps));
-    };
-  RunState state(callback, num_runs);
+  RunState state(ProgressCallback(), num_runs);
   std::vector<IcpRunner> icp(static_cast<std::size_t>(num_threads),
                              IcpRunner(source, target));
   std::vector<MonteCarloIcpRun> runs(static_cast<std::size_t>(num_runs));
-  std::vector<char> is_finished(runs.size(), 0);
   forEachChain(num_runs, num_threads, state, [&](int i) {
-    if (state.stopped())
-      return;
-    const auto place = static_cast<std::size_t>(i);
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-    runs[place] = makeRun(options, options.first_run + i, icp[thread]);
-    is_finished[place] = 1;
-    state.reportStep(i, 1, [&] { return runs[place].end; });
+    runs[static_cast<std::size_t>(i)] =
+        makeRun(options, options.first_run + i, icp[thread]);
   });
-  std::size_t num_finished = 0;
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    if (is_finished[i] != 0)
-      runs[num_finished++] = runs[i];
-  runs.resize(num_finished);
   return runs;
 }
 

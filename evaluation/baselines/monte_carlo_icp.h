@@ -9,7 +9,6 @@
 #include <bayesian_icp/pose.h>
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -45,22 +44,15 @@ struct MonteCarloIcpRun {
   double mean_squared_distance = std::numeric_limits<double>::infinity();
 };
 
-/** \brief Called with the number of finished runs, by one thread at a time, not always
- * the same one; returns false to stop. An exception stops the runs and reaches the
- * caller. */
-using MonteCarloIcpProgress = std::function<bool(int num_done)>;
-
 /** \brief Run ICP from random starts (Maken, Ramos, Ott 2020, section IV).
  * \param[in] source 3 x n, finite, source frame [m]; starts are poses about the origin
  *            of that frame
  * \param[in] target points, target frame [m]
  * \param[in] options starts, ICP and threads
- * \param[in] progress told of each finished run; may be empty
- * \return the runs in the order of their index; if stopped, those that were finished */
+ * \return the runs in the order of their index */
 std::vector<MonteCarloIcpRun>
 monteCarloIcp(const Eigen::Matrix3Xd& source,
               const KdTree& target,
-              const MonteCarloIcpOptions& options,
-              const MonteCarloIcpProgress& progress = MonteCarloIcpProgress());
+              const MonteCarloIcpOptions& options);
 
 } // namespace bayesian_icp

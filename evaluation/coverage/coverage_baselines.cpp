@@ -66,7 +66,6 @@ poseOnly(PclFit (*fit)(const PclProblem&))
     MethodResult result;
     result.is_valid = result.is_pose_only = true;
     result.mean = found.pose;
-    result.num_queries = -1;
     result.notes = found.has_converged ? "pose only" : "pose only;not converged";
     return result;
   };

@@ -240,7 +240,7 @@ realOffer(const CoverageOptions& options)
 {
   const auto pairs = std::make_shared<const RealPairs>(options.real_folder);
   Offer offer;
-  offer.sets = {{"", pairs->names(), {"real"}, {}, true}};
+  offer.sets = {{"", pairs->names(), {real_pair}, {}, true}};
   offer.seeds = seedsOf(options);
   offer.make_case = [pairs](const CoverageCaseName& name) {
     return pairs->makeCase(name.scene, name.seed);
@@ -384,6 +384,8 @@ studyOf(const CoverageOptions& options)
           name.inputs = study.make_case(name).key();
         study.cases.push_back(name);
       }
+  if (study.cases.empty())
+    throw io::FileError(options.real_folder, "has no two scans to register");
   return study;
 }
 
@@ -415,7 +417,7 @@ runCoverageCommand(int argc, const char* const* argv)
   runCoverageStudy(study, results);
   std::cout
       << "Share of truths within the regions of some probabilities, with its 95 % "
-         "interval:\n";
+         "interval\n(which counts a real pair once, for all seeds):\n";
   for (const TextTable& table : coverageTables(runsOf(study, results)))
     table.print(std::cout);
   return options->result.report();

@@ -91,7 +91,7 @@ RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
   Random random(seed, io::hashOf(name));
   CoverageCase made;
   made.scene = name;
-  made.condition = "real";
+  made.condition = real_pair;
   made.seed = seed;
   made.target = pair->target;
   made.prior_sd = entry->prior_sd->vector();

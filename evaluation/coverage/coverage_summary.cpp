@@ -10,6 +10,8 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <set>
+#include <string>
 
 namespace bayesian_icp::evaluate {
 
@@ -63,21 +65,37 @@ medianOf(const Scores& scores, const Number& number)
 }
 
 Share
-shareOfFlagged(const Scores& scores)
+shareOfFlagged(const Scores& scores, std::size_t most_independent)
 {
-  return shareOf(select(scores, &CoverageScore::isFlagged).size(), scores.size());
+  return shareOf(select(scores, &CoverageScore::isFlagged).size(),
+                 scores.size(),
+                 most_independent);
 }
 
 /** Share of the scores with the truth within the region of probability \p level. */
 Share
-shareWithin(const Scores& scores, double level)
+shareWithin(const Scores& scores, double level, std::size_t most_independent)
 {
   const auto regions = collect(scores, &CoverageScore::region);
   const auto num_within =
       std::count_if(regions.begin(), regions.end(), [level](double region) {
         return region <= level;
       });
-  return shareOf(static_cast<std::size_t>(num_within), regions.size());
+  return shareOf(
+      static_cast<std::size_t>(num_within), regions.size(), most_independent);
+}
+
+/** Number of different pairs of scans if the runs are of real ones. */
+std::size_t
+mostIndependent(const std::vector<CoverageRun>& runs)
+{
+  std::set<std::string> pairs;
+  for (const CoverageRun& run : runs) {
+    if (run.name.condition != real_pair)
+      return runs.size();
+    pairs.insert(run.name.scene);
+  }
+  return pairs.size();
 }
 
 void
@@ -99,13 +117,13 @@ countDoubts(const Scores& scores, CoverageSummary& summary)
 } // namespace
 
 Share
-shareOf(std::size_t num_hits, std::size_t num_trials)
+shareOf(std::size_t num_hits, std::size_t num_trials, std::size_t most_independent)
 {
   if (num_trials == 0)
     return {nan, nan, nan};
   static const double z = boost::math::quantile(boost::math::normal(), 0.975);
-  const auto n = static_cast<double>(num_trials);
-  const double share = static_cast<double>(num_hits) / n;
+  const double share = static_cast<double>(num_hits) / static_cast<double>(num_trials);
+  const auto n = static_cast<double>(std::min(num_trials, most_independent));
   const double centre = (share + z * z / (2.0 * n)) / (1.0 + z * z / n);
   const double half_width =
       z / (1.0 + z * z / n) *
@@ -123,6 +141,7 @@ summaryOf(const std::vector<CoverageRun>& runs)
   const Scores found = select(scores, [](const auto& s) { return !s.isLost(); });
   const Scores posed = select(scores, &CoverageScore::hasPose);
   const Scores outside = select(posed, [](const auto& s) { return s.region > 0.95; });
+  const std::size_t most_independent = mostIndependent(runs);
   CoverageSummary summary;
   summary.num_runs = runs.size();
   summary.num_valid = select(scores, &CoverageScore::is_valid).size();
@@ -130,13 +149,13 @@ summaryOf(const std::vector<CoverageRun>& runs)
   countDoubts(scores, summary);
   summary.anees = meanOf(found, [](const auto& s) { return s.nees / 6.0; });
   for (std::size_t i = 0; i < coverage_levels.size(); ++i)
-    summary.coverage[i] = shareWithin(scores, coverage_levels[i]);
+    summary.coverage[i] = shareWithin(scores, coverage_levels[i], most_independent);
   summary.mean_log_score = meanOf(scores, &CoverageScore::log_score);
   summary.mean_energy_score = meanOf(scores, &CoverageScore::energy_score);
   summary.translation_error = medianOf(scores, &CoverageScore::translation_error);
   summary.rotation_error = medianOf(scores, &CoverageScore::rotation_error);
-  summary.flagged = shareOfFlagged(posed);
-  summary.flagged_outside = shareOfFlagged(outside);
+  summary.flagged = shareOfFlagged(posed, most_independent);
+  summary.flagged_outside = shareOfFlagged(outside, most_independent);
   summary.median_seconds = medianOf(posed, &CoverageScore::seconds);
   summary.median_queries = medianOf(posed, &CoverageScore::num_queries);
   return summary;

@@ -7,6 +7,8 @@
 #include "study/text_table.h"
 
 #include <array>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -21,9 +23,12 @@ struct Share {
   double high;
 };
 
-/** \brief The share \p num_hits of \p num_trials. */
+/** \brief The share \p num_hits of \p num_trials, of which at most
+ * \p most_independent are independent. */
 Share
-shareOf(std::size_t num_hits, std::size_t num_trials);
+shareOf(std::size_t num_hits,
+        std::size_t num_trials,
+        std::size_t most_independent = std::numeric_limits<std::size_t>::max());
 
 /** \brief Squared Mahalanobis distances of the truth (NEES) beyond which a Gaussian has
  * 1 % and 0.01 %. A run below the first that is not lost is good, one that is lost or
@@ -32,7 +37,8 @@ constexpr double max_good_nees = 16.812;
 constexpr double min_bad_nees = 27.856;
 
 /** \brief Shares, means and medians are over the runs that have the number; NaN without
- * any. */
+ * any. Seeds move a real pair and leave its points and their errors as they are, so the
+ * intervals count each pair once. */
 struct CoverageSummary {
   std::size_t num_runs = 0;
   std::size_t num_valid = 0;

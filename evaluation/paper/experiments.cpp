@@ -233,6 +233,8 @@ runtimeRunOf(const PaperProblem& problem, const PaperRunName& name)
   plan.num_threads = name.number;
   const double begin = io::wallSeconds();
   const SamplerRun made = paperMethod(name.method).run(problem, plan);
+  if (made.chains.chains.empty())
+    return {name, std::nan(""), std::nan(""), made.status};
   return {name, io::wallSeconds() - begin, made.seconds, made.status};
 }
 

@@ -24,6 +24,8 @@ struct NamedExperiment {
   /** What it does: one line, and more for --help. */
   std::string summary;
   std::string details;
+  /** Options that it has no use for. */
+  std::vector<std::string> unused;
   Experiment run;
 };
 
@@ -45,29 +47,34 @@ const std::vector<NamedExperiment> experiments = {
      R"(KL(baseline || method) of every method, next to the paper's. The baseline is the
 results of Monte Carlo ICP. Also marginal densities, pictures of the clouds, and
 scores against the true pose.)",
+     {},
      distributionExperiment},
     {"samples",
      "the same divergence as a function of the number of draws",
      "KL(baseline || draws) for 100 to 6000 draws. The default pairs are bowl "
      "and can.",
+     {},
      samplesExperiment},
     {"burn-in",
      "the same divergence as a function of the length of burn-in",
      "KL(baseline || 2000 draws) after a burn-in of 0 to 4000 draws. The default "
      "pairs\n"
      "are bowl and can.",
+     {},
      burnInExperiment},
     {"runtime",
      "seconds per 1000 draws, for 1, 2 and 4 threads",
      R"(Wall time and processor time per 1000 draws of the presets paper, exact and
 calibrated for 1, 2 and 4 threads, next to the paper's. Each pair is timed --repeats
 times. Run nothing else in the meantime.)",
+     {"threads", "baseline-runs", "start-translation", "start-rotation"},
      runtimeExperiment},
     {"accuracy",
      "errors of posterior means, SGD-ICP and ICP from random starts",
      R"(Translation and rotation error of Bayesian ICP's mean (presets paper, exact and
 calibrated), SGD-ICP and ICP to completion, from 50 starts within ±1 m, ±0.3 rad (5
 with --quick).)",
+     {"repeats", "baseline-runs", "start-translation", "start-rotation"},
      accuracyExperiment}};
 
 /** What --quick has in place of the defaults. */
@@ -114,15 +121,22 @@ describeOptions(PaperStudyOptions& options)
 }
 
 /** \param[in] help is printed before the options if it is asked for
+ * \param[in] unused as in NamedExperiment
  * \return nothing if that was help
  * \throws io::UsageError with a message for the user */
 std::optional<PaperStudyOptions>
-readPaperOptions(int argc, const char* const* argv, const std::string& help)
+readPaperOptions(int argc,
+                 const char* const* argv,
+                 const std::string& help,
+                 const std::vector<std::string>& unused)
 {
   PaperStudyOptions options;
   const auto given = readOptions(argc, argv, describeOptions(options), help);
   if (!given)
     return std::nullopt;
+  for (const std::string& name : unused)
+    if (!(*given)[name].defaulted())
+      throw io::UsageError("--" + name + ": has no effect on this experiment");
   options.has_report = given->count("no-report") == 0;
   const auto makeSmaller = [&](const char* name, int& count, int quick) {
     if (options.is_quick && (*given)[name].defaulted())
@@ -138,6 +152,7 @@ readPaperOptions(int argc, const char* const* argv, const std::string& help)
  * report made; progress goes to the standard error. */
 int
 runExperiments(const std::string& summary,
+               const std::vector<std::string>& unused,
                const Experiment& run,
                int argc,
                const char* const* argv)
@@ -148,7 +163,8 @@ runExperiments(const std::string& summary,
       readPaperOptions(argc,
                        argv,
                        std::string("Usage: pcl_bayesian_icp_evaluate ") + argv[0] +
-                           " [options]\n\n" + summary + help_of_all);
+                           " [options]\n\n" + summary + help_of_all,
+                       unused);
   if (!options)
     return 0;
   study.options = *options;
@@ -208,17 +224,19 @@ paperCommands()
       experiment.run(study);
     }
   };
-  const auto runner = [](const std::string& help, const Experiment& run) {
+  const auto runner = [](const std::string& help,
+                         const std::vector<std::string>& unused,
+                         const Experiment& run) {
     return [=](int argc, const char* const* argv) {
-      return runExperiments(help, run, argc, argv);
+      return runExperiments(help, unused, run, argc, argv);
     };
   };
   std::vector<SubCommand> commands = {
       {"paper",
        "the paper's whole evaluation: all experiments below, and a report",
-       runner(summary, runAll)}};
-  for (const auto& [name, line, details, run] : experiments)
-    commands.push_back({name, line, runner(details, run)});
+       runner(summary, {}, runAll)}};
+  for (const auto& [name, line, details, unused, run] : experiments)
+    commands.push_back({name, line, runner(details, unused, run)});
   return commands;
 }
 

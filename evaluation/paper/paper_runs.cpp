@@ -23,6 +23,15 @@ priorSd()
   return PriorOptions().variance.cwiseSqrt();
 }
 
+/** Whether the coordinates vary by more than rounding, whatever the others are. */
+bool
+isRegular(const Matrix6d& covariance)
+{
+  const auto factor = factorOf(covariance);
+  return factor && (factor->diagonal().array() / covariance.diagonal().array().sqrt())
+                           .minCoeff() > 1e-6;
+}
+
 void
 addBaselineScores(const PoseMatrix& draws,
                   const PaperBaseline& baseline,
@@ -33,8 +42,8 @@ addBaselineScores(const PoseMatrix& draws,
   run.standard_deviation = moments.covariance.diagonal().cwiseSqrt();
   if (baseline.main_ends.rows() > 1) {
     const Moments main = momentsOf(unwrapAbout(baseline.mean, baseline.main_ends));
-    // So few points have a singular covariance.
-    run.main_kl = baseline.main_ends.rows() > 6 ? gaussianKl(main, moments) : unknown;
+    // Few ends, or the same one again and again, have a singular covariance.
+    run.main_kl = isRegular(main.covariance) ? gaussianKl(main, moments) : unknown;
     for (int k = 0; k < 6; ++k)
       run.main_coordinate_kl[k] = gaussianKl(main, moments, k);
   }
@@ -92,6 +101,8 @@ distributionRunOf(const PaperRunName& name,
 PoseMatrix
 partOf(const ChainSet& chains, const DrawPart& part)
 {
+  if (chains.chains.empty())
+    return PoseMatrix(0, 6);
   const auto num_chains = static_cast<Eigen::Index>(chains.chains.size());
   const Eigen::Index first = part.first / num_chains, count = part.count / num_chains;
   std::vector<PoseMatrix> parts;

@@ -24,17 +24,17 @@ def read(path):
 
 def read_folder(folder):
     """The CSV files of a folder by their names, without .csv."""
-    return {path.stem: read(path) for path in sorted(folder.glob("*.csv"))}
+    return {path.stem: read(path) for path in sorted(folder.glob("*.csv")) if path.is_file()}
 
 
 def spread_of(values):
-    """Mean and standard deviation of the finite ones, how many those are, and of how many.
-    Where none is finite, unknown ones do not count."""
+    """Mean and standard deviation (NaN of one) of the finite ones, how many those are, and of how
+    many. Where none is finite, unknown ones do not count."""
     values = np.asarray(values, float)
     finite = values[np.isfinite(values)]
     if not finite.size:
         return (np.nan, 0.0, 0, np.isinf(values).sum())
-    sd = finite.std(ddof=1) if finite.size > 1 else 0.0
+    sd = finite.std(ddof=1) if finite.size > 1 else np.nan
     return (finite.mean(), sd, finite.size, values.size)
 
 
@@ -46,11 +46,11 @@ def short(value):
 
 
 def spread_text(spread):
-    """As "0.387 ± 0.199"; says how many values were finite if not all."""
+    """As "0.387 ± 0.199", or "0.387" of one value; says how many values were finite if not all."""
     mean, sd, num_finite, num_values = spread
     if num_finite == 0:
         return "infinite" if num_values else "-"
-    text = f"{short(mean)} ± {short(sd)}"
+    text = short(mean) if np.isnan(sd) else f"{short(mean)} ± {short(sd)}"
     return text if num_finite == num_values else f"{text} ({num_finite} of {num_values} finite)"
 
 

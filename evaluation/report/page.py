@@ -158,12 +158,14 @@ class Output:
     def commit(self):
         """Raises ValueError with the name of the file that cannot be written."""
         temporary = {}
+        mask = os.umask(0)
+        os.umask(mask)
         try:
             for name, data in self.files.items():
                 handle, temporary[name] = tempfile.mkstemp(dir=self.folder, prefix=".report")
                 with open(handle, "wb") as file:
                     file.write(data)
-                os.chmod(temporary[name], 0o644)
+                os.chmod(temporary[name], 0o666 & ~mask)
             for name in self.files:
                 os.replace(temporary[name], self.folder / name)
                 del temporary[name]

@@ -208,7 +208,7 @@ def sections_of(output, tables):
     record_of = study["experiments"] if study else {}
     rows_of = {}
     for name in ("distribution", "samples", "burn_in", "runtime", "accuracy"):
-        if name in tables:
+        if name in tables and {"key", "pair", "seed"} <= set(tables[name].columns):
             rows = chosen(tables[name], record_of.get(name))
             if len(rows):
                 rows_of[name] = rows

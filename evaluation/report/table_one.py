@@ -48,7 +48,8 @@ def order_of(bayesian, online):
     """Which of two spreads is nearer to the baseline. Undecided where the means differ by no
     more than the root of the summed variances; the mean is infinite if a value is."""
     means = [s[0] if s[2] == s[3] else np.inf for s in (bayesian, online)]
-    if not abs(means[0] - means[1]) > np.hypot(bayesian[1], online[1]):
+    difference = abs(means[0] - means[1])
+    if not (difference == np.inf or difference > np.hypot(bayesian[1], online[1])):
         return UNDECIDED
     return BAYESIAN_LOWER if means[0] < means[1] else ONLINE_LOWER
 

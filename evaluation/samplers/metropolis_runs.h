@@ -20,7 +20,7 @@ using EnergyFunction = std::function<double(const Vector6d&)>;
 /** \brief U(x), and its gradient into the second argument. */
 using GradientFunction = std::function<double(const Vector6d&, Vector6d&)>;
 
-/** \brief Position and energy of a chain, and how often it moved. */
+/** \brief Position and energy of a chain. */
 class MetropolisState {
 public:
   MetropolisState(const Vector6d& start, EnergyFunction energy, Random random);

@@ -76,11 +76,12 @@ cellsOf(const std::string& sampler, const Scores& scores)
           std::to_string(num_mixed)};
 }
 
-/** "paper" of "paper 1e-05". */
+/** "paper" of "paper 1e-05": the samplers that differ by their step size. */
 std::string
 familyOf(const std::string& sampler)
 {
-  return sampler.substr(0, sampler.find(' '));
+  const std::string family = sampler.substr(0, sampler.find(' '));
+  return family == "paper" || family == "mala" ? family : sampler;
 }
 
 /** Step sizes that were tried less often than others of the family are left out. */

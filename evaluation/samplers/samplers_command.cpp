@@ -175,6 +175,8 @@ readSamplersOptions(int argc, const char* const* argv)
   const auto given = readOptions(argc, argv, describeOptions(options), samplers_help);
   if (!given)
     return std::nullopt;
+  if (options.scenes.empty())
+    throw io::UsageError("--scenes names no scene");
   if (options.is_quick) {
     if ((*given)["scenes"].defaulted())
       options.scenes = {"can"};
@@ -370,19 +372,20 @@ runSamplersCommand(int argc, const char* const* argv)
   if (!options)
     return 0;
   io::silencePcl();
+  std::vector<Scene> scenes;
+  for (const std::string& name : options->scenes)
+    scenes.push_back(readScene(
+        options->data_folder, name, static_cast<std::size_t>(options->num_points)));
   ResultFile results(options->result.file);
   bool all_converged = true;
   std::set<std::string> keys;
-  for (const std::string& name : options->scenes) {
-    const Scene scene = readScene(
-        options->data_folder, name, static_cast<std::size_t>(options->num_points));
+  for (const Scene& scene : scenes)
     for (const Cell& cell : options->cells) {
       const Problem problem(scene, cell, options->residual);
       ProblemStudy study{problem, *options, results};
       all_converged &= study.run();
       keys.insert(study.gold_key);
     }
-  }
   std::vector<ScoredRun> runs = results.runs();
   boost::range::remove_erase_if(runs, [&keys](const ScoredRun& run) {
     return keys.count(run.name.gold_key) == 0;

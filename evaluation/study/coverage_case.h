@@ -17,6 +17,9 @@
 
 namespace bayesian_icp::evaluate {
 
+/** \brief The condition of pairs of real scans, which seeds only displace. */
+constexpr const char* real_pair = "real";
+
 /** \brief Two scans whose relative pose was drawn from the prior. The prior is about
  * the source's centroid (PriorFrame::SourceCentroid) with mean \p prior_mean. */
 struct CoverageCase {

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 
 namespace bayesian_icp::evaluate {
 
@@ -23,7 +24,7 @@ namespace {
 constexpr std::uint64_t max_manifest_size = 16 << 20;
 constexpr double radians_per_degree = 3.14159265358979323846 / 180.0;
 
-/** \throws nlohmann::json::exception */
+/** \throws std::exception */
 ManifestEntry
 entryOf(const nlohmann::json& json)
 {
@@ -36,6 +37,10 @@ entryOf(const nlohmann::json& json)
   entry.initial_guess = files.value("initial_guess", "");
   if (const auto prior = json.find("suggested_prior_sigma"); prior != json.end())
     entry.prior_sd = {prior->at("translation_m"), prior->at("rotation_rad")};
+  const AxisDeviation sd = entry.prior_sd.value_or(AxisDeviation{1.0, 1.0});
+  if (!(sd.translation > 0.0 && sd.rotation > 0.0))
+    throw std::runtime_error("suggested_prior_sigma of " + io::inQuotes(entry.name) +
+                             " must be positive");
   const auto& accuracy = json.at("ground_truth_accuracy");
   // The manifest's are of the whole vector.
   entry.truth_sd.translation =
@@ -74,10 +79,14 @@ readManifest(const std::string& folder)
   const nlohmann::json manifest = io::readJson(file, max_manifest_size);
   std::vector<ManifestEntry> entries;
   try {
-    for (const auto& json : manifest)
-      entries.push_back(entryOf(json));
+    for (const auto& json : manifest) {
+      const ManifestEntry entry = entryOf(json);
+      if (findNamed(entries, entry.name) != nullptr)
+        throw std::runtime_error("has two pairs " + io::inQuotes(entry.name));
+      entries.push_back(entry);
+    }
   }
-  catch (const nlohmann::json::exception& error) {
+  catch (const std::exception& error) {
     throw io::FileError(file, error.what());
   }
   return entries;

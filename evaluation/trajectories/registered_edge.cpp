@@ -23,19 +23,26 @@ namespace {
 constexpr int min_closure_gap = 10, scans_between_closures = 5;
 constexpr Eigen::Index max_baseline_points = 5000;
 
-/** \throws std::runtime_error if the method has no covariance */
+/** \throws std::runtime_error if a graph cannot use the covariance */
 void
-take(const TwistGaussian& posterior, EdgeRun& run)
+take(const Vector6d& mean, const Matrix6d& covariance, EdgeRun& run)
+{
+  if (!covariance.allFinite() || covariance.llt().info() != Eigen::Success)
+    throw std::runtime_error("no covariance");
+  run.mean = mean;
+  run.covariance = covariance;
+}
+
+void
+takeTwist(const TwistGaussian& posterior, EdgeRun& run)
 {
   // exp(xi) about the centre c is T exp(Ad(T^-1 C) xi), C the shift by c.
   const Isometry3d into_source =
       posterior.mean.inverse() * Eigen::Translation3d(posterior.centre);
   const Matrix6d carry = app::adjointOf(into_source.matrix());
-  const Matrix6d covariance = carry * posterior.covariance * carry.transpose();
-  if (!covariance.allFinite() || covariance.llt().info() != Eigen::Success)
-    throw std::runtime_error("no covariance");
-  run.mean = poseOf(posterior.mean.matrix());
-  run.covariance = covariance;
+  take(poseOf(posterior.mean.matrix()),
+       carry * posterior.covariance * carry.transpose(),
+       run);
 }
 
 /** As pcl_bayesian_icp_track does.
@@ -51,8 +58,7 @@ registerCalibrated(const CoverageCase& problem, EdgeRun& run)
       app::registered(problem.source, problem.target, options, nullptr);
   if (registration.quality == app::Quality::Useless)
     throw std::runtime_error(registration.message);
-  run.mean = registration.edge.pose.mean;
-  run.covariance = registration.edge.pose.covariance;
+  take(registration.edge.pose.mean, registration.edge.pose.covariance, run);
 }
 
 void
@@ -61,9 +67,9 @@ registerBy(const std::string& method, const CoverageCase& problem, EdgeRun& run)
   if (method == "calibrated")
     registerCalibrated(problem, run);
   else if (method == "gicp")
-    take(gicpHessian(problem, max_baseline_points), run);
+    takeTwist(gicpHessian(problem, max_baseline_points), run);
   else
-    take(planeClosedForm(problem, std::nan(""), max_baseline_points), run);
+    takeTwist(planeClosedForm(problem, std::nan(""), max_baseline_points), run);
 }
 
 /** The nearest scan long before \p source, or -1. */

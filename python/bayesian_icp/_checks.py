@@ -20,8 +20,8 @@ def numbers(name: str, value: ArrayLike, *shapes: tuple[Any, ...]) -> NDArray[np
         if np.asarray(value).dtype.kind not in "biuf":
             raise TypeError
         given = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name} is {value!r}, but must be real numbers") from None
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} is {value!r}, but must be real numbers") from error
     if not any(given.shape == shape or (shape[0] is ... and given.shape[given.ndim + 1 - len(shape):] == shape[1:])
                for shape in shapes):
         allowed = " or ".join(map(str, shapes)).replace("Ellipsis", "...")

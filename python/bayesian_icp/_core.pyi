@@ -1,6 +1,6 @@
 """The core of Bayesian ICP; use it by the package bayesian_icp."""
 
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Callable, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,7 +86,6 @@ class Options:
 
 class ExportOptions:
     target_frame: str
-    source_frame: str
     timestamp_ns: int
     target_vertex: int
     source_vertex: int
@@ -190,11 +189,7 @@ class Estimate:
     @property
     def coordinates(self) -> list[CoordinateSummary]: ...
     @property
-    def num_chains(self) -> int: ...
-    @property
     def num_diverged_chains(self) -> int: ...
-    @property
-    def num_draws(self) -> int: ...
     @property
     def modes(self) -> list[tuple[PoseEstimate, float, list[int]]]: ...
     @property

@@ -23,7 +23,8 @@ def read_pcd(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     Returns
     -------
     ndarray, (N, 3), float32
-        x, y, z [m] in the order of the file, without points that are not finite.
+        x, y, z [m] in the order of the file, without points that are not finite. Far from
+        the origin 32 bits keep few digits: from 10 km on, a warning says how many.
 
     Raises
     ------
@@ -31,7 +32,7 @@ def read_pcd(path: str | os.PathLike[str]) -> NDArray[np.float32]:
         If the file cannot be read, is damaged, or has fewer than three finite points;
         the text has the file and the reason.
     """
-    return _tools.read_points(os.fspath(path))
+    return _tools.read_points(os.fsencode(path))
 
 
 read_ply = read_pcd

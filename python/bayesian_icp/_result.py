@@ -82,8 +82,8 @@ class Pose:
         ValueError
             If the posterior cannot be exported, or a name or time is bad.
         """
-        return _core.ros(self._pose, _exports(target_frame=frame_id, timestamp_ns=timestamp_ns,
-                                                  accept_unreliable=accept_unreliable))
+        return _core.ros(self._pose, _core.ExportOptions(
+            target_frame=frame_id, timestamp_ns=timestamp_ns, accept_unreliable=accept_unreliable))
 
     def to_g2o(self, *, target_vertex: int = 0, source_vertex: int = 1, accept_unreliable: bool = False) -> str:
         """A line EDGE_SE3:QUAT with information, from the target's to the source's vertex.
@@ -93,8 +93,8 @@ class Pose:
         ValueError
             If the posterior cannot be exported, or its covariance not be inverted.
         """
-        return _core.g2o(self._pose, _exports(target_vertex=target_vertex, source_vertex=source_vertex,
-                                                  accept_unreliable=accept_unreliable))
+        return _core.g2o(self._pose, _core.ExportOptions(
+            target_vertex=target_vertex, source_vertex=source_vertex, accept_unreliable=accept_unreliable))
 
     def to_gtsam(self, *, accept_unreliable: bool = False) -> str:
         """Pose (4x4), covariance and information (6x6, rotation first, body frame) as
@@ -105,7 +105,7 @@ class Pose:
         ValueError
             If the posterior cannot be exported.
         """
-        return _core.gtsam(self._pose, _exports(accept_unreliable=accept_unreliable))
+        return _core.gtsam(self._pose, _core.ExportOptions(accept_unreliable=accept_unreliable))
 
     def to_tum(self, *, timestamp_ns: int = 0, accept_unreliable: bool = False) -> str:
         """One line of a TUM trajectory: timestamp x y z qx qy qz qw.
@@ -115,8 +115,8 @@ class Pose:
         ValueError
             If the posterior cannot be exported.
         """
-        return _core.tum(self._pose, _exports(timestamp_ns=timestamp_ns,
-                                                  accept_unreliable=accept_unreliable))
+        return _core.tum(self._pose, _core.ExportOptions(
+            timestamp_ns=timestamp_ns, accept_unreliable=accept_unreliable))
 
     def __repr__(self) -> str:
         std = np.sqrt(np.diag(self.covariance()))
@@ -133,13 +133,17 @@ class Measurement(Pose):
     """What the clouds alone say about the pose: a posterior without its prior.
 
     Made by `Result.without_prior` and `Mode.without_prior`.
+
+    Attributes
+    ----------
+    num_unmeasured : int
+        Directions that the clouds do not see, 0 to 6; their deviation is 10 times the
+        prior's. 6 without a posterior.
     """
 
     def __init__(self, pose: _core.PoseEstimate, num_unmeasured: int) -> None:
         super().__init__(pose)
         self.num_unmeasured = num_unmeasured
-        """Directions that the clouds do not see, 0 to 6; their deviation is 10 times
-        the prior's. 6 without a posterior."""
 
     def _remark(self) -> str:
         return f", {self.num_unmeasured} of 6 directions unmeasured"
@@ -149,16 +153,20 @@ class Prior(Pose):
     """The prior that was sampled with, as a Gaussian about its mean T_target_source.
 
     Made by `Result.prior`. Without a posterior all numbers are NaN.
+
+    Attributes
+    ----------
+    variance : ndarray, (6,)
+        Variances of x, y, z [m^2] of the reference point, and of roll, pitch, yaw [rad^2].
+    reference_point : ndarray, (3,)
+        The point that x, y, z of the variance are about, in the source frame [m]: its
+        origin or the centroid of its points. `covariance` is about the origin.
     """
 
     def __init__(self, prior: _core.Prior) -> None:
         super().__init__(prior.estimate)
         self.variance = prior.variance
-        """(6,) variances of x, y, z [m^2] of the reference point, and of roll, pitch,
-        yaw [rad^2]."""
         self.reference_point = prior.reference_point
-        """(3,) the point that x, y, z of the variance are about, in the source frame [m]:
-        its origin or the centroid of its points. `covariance` is about the origin."""
 
 
 class _Posterior(Pose):
@@ -183,6 +191,13 @@ class Mode(_Posterior):
 
     Made by `Result.modes`. If the result has the status "several_modes", the mode has
     "doubtful", so it can be exported: it is you who chose it.
+
+    Attributes
+    ----------
+    weight : float
+        Share of the posterior, 0 to 1, good to a factor of a few.
+    chains : list of int
+        Indices of its chains, for `Result.chain`.
     """
 
     def __init__(
@@ -190,9 +205,7 @@ class Mode(_Posterior):
     ) -> None:
         super().__init__(pose, prior)
         self.weight = weight
-        """Share of the posterior, 0 to 1, good to a factor of a few."""
         self.chains = chains
-        """Indices of its chains, for `Result.chain`."""
 
     def _remark(self) -> str:
         return f", weight {self.weight:.2g}"
@@ -204,6 +217,11 @@ class Result(_Posterior):
     Made by `align`. The pose is the posterior mean, the bi-invariant mean of the draws on
     SE(3), and the covariance is their second moment about it. Without a posterior all
     numbers are NaN and `samples` is empty.
+
+    Attributes
+    ----------
+    seconds : float
+        Wall time of the run [s].
     """
 
     def __init__(
@@ -220,7 +238,6 @@ class Result(_Posterior):
         self._guess = guess
         self._num_points = num_points
         self.seconds = seconds
-        """Wall time of the run [s]."""
 
     @property
     def samples(self) -> Array:
@@ -302,21 +319,13 @@ class Result(_Posterior):
         ValueError
             If there are no draws, or a cloud has not as many points as that of the run.
         OSError
-            If the file cannot be written.
-        RuntimeError
-            If gnuplot cannot draw.
+            If the file cannot be written, or gnuplot cannot draw, as it cannot where
+            coordinates are so large that 32 bits keep no shape of the cloud.
         """
         from . import _tools
 
         _tools.write_report(self._estimate, self._options, self._guess, self.seconds,
-                            os.fspath(path), source, target, self._num_points)
+                            os.fsencode(path), source, target, self._num_points)
 
     def _remark(self) -> str:
         return f", flags: {', '.join(self.flags)}" if self.flags else ""
-
-
-def _exports(**fields: Any) -> _core.ExportOptions:
-    options = _core.ExportOptions()
-    for name, value in fields.items():
-        setattr(options, name, value)
-    return options

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._core import Estimate, Options
 
-def read_points(path: str) -> NDArray[np.float32]: ...
+def read_points(path: str | bytes) -> NDArray[np.float32]: ...
 def simulate(
     arguments: Sequence[str],
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float64]]: ...
@@ -17,7 +17,7 @@ def write_report(
     options: Options,
     guess: ArrayLike,
     seconds: float,
-    path: str,
+    path: str | bytes,
     source: Any,
     target: Any,
     num_points: tuple[int, int],

@@ -75,13 +75,8 @@ struct type_caster<bayesian_icp::Automatic<T>> {
   {
     if (!option.isGiven())
       return none().release();
-    T other; // for options that have no value
-    if constexpr (std::is_arithmetic_v<T>)
-      other = T(0);
-    else
-      other.setZero();
     const handle value =
-        make_caster<T>::cast(option.valueOr(other), return_value_policy::copy, parent);
+        make_caster<T>::cast(option.valueOr(T()), return_value_policy::copy, parent);
     if (hasattr(value, "flags")) // whoever writes into this copy would change nothing
       value.attr("flags").attr("writeable") = false;
     return value;

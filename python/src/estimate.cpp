@@ -33,15 +33,6 @@ public:
   const PreparedCloud prepared;
 };
 
-/** Says what the status InvalidOptions or InvalidInput says as an exception. */
-void
-refuseMisuse(const Summary& summary)
-{
-  if (summary.status == Status::InvalidOptions ||
-      summary.status == Status::InvalidInput)
-    throw py::value_error(summary.message);
-}
-
 PosteriorEstimate
 estimate(const std::shared_ptr<const Target>& source,
          const std::shared_ptr<const Target>& target,
@@ -58,16 +49,19 @@ estimate(const std::shared_ptr<const Target>& source,
             source->prepared, target->prepared, guess, options, progress);
       },
       observer);
-  refuseMisuse(result.summary);
+  if (result.summary.status == Status::InvalidOptions ||
+      result.summary.status == Status::InvalidInput)
+    throw py::value_error(result.summary.message);
   if (!result.prior.mean().allFinite()) // nothing was sampled with any variance
     result.prior = Prior(result.prior.mean(),
                          result.prior.mean(),
                          Eigen::Vector3d(result.prior.mean().head<3>()));
   // Presets exact and paper search among points of 32 bits.
-  if (source->is_rounded || target->is_rounded || options.preset != Preset::Calibrated)
-    doubtRounding(std::max(source->usual_coordinate, target->usual_coordinate),
-                  options,
-                  result.summary);
+  double coordinate = 0.0;
+  for (const auto& cloud : {source, target})
+    if (cloud->is_rounded || options.preset != Preset::Calibrated)
+      coordinate = std::max(coordinate, cloud->usual_coordinate);
+  doubtRounding(coordinate, options, result.summary);
   return result;
 }
 
@@ -319,12 +313,8 @@ bindEstimate(py::module_& module)
       .def_property_readonly("message", [](const E& e) { return e.summary.message; })
       .def_property_readonly("coordinates",
                              [](const E& e) { return e.summary.coordinates; })
-      .def_property_readonly("num_chains",
-                             [](const E& e) { return e.summary.num_chains; })
       .def_property_readonly("num_diverged_chains",
                              [](const E& e) { return e.summary.num_diverged_chains; })
-      .def_property_readonly("num_draws",
-                             [](const E& e) { return e.summary.num_draws; })
       .def_property_readonly("modes", &modesOf)
       .def_property_readonly("data", [](const E& e) { return e.summary.data; })
       .def_property_readonly("samples", &samplesOf)

@@ -1,6 +1,8 @@
 #include "job.h"
 
+#include <cxxabi.h>
 #include <pybind11/eigen.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <future>
@@ -41,8 +43,17 @@ bool
 hasEndedWithin(std::chrono::milliseconds time,
                const std::future<PosteriorEstimate>& result)
 {
-  const py::gil_scoped_release release;
-  return result.wait_for(time) == std::future_status::ready;
+  PyThreadState* const state = PyEval_SaveThread();
+  const bool has_ended = result.wait_for(time) == std::future_status::ready;
+  try {
+    PyEval_RestoreThread(state);
+  }
+  catch (abi::__forced_unwind&) {
+    // Python ends, and this daemon thread with it: no destructor may run without it.
+    for (;;)
+      pause();
+  }
+  return has_ended;
 }
 
 /** \return whether the observer lets it go on */

@@ -5,6 +5,7 @@
 #include <bayesian_icp/options.h>
 
 #include <string>
+#include <type_traits>
 
 namespace py = pybind11;
 
@@ -17,6 +18,12 @@ template <typename Value>
 Value
 valueOf(const py::object& value, const char* name, const char* doc)
 {
+  if constexpr (std::is_same_v<Value, Vector6d> ||
+                std::is_same_v<Value, Automatic<Vector6d>>)
+    if (!value.is_none())
+      return py::module_::import("bayesian_icp._checks")
+          .attr("numbers")(name, value, py::make_tuple(6))
+          .cast<Vector6d>();
   try {
     return value.cast<Value>();
   }
@@ -276,7 +283,6 @@ bindOptions(py::module_& module)
            "good.");
   Fields<ExportOptions>(module, "ExportOptions", "What exports need besides the pose.")
       .add("target_frame", &ExportOptions::target_frame, "Name of the target's frame.")
-      .add("source_frame", &ExportOptions::source_frame, "Name of the source's frame.")
       .add("timestamp_ns",
            &ExportOptions::timestamp_ns,
            "Time since the epoch, an integer [ns].")

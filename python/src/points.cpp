@@ -27,8 +27,15 @@ arrayOf(py::handle cloud, const std::string& name)
   if (py::bool_(masked.attr("is_masked")(points)))
     throw py::value_error(name + " has masked points; give the others alone, as in "
                                  "cloud[~cloud.mask.any(axis=1)].data");
-  auto array = py::array::ensure(points);
-  PyErr_Clear(); // lists of several lengths are no array
+  py::object as_array;
+  try {
+    as_array = py::module_::import("numpy").attr("asarray")(points);
+  }
+  catch (py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError)) // lists of several lengths are no array
+      throw;
+  }
+  const auto array = py::reinterpret_steal<py::array>(as_array.release());
   const char kind = array ? array.dtype().kind() : 'O';
   if (kind != 'f' && kind != 'i' && kind != 'u') {
     const bool is_array = py::isinstance<py::array>(cloud);

@@ -60,13 +60,9 @@ rosDict(const PoseEstimate& estimate, const ExportOptions& options)
 }
 
 /** \return \p T, if it is a rotation and a translation to the accuracy of 32 bits */
-const Eigen::MatrixXd&
-rigid(const Eigen::MatrixXd& T)
+const Eigen::Matrix4d&
+rigid(const Eigen::Matrix4d& T)
 {
-  if (T.rows() != 4 || T.cols() != 4)
-    throw py::value_error(
-        py::str("the matrix has the shape ({}, {}), but must have (4, 4)")
-            .format(T.rows(), T.cols()));
   if (!T.allFinite())
     throw py::value_error("the matrix is not finite");
   const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
@@ -94,7 +90,7 @@ bindPoses(py::module_& module)
              "4x4 T_target_source of a pose (x, y, z, roll, pitch, yaw) [m, rad].");
   module.def(
       "pose_from_matrix",
-      [](const Eigen::MatrixXd& T) { return poseOf(rigid(T)); },
+      [](const Eigen::Matrix4d& T) { return poseOf(rigid(T)); },
       py::arg("T_target_source"),
       "Pose (x, y, z, roll, pitch, yaw) [m, rad] of a 4x4 matrix [m], to the accuracy "
       "of 32 bits: its rotation is made the nearest one. ValueError if the matrix is "
@@ -142,7 +138,7 @@ bindPoses(py::module_& module)
       "exp_se3", &expSE3, py::arg("twist"), "4x4 matrix of a twist (v, w) [m, rad].");
   module.def(
       "log_se3",
-      [](const Eigen::MatrixXd& T) { return logSE3(rigid(T)); },
+      [](const Eigen::Matrix4d& T) { return logSE3(rigid(T)); },
       py::arg("transform"),
       "Twist (v, w) [m, rad] of a 4x4 matrix; ValueError as in pose_from_matrix().");
   module.def("gtsam_covariance",

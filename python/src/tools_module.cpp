@@ -30,8 +30,19 @@ using RowMajorPoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 RowMajorPoints
 readPoints(const std::string& path)
 {
-  const py::gil_scoped_release release;
-  return io::readFinitePoints(path).transpose();
+  RowMajorPoints points;
+  std::string note;
+  {
+    const py::gil_scoped_release release;
+    const io::CloudFile cloud = io::readCloud(path);
+    points = io::finitePoints(cloud).transpose();
+    note = io::noteOfLostDigits(cloud);
+  }
+  constexpr int caller_of_read_pcd = 2;
+  if (!note.empty() &&
+      PyErr_WarnEx(PyExc_UserWarning, note.c_str(), caller_of_read_pcd) != 0)
+    throw py::error_already_set();
+  return points;
 }
 
 /** The options of the command line of the simulator, which checks and explains them. */
@@ -134,7 +145,10 @@ PYBIND11_MODULE(_tools, module)
       std::rethrow_exception(std::move(failure));
     }
     catch (const io::FileError& error) {
-      PyErr_SetString(PyExc_OSError, error.what());
+      // The name of a file need not be UTF-8.
+      const auto text =
+          py::reinterpret_steal<py::object>(PyUnicode_DecodeFSDefault(error.what()));
+      PyErr_SetObject(PyExc_OSError, text.ptr());
     }
     catch (const io::UsageError& error) {
       PyErr_SetString(PyExc_ValueError, error.what());

@@ -1,4 +1,5 @@
 #include "calibrated/calibration_test_support.h"
+#include "calibrated/curvature/curvature.h"
 #include "calibrated/free_motions.h"
 #include "calibrated/modes/robust_mode.h"
 #include "support/test_support.h"

@@ -273,7 +273,7 @@ class Repeatability(ConfigTest):
         "--preset=exact --residual=point-to-plane --kernel=tukey --kernel-width=0.0301 "
         "--steps=metropolis --max-source-points=250 --seed=18446744073709551615 --samples=200",
         "--preset=exact --residual=distribution-to-distribution --regularization=frobenius "
-        "--steps=stein-gradient --particles=25 --samples=200",
+        "--steps=stein-gradient --particles=25",
         "--preset=exact --kernel=huber --guess=0.01,0,0,0,0,0.02 -d0.2 --samples=200",
         "--preset=calibrated --calibrated-points=200 --samples=300 --seed=5",
     ]

@@ -206,7 +206,6 @@ class Values(ToolTest):
             **SCALE,
             "max-step-size": ("exact", "max_step_size", 0.5),
             "steps": ("exact", "steps", "langevin"),
-            "particles": ("exact", "num_particles", 33),
             "regularization": ("exact", "regularization", "frobenius"),
             "residual": ("exact", "residual", "distribution-to-distribution"),
             "kernel": ("exact", "kernel", "tukey"),
@@ -241,12 +240,19 @@ class Values(ToolTest):
 
 
     def test_options_that_would_have_no_effect_are_refused(self):
-        for words, other in (
-            (["--kernel-width=0.05"], "--kernel"),
-            (["--regularization=frobenius", "--residual=point-to-plane"], "--residual"),
+        stein = "--steps=stein-newton"
+        for words, reason in (
+            (["--kernel-width=0.05"], "without --kernel"),
+            (["--regularization=frobenius", "--residual=point-to-plane"], "without --residual"),
+            (["--particles=50"], "without Stein steps"),
+            (["--samples=500", stein], "with Stein steps"),
+            (["--burn-in=5", stein], "with Stein steps"),
+            (["--thinning=5", stein], "with Stein steps"),
+            (["--max-step-size=0.5", stein], "with Stein steps"),
+            (["--max-step-size=0.5", "--steps=metropolis"], "with Metropolis steps"),
         ):
             result = run("a.pcd", "b.pcd", "--preset=exact", *words)
-            self.assert_refused(2, result, f"{words[0].split('=')[0]}: has no effect without", other)
+            self.assert_refused(2, result, f"{words[0].split('=')[0]}: has no effect {reason}")
 
     def test_options_of_other_presets_are_refused(self):
         for preset, own in self.OF_PRESETS.items():

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <cmath>
 #include <filesystem>
 
@@ -76,8 +78,17 @@ TEST_F(RealPairsTest, RealPosesAreDrawnFromThePrior)
 TEST_F(RealPairsTest, BadFoldersOfPairsAreNamed)
 {
   EXPECT_THROW(RealPairs((folder_ / "none").string()), io::FileError);
-  writeFile((folder_ / "manifest.json").string(), R"([{"name": "pair"}])");
-  EXPECT_THROW(RealPairs(folder_.string()), io::FileError);
+  const auto refuseManifest = [&](const std::string& manifest) {
+    writeFile((folder_ / "manifest.json").string(), manifest);
+    EXPECT_THROW(RealPairs(folder_.string()), io::FileError) << manifest;
+  };
+  refuseManifest(R"([{"name": "pair"}])");
+  writePair(folder_);
+  const std::string good = contentOf(folder_ / "manifest.json");
+  const std::string pair = good.substr(1, good.size() - 2);
+  refuseManifest('[' + pair + ',' + pair + ']');
+  refuseManifest(boost::replace_all_copy(good, "0.2", "0"));
+  refuseManifest(boost::replace_all_copy(good, "0.2", "-0.2"));
   writePair(folder_);
   writeFile((folder_ / "pair/truth.txt").string(), "1 0 0 0\n0 1 0 0\n");
   EXPECT_THROW(RealPairs(folder_.string()).makeCase("pair", 1), io::FileError);

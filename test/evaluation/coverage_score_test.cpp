@@ -331,6 +331,25 @@ TEST(CoverageSummary, IntervalIsWilsons)
   EXPECT_TRUE(std::isnan(shareOf(0, 0).value));
 }
 
+TEST(CoverageSummary, IntervalsCountAPairOfRealScansOnce)
+{
+  // All ten seeds of one of two pairs are outside.
+  std::vector<CoverageRun> runs(20);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    runs[i].name.condition = real_pair;
+    runs[i].name.scene = i < 10 ? "one" : "two";
+    runs[i].score.region = i < 10 ? 0.3 : 0.99;
+  }
+  const Share one_of_two = shareOf(1, 2);
+  const Share share = summaryOf(runs).coverage.back();
+  EXPECT_EQ(share.value, 0.5);
+  EXPECT_EQ(share.low, one_of_two.low);
+  EXPECT_EQ(share.high, one_of_two.high);
+  for (CoverageRun& run : runs)
+    run.name.condition = "clean";
+  EXPECT_EQ(summaryOf(runs).coverage.back().low, shareOf(10, 20).low);
+}
+
 TEST(CoverageSummary, CountsFlagsAmongRunsOutside)
 {
   std::vector<CoverageRun> runs(5);

@@ -153,10 +153,12 @@ TEST_F(EvaluateCommands, BadOptionsExitWithTwoAndLeaveNothing)
         "--particles 9.5",
         "--residual plane",
         "--gold-seconds 0",
+        "--scenes ''",
         "--output ''"}},
       {"paper", of_paper},
       {"samples", of_paper},
-      {"accuracy", {"--repeats 0"}},
+      {"accuracy", {"--repeats 3", "--baseline-runs 100", "--start-rotation 1"}},
+      {"runtime", {"--threads 2", "--start-translation 1"}},
       {"report", {"", "a b", "--quick"}}};
   for (const auto& [command, lines] : commands)
     for (const std::string& arguments : lines) {
@@ -179,7 +181,10 @@ TEST_F(EvaluateCommands, BadFilesExitWithThreeAndAreNamed)
       {"coverage --real missing", "missing"},
       {"sbc --runs 1 --output other.csv", "other.csv"},
       {"sbc --runs 1 --output rank.csv", "rank.csv"},
-      {"samplers --output other.csv", "other.csv"},
+      {"samplers --scenes can --output other.csv --data '" BAYESIAN_ICP_DATA_DIR "'",
+       "other.csv"},
+      {"samplers --scenes can,typo --output new.csv --data '" BAYESIAN_ICP_DATA_DIR "'",
+       "typo"},
       {"accuracy --quick --pairs mug --output . --data '" BAYESIAN_ICP_DATA_DIR "'",
        "accuracy.csv"},
       {"paper --data nowhere", "nowhere"},
@@ -190,6 +195,7 @@ TEST_F(EvaluateCommands, BadFilesExitWithThreeAndAreNamed)
     EXPECT_EQ(result.exit_code, 3) << command << ": " << result.output;
     expectIn(result.output, piece);
   }
+  EXPECT_FALSE(fs::exists(folder_ / "new.csv"));
 }
 
 TEST_F(EvaluateCommands, EachHasAHelp)

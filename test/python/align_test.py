@@ -45,7 +45,7 @@ GUESS = bayesian_icp.matrix_from_pose([0.02, -0.01, 0.01, 0.05, -0.05, 0.1]).ast
 def test_draws_are_those_of_the_program_to_the_last_bit(preset, rivals, mug, program, tmp_path):
     options = bayesian_icp.Options()
     options.chains.num_draws = 400
-    lines = ["--preset", preset, "--seed", 7, "--samples", 400, "--prior-variance", 0.04]
+    lines = ["--preset", preset, "--seed", 7, "--prior-variance", 0.04]
     if preset == "exact":
         options.exact.scale.measurement_sigma = 0.05
         lines += ["--sigma", 0.05]
@@ -56,6 +56,8 @@ def test_draws_are_those_of_the_program_to_the_last_bit(preset, rivals, mug, pro
         options.exact.num_particles = 40
         lines += ["--residual", "distribution-to-distribution", "--regularization", "frobenius",
                   "--steps", "stein-newton", "--particles", 40]
+    else:
+        lines += ["--samples", 400]
     np.savetxt(tmp_path / "guess.txt", GUESS, fmt="%.17g")
     data = os.path.join(os.path.dirname(__file__), "../../data/mug/")
     expected = draws_of_program(program, tmp_path / "out", data + "source.pcd", data + "target.pcd",
@@ -204,6 +206,35 @@ def test_a_forked_process_registers_too(mug, result):
     with multiprocessing.get_context("fork").Pool(1) as pool:
         mean = pool.apply_async(mean_of, [mug[:2]]).get(timeout=60)
     assert np.array_equal(mean, result.mean)
+
+
+DAEMON = """
+import threading, time, bayesian_icp
+scans = bayesian_icp.simulate("mug")
+options = bayesian_icp.Options()
+options.chains.num_draws = 10_000_000
+run = lambda: bayesian_icp.align(source=scans.source, target=scans.target, options=options)
+threading.Thread(target=run, daemon=True).start()
+time.sleep(0.5)
+"""
+
+
+def test_a_program_may_end_during_a_registration(python):
+    assert subprocess.run([*python, "-c", DAEMON], timeout=60).returncode == 0
+
+
+def test_digits_are_doubted_of_the_cloud_that_lost_them(mug):
+    source, target, _ = mug
+    far = np.array([0, 2e4, 0])
+    guess = np.eye(4)
+    guess[:3, 3] = far
+
+    def status(target):
+        result = bayesian_icp.align(source=source, target=target, init_T_target_source=guess)
+        return result.status, "in 32 bits" in result.message
+
+    assert status(target + far) == ("ok", False)
+    assert status((target + far).astype(np.float32))[1]
 
 
 INTERRUPTED = """

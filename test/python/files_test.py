@@ -21,6 +21,24 @@ def test_reads_finite_points(tmp_path):
     assert bayesian_icp.read_pcd(str(file)).dtype == np.float32
 
 
+def test_warns_of_digits_that_are_lost(tmp_path):
+    file = tmp_path / "far.pcd"
+    header = "VERSION .7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\nHEIGHT 1\nPOINTS 3\nDATA ascii\n"
+    file.write_text(header + "500000.1 5000000.1 0\n500001.2 5000001 0\n500003 5000002 0\n")
+    with pytest.warns(UserWarning, match="far.pcd: .* are kept to 0.5 m only") as warned:
+        bayesian_icp.read_pcd(file)
+    assert warned[0].filename == __file__
+
+
+def test_names_of_files_need_not_be_utf_8(mug, tmp_path):
+    name = os.path.join(os.fsencode(tmp_path), b"caf\xe9.pcd")
+    with pytest.raises(OSError, match="caf\udce9.pcd"):
+        bayesian_icp.read_pcd(name)
+    with open(name, "wb") as file:
+        file.write((DATA / "mug" / "source.pcd").read_bytes())
+    assert np.array_equal(bayesian_icp.read_pcd(os.fsdecode(name)), mug[0])
+
+
 def test_reads_ply(tmp_path):
     file = tmp_path / "cloud.ply"
     file.write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

@@ -46,6 +46,14 @@ def test_bad_clouds(cloud, error, pattern):
         bayesian_icp.align(source=CLOUD, target=cloud)
 
 
+def test_what_an_array_says_of_itself_is_passed_on():
+    class OnAnotherDevice:
+        def __array__(self, *_):
+            raise TypeError("cannot convert from cuda:0; use .cpu()")
+
+    refused(TypeError, r"cuda:0; use .cpu\(\)", source=OnAnotherDevice())
+
+
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_points_that_are_not_finite(value):
     cloud = CLOUD.copy()
@@ -157,6 +165,17 @@ def test_options_out_of_range(group, field, value):
     refused(ValueError, field, options=options)
 
 
+@pytest.mark.parametrize("variance, error, pattern", [
+    (np.ones(2), ValueError, r"variance has the shape \(2,\), but must have \(6,\)"),
+    (np.ma.masked_array(np.ones(6), [0, 1, 0, 0, 0, 0]), ValueError, "variance is .*masked"),
+    (np.ones(6) + 1j, TypeError, "variance is .*real numbers"), (["1"] * 6, TypeError, "variance is .*real numbers"),
+    (None, TypeError, "variance is None"),
+])
+def test_six_numbers_of_an_option(variance, error, pattern):
+    with pytest.raises(error, match=pattern):
+        bayesian_icp.PriorOptions(variance=variance)
+
+
 def test_options_refuse_unknown_names_and_kinds():
     options = bayesian_icp.Options()
     with pytest.raises(AttributeError, match="colour"):
@@ -179,7 +198,7 @@ def test_options_refuse_unknown_names_and_kinds():
     ("here", TypeError), (np.zeros(5), ValueError),
 ])
 def test_a_prior_mean_that_is_not_finite(mean, error):
-    with pytest.raises(error, match="mean is .*None: the initial guess"):
+    with pytest.raises(error, match="^mean (is|has the shape) "):
         bayesian_icp.PriorOptions(mean=mean)
 
 
