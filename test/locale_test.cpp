@@ -100,6 +100,7 @@ TEST(Locale, DecimalCommasOfTheProgramAreNotTheLibrarys)
 {
   const std::string plain = textsOfTheLibrary();
   EXPECT_NE(plain.find("step_size is -1234.5"), std::string::npos) << plain;
+  EXPECT_NE(plain.find("EDGE_SE3:QUAT"), std::string::npos) << plain;
   const GermanProgram program;
   if (!program.isGerman())
     GTEST_SKIP() << "no sources of locales here (package locales)";

@@ -245,21 +245,49 @@ TEST(Pipeline, PriorMeanIsTheGuessUnlessSet)
   EXPECT_LT(std::abs(about_zero.summary.mean[0]), 0.1);
 }
 
-TEST(Pipeline, AThreadUnsafeSearchGivesTheSameDraws)
+TEST(Pipeline, AThreadUnsafeSearchIsCalledOnceAtATimeAndGivesTheSameDraws)
 {
   const Problem problem = someProblem();
   const double no_gate = std::numeric_limits<double>::infinity();
+  Options options = quickOptions();
+  options.chains.num_threads = 2;
+  const test::BruteForceSearch safe(problem.target, no_gate);
+  const test::BruteForceSearch unsafe(problem.target, no_gate, false);
   const auto parallel =
-      estimatePosterior(problem.source,
-                        test::BruteForceSearch(problem.target, no_gate),
-                        Vector6d::Zero(),
-                        quickOptions());
+      estimatePosterior(problem.source, safe, Vector6d::Zero(), options);
   const auto serial =
-      estimatePosterior(problem.source,
-                        test::BruteForceSearch(problem.target, no_gate, false),
-                        Vector6d::Zero(),
-                        quickOptions());
+      estimatePosterior(problem.source, unsafe, Vector6d::Zero(), options);
   EXPECT_EQ(parallel.samples, serial.samples);
+  EXPECT_EQ(unsafe.mostAtOnce(), 1);
+}
+
+TEST(Pipeline, ThreeCorrespondencesAreNeeded)
+{
+  Problem problem = someProblem();
+  const test::BruteForceSearch search(problem.target, 0.1);
+  Options options = quickOptions();
+  for (const Preset preset : {Preset::Paper, Preset::Exact})
+    for (const Eigen::Index num_near : {2, 3}) {
+      options.preset = preset;
+      options.exact.residual.max_distance = 0.1;
+      Eigen::Matrix3Xd source = problem.source;
+      source.rightCols(source.cols() - num_near).array() += 100.0;
+      const Status status =
+          estimatePosterior(source, search, problem.truth, options).summary.status;
+      EXPECT_EQ(status == Status::TooFewCorrespondences, num_near == 2)
+          << toString(preset) << ": " << toString(status);
+    }
+}
+
+TEST(Pipeline, TheUsualCoordinateIsTheMedianOfFinitePoints)
+{
+  Eigen::Matrix3Xd points(3, 4);
+  points << 1.0, 2.0, -9.0, 1e9, //
+      -3.0, 0.0, 1.0, 0.0,       //
+      2.0, -5.0, 4.0, std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(usualCoordinate(points), 5.0);
+  EXPECT_EQ(usualCoordinate(points.rightCols(1)), 0.0);
+  EXPECT_EQ(usualCoordinate(Eigen::Matrix3Xd(3, 0)), 0.0);
 }
 
 TEST(Pipeline, TheMeanOfManyDrawsIsNearTheTruth)

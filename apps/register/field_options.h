@@ -8,6 +8,8 @@
 #include "register/choices.h"
 #include "register/field.h"
 
+#include <bayesian_icp/options.h>
+
 #include <cmath>
 #include <string>
 #include <type_traits>

@@ -266,6 +266,17 @@ TEST(Report, FlagsAreRaisedBeyondTheirThresholds)
   };
   EXPECT_FALSE(flagsAfter([&](E& e) { hold_all(e, 9.99); }).any());
   EXPECT_TRUE(flagsAfter([&](E& e) { hold_all(e, 10.01); }).misfit);
+  // Residuals of three times the noise need 28 patches in place of 20; 115.2 / kappa
+  // are these.
+  const auto repeat = [&](double residual_scale, double kappa) {
+    return flagsAfter([&](E& e) {
+      hold_all(e, residual_scale);
+      e.kappa_inf = kappa;
+    });
+  };
+  EXPECT_FALSE(repeat(2.99, 4.12).any());
+  EXPECT_TRUE(repeat(3.01, 4.12).few_patches);
+  EXPECT_FALSE(repeat(3.01, 4.11).any());
   EXPECT_TRUE(flagsAfter([](E& e) { e.information.setZero(); }).no_information);
   // Of five directions: 0.1 % are beyond 20.515 = (2 * 2.2533)^2 / 0.99.
   const auto deviate = [](E& e, double metres) { e.prior.deviation[0] = metres; };

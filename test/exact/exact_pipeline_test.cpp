@@ -170,9 +170,13 @@ TEST(Exact, ASearchOfTheUsersOwnGivesTheSamePosterior)
   options.exact.residual.max_distance = 0.3;
   options.exact.steps = ExactSteps::Langevin; // Metropolis takes brute force long.
   const test::BruteForceSearch search(scans.target.points().cast<double>(), 0.3, false);
+  options.chains.num_threads = 2;
   const auto a = estimateFrom(scans, options);
+  options.exact.max_source_points = 50; // not for a search that knows all points
   const auto b = estimatePosterior(scans.source, search, Vector6d::Zero(), options);
   EXPECT_EQ(b.samples.rows(), 400);
+  EXPECT_EQ(search.largestIndex(), 99U);
+  EXPECT_EQ(search.mostAtOnce(), 1);
   for (std::size_t k = 0; k < 6; ++k) {
     const auto &ca = a.summary.coordinates[k], &cb = b.summary.coordinates[k];
     EXPECT_NEAR(ca.mean, cb.mean, 5.0 * std::hypot(ca.mcse, cb.mcse)) << k;

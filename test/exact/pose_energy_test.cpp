@@ -233,12 +233,20 @@ TEST(Energy, FarOutEveryPointCostsTheGate)
   const Scan scan;
   ResidualOptions options;
   options.max_distance = 0.05;
+  options.kernel_width = 0.03;
   const TreeTarget target(scan.tree, options.max_distance);
   const Prior prior = somePrior();
-  const PoseEnergy energy(scan.source, target, prior, 100.0, options);
   Vector6d far = scan.pose;
   far[0] += 50.0;
-  EXPECT_NEAR(energy.energy(far) - prior.energy(far), 100.0 * 0.5 * 0.05 * 0.05, 1e-9);
+  for (const auto& [kernel, cost] :
+       {std::pair(RobustKernel::None, 0.5 * 0.05 * 0.05),
+        std::pair(RobustKernel::Huber, 0.03 * (0.05 - 0.5 * 0.03)),
+        std::pair(RobustKernel::Tukey, 0.03 * 0.03 / 6.0)}) {
+    options.kernel = kernel;
+    const PoseEnergy energy(scan.source, target, prior, 100.0, options);
+    EXPECT_NEAR(energy.energy(far) - prior.energy(far), 100.0 * cost, 1e-9)
+        << toString(kernel);
+  }
 }
 
 TEST(BatchTerms, CurvatureIsTheGaussNewtonMatrixAndSecondMomentTheNoise)

@@ -207,6 +207,23 @@ TEST(Exports, UnreliablePosteriorsNeedToBeAskedFor)
   EXPECT_NO_THROW(g2oEdge(estimate, {}));
 }
 
+TEST(Exports, QuaternionsHaveAPositiveW)
+{
+  // A yaw of -3 rad is half a turn the other way for Eigen.
+  PoseEstimate estimate = estimateOf(drawsAboutMean(0.01));
+  estimate.mean << 1.0, 2.0, 3.0, 0.3, -0.2, -3.0;
+  const Eigen::Matrix3d R = rotationOf(estimate.mean);
+  for (const auto& text : {tumLine, g2oEdge}) {
+    const auto numbers = numbersOf(text(estimate, {}));
+    const std::size_t place = text == tumLine ? 4 : 5;
+    ASSERT_GT(numbers.size(), place + 3);
+    const Eigen::Quaterniond q(
+        numbers[place + 3], numbers[place], numbers[place + 1], numbers[place + 2]);
+    EXPECT_GT(q.w(), 0.0);
+    EXPECT_LT((q.toRotationMatrix() - R).norm(), 1e-12);
+  }
+}
+
 TEST(Exports, BadOptionsAreRefused)
 {
   const PoseEstimate estimate = estimateOf(drawsAboutMean(0.1));

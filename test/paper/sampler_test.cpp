@@ -109,18 +109,23 @@ TEST(SgldStep, WithoutNoiseIsTheDescentStepOfEquation5)
   EXPECT_LT((next - (pose - 0.01 * A.cwiseProduct(gradient))).norm(), 1e-15);
 }
 
-TEST(SgldStep, InjectsNoiseOfVarianceAlphaA)
+TEST(SgldStep, InjectsNoiseOfVarianceAlphaATimesItsFactor)
 {
   Random random(2, 0);
   const Vector6d A(1, 2, 3, 4, 5, 6);
   const int n = 50000;
-  Vector6d sum_of_squares = Vector6d::Zero();
-  for (int i = 0; i < n; ++i)
-    sum_of_squares +=
-        sgldStep(Vector6d::Zero(), Vector6d::Zero(), A, 0.02, 1.0, random).cwiseAbs2();
-  // The relative standard error of a variance is sqrt(2 / n); four of them.
-  for (int k = 0; k < 6; ++k)
-    EXPECT_NEAR(sum_of_squares[k] / n / (0.02 * A[k]), 1.0, 4.0 * std::sqrt(2.0 / n));
+  for (const double factor : {1.0, 3.0}) {
+    Vector6d sum_of_squares = Vector6d::Zero();
+    for (int i = 0; i < n; ++i)
+      sum_of_squares +=
+          sgldStep(Vector6d::Zero(), Vector6d::Zero(), A, 0.02, factor, random)
+              .cwiseAbs2();
+    // The relative standard error of a variance is sqrt(2 / n); four of them.
+    for (int k = 0; k < 6; ++k)
+      EXPECT_NEAR(sum_of_squares[k] / n / (0.02 * factor * A[k]),
+                  1.0,
+                  4.0 * std::sqrt(2.0 / n));
+  }
 }
 
 TEST(Chains, SampleAGaussianWithTheBiasOfTheStepSize)

@@ -76,8 +76,13 @@ def test_writes_the_report(mug, result, tmp_path):
         result.write_report(page, source=mug[0], target=mug[1][1:])
 
 
-def test_simulates_as_the_program_did():
+def test_simulates_as_the_program(program, tmp_path):
     scans = bayesian_icp.simulate("mug", seed=5, width=160, height=120)
+    words = ["--scene=mug", "--seed=5", "--width=160", "--height=120", f"--output={tmp_path}"]
+    subprocess.run([program + "_simulate", *words], check=True, stdout=subprocess.DEVNULL)
+    assert np.array_equal(scans.source, bayesian_icp.read_pcd(tmp_path / "source.pcd"))
+    assert np.array_equal(scans.target, bayesian_icp.read_pcd(tmp_path / "target.pcd"))
+    assert np.array_equal(scans.T_target_source, np.loadtxt(tmp_path / "T_target_source.txt"))
     again = bayesian_icp.simulate("mug", seed=5, width=160, height=120)
     other = bayesian_icp.simulate("mug", seed=6, width=160, height=120)
     assert np.array_equal(scans.source, again.source) and not np.array_equal(scans.source, other.source)

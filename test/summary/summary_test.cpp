@@ -325,6 +325,19 @@ TEST(Summary, ChainsThatDisagreeAreNotMixed)
   EXPECT_LT(summary.coordinates[0].rhat, 1.01);
 }
 
+TEST(Summary, ManyChainsThatDisagreeALittleAreNotMixed)
+{
+  Random random(38, 0);
+  ChainSet chains = mixedChains(random, 40);
+  for (std::size_t c = 0; c < 10; ++c) // half a deviation
+    chains.chains[c].draws.col(4).array() += 0.016;
+  const Summary summary = summarize(chains);
+  EXPECT_GT(summary.coordinates[4].rhat, 1.015);
+  EXPECT_LT(summary.coordinates[4].rhat, 1.05);
+  EXPECT_GT(summary.coordinates[4].bulk_ess, 500.0);
+  EXPECT_EQ(summary.status, Status::NotMixed);
+}
+
 TEST(Summary, TooFewDrawsForDiagnosticsAreNotMixed)
 {
   Random random(36, 0);

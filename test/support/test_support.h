@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -158,12 +159,30 @@ public:
   , is_thread_safe_(is_thread_safe)
   {}
 
+  /** Largest number of calls of find() at the same time. */
+  int
+  mostAtOnce() const
+  {
+    return most_at_once_;
+  }
+
+  /** Largest index of a source point that was asked for. */
+  std::size_t
+  largestIndex() const
+  {
+    return largest_index_;
+  }
+
   void
   find(const Vector6d& /* pose */,
-       const std::vector<std::size_t>& /* source_indices */,
+       const std::vector<std::size_t>& source_indices,
        const Eigen::Matrix3Xd& moved_points,
        Correspondences& correspondences) const override
   {
+    const int num_running = ++num_running_;
+    raise(most_at_once_, num_running);
+    for (const std::size_t index : source_indices)
+      raise(largest_index_, index);
     correspondences.clear();
     for (Eigen::Index i = 0; i < moved_points.cols(); ++i) {
       Eigen::Index nearest = 0;
@@ -174,6 +193,7 @@ public:
       if (std::sqrt(squared_distance) <= max_distance_)
         correspondences.push_back({static_cast<std::size_t>(i), target_.col(nearest)});
     }
+    --num_running_;
   }
 
   bool
@@ -183,9 +203,20 @@ public:
   }
 
 private:
+  template <typename Number>
+  static void
+  raise(std::atomic<Number>& most, Number number)
+  {
+    Number known = most;
+    while (known < number && !most.compare_exchange_weak(known, number)) {
+    }
+  }
+
   Eigen::Matrix3Xd target_;
   double max_distance_;
   bool is_thread_safe_;
+  mutable std::atomic<int> num_running_{0}, most_at_once_{0};
+  mutable std::atomic<std::size_t> largest_index_{0};
 };
 
 } // namespace bayesian_icp::test
