@@ -102,10 +102,7 @@ Example:
 )"};
 }
 
-/** Reads the command line, and the configuration file that it names.
- * \return nothing if it asks for help or version, which has been printed
- * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
- *         read */
+/** As io::readCommandLine(), and reads the configuration file that it names. */
 std::optional<Request>
 parseCommandLine(int argc, const char* const* argv)
 {

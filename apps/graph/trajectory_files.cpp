@@ -12,7 +12,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <stdexcept>
 
 namespace bayesian_icp::app {

@@ -2,6 +2,7 @@
 
 #include "io/program.h"
 
+#include <boost/algorithm/string/replace.hpp>
 #include <boost/program_options/parsers.hpp>
 
 #include <algorithm>
@@ -22,10 +23,7 @@ quotedForShell(const std::string& argument)
                          "0123456789_@%+=:,./-";
   if (!argument.empty() && argument.find_first_not_of(harmless) == std::string::npos)
     return argument;
-  std::string quoted = "'";
-  for (const char character : argument)
-    quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
-  return quoted + '\'';
+  return "'" + boost::replace_all_copy(argument, "'", "'\\''") + '\'';
 }
 
 } // namespace

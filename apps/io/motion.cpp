@@ -5,8 +5,6 @@
 #include "io/numbers.h"
 #include "io/posterior_file.h"
 
-#include <bayesian_icp/pose.h>
-
 #include <Eigen/LU>
 
 #include <filesystem>

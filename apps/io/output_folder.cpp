@@ -12,7 +12,6 @@
 #include <fstream>
 #include <new>
 #include <random>
-#include <string>
 #include <system_error>
 
 namespace bayesian_icp::io {

@@ -7,7 +7,6 @@
 #include "io/numbers.h"
 
 #include <cmath>
-#include <string>
 #include <vector>
 
 namespace bayesian_icp::io {

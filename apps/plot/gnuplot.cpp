@@ -2,6 +2,8 @@
 
 #include "plot/child_program.h"
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <sstream>
 #include <string_view>
 
@@ -55,10 +57,7 @@ documentsOf(const std::string& text)
 std::string
 quotedForGnuplot(const std::string& text)
 {
-  std::string quoted = "'";
-  for (const char character : text)
-    quoted += character == '\'' ? std::string("''") : std::string(1, character);
-  return quoted + "'";
+  return "'" + boost::replace_all_copy(text, "'", "''") + "'";
 }
 
 std::string

@@ -181,10 +181,7 @@ Example:
   pcl_bayesian_icp_pose_graph scans --span 3 --loops 2 --optimize result
 )"};
 
-/** Reads the command line, and looks into the folder that it names.
- * \return nothing if it asks for help or version, which has been printed
- * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
- *         read */
+/** As io::readCommandLine(), and looks into the folder that it names. */
 std::optional<GraphCommand>
 parseCommandLine(int argc, const char* const* argv)
 {

@@ -10,7 +10,6 @@
 #include <pcl/point_types.h>
 
 #include <algorithm>
-#include <functional>
 
 namespace bayesian_icp::app {
 

@@ -81,11 +81,10 @@ chainScript(const DrawSet& draws, int k)
          "set xlabel 'draw of the chain' offset 0, 0.4\nset xtics " +
          plotNumber(
              std::max(1.0, io::roundedUp(0.2 * static_cast<double>(longest - 1)))) +
-         "\nset xrange [0:" + std::to_string(longest - 1) +
-         "]\nset ylabel offset 0.6, 0 " +
-         plot::quotedForGnuplot(differenceLabel(axis)) + "\nplot " + trace_plots +
-         '\n' + placedAt(0.22, 0.96, 0.15, 0.43) +
-         "set xlabel 'rank among all draws [%]'\nset ylabel 'draws / expected'\n"
+         "\nset xrange [0:" + std::to_string(longest - 1) + "]\n" +
+         labelledAtLeft(differenceLabel(axis)) + "plot " + trace_plots + '\n' +
+         placedAt(0.22, 0.96, 0.15, 0.43) + labelledAtLeft("draws / expected") +
+         "set xlabel 'rank among all draws [%]'\n"
          "set xrange [0:100]\nset xtics 20\nset yrange [0:*]\nset ytics 1\n"
          "plot 1 with lines" +
          colouredAs(quiet_colour) + " dashtype 2" + rank_plots + "\nunset multiplot\n";

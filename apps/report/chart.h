@@ -87,6 +87,15 @@ placedAt(double left, double right, double bottom, double top)
          "\nset tmargin at screen " + plotNumber(top) + '\n';
 }
 
+/** \brief The name of the next plots' y axis, at the left edge of the picture. gnuplot
+ * leaves out a `ylabel` for which long tick labels leave no place. */
+inline std::string
+labelledAtLeft(const std::string& name)
+{
+  return "set label 99 " + plot::quotedForGnuplot(name) +
+         " at screen 0.02, graph 0.5 center rotate\n";
+}
+
 /** \brief The colour of what is plotted. */
 inline std::string
 colouredAs(const std::string& colour)

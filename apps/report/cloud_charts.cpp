@@ -55,6 +55,28 @@ rangeOf(const Scene& scene, Eigen::Index axis)
   return {low - added, high + added};
 }
 
+/** What is subtracted from coordinates that are much larger than their range: a round
+ * number [m]. */
+double
+originOf(const Range& range)
+{
+  constexpr double min_ratio = 100.0;
+  const double unit = std::pow(10.0, std::ceil(std::log10(range.span())));
+  const double origin = unit * std::round(0.5 * (range.low + range.high) / unit);
+  return std::abs(origin) > min_ratio * range.span() ? origin : 0.0;
+}
+
+/** As "x [m]" or "x - 5412340 [m]". */
+std::string
+axisLabel(Eigen::Index axis, double origin)
+{
+  constexpr int num_digits = 12;
+  std::string label = axis_names[axis];
+  if (origin != 0.0)
+    label += (origin > 0.0 ? " - " : " + ") + io::textOf(std::abs(origin), num_digits);
+  return label + " [m]";
+}
+
 Range
 widened(const Range& range, double span)
 {
@@ -68,11 +90,13 @@ constexpr double left_margin = 66.0, right_margin = 12.0;
 constexpr double bottom_margin = 50.0, top_margin = 8.0;
 
 std::string
-pointsBlock(const std::string& name, const Eigen::Matrix3Xd& points)
+pointsBlock(const std::string& name,
+            const Eigen::Matrix3Xd& points,
+            const Eigen::Vector3d& origin)
 {
   std::string lines;
   for (Eigen::Index i = 0; i < points.cols(); ++i)
-    lines += plotLine(points.col(i));
+    lines += plotLine(Eigen::Vector3d(points.col(i) - origin));
   return plot::dataBlock(name, lines);
 }
 
@@ -82,6 +106,11 @@ plot::Drawing
 viewOf(const Scene& scene, Eigen::Index horizontal, Eigen::Index vertical)
 {
   Range x = rangeOf(scene, horizontal), y = rangeOf(scene, vertical);
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  origin[horizontal] = originOf(x);
+  origin[vertical] = originOf(y);
+  x = {x.low - origin[horizontal], x.high - origin[horizontal]};
+  y = {y.low - origin[vertical], y.high - origin[vertical]};
   const double plot_height =
       std::clamp(plot_width * y.span() / x.span(), min_plot_height, max_plot_height);
   x = widened(x, y.span() * plot_width / plot_height);
@@ -92,16 +121,16 @@ viewOf(const Scene& scene, Eigen::Index horizontal, Eigen::Index vertical)
       " using " + std::to_string(horizontal + 1) + ':' + std::to_string(vertical + 1);
   return {static_cast<int>(width),
           static_cast<int>(height),
-          pointsBlock("target", scene.target) + pointsBlock("source", scene.source) +
-              chart_style +
+          pointsBlock("target", scene.target, origin) +
+              pointsBlock("source", scene.source, origin) + chart_style +
               placedAt(left_margin / width,
                        1.0 - right_margin / width,
                        bottom_margin / height,
                        1.0 - top_margin / height) +
               "set border 15\nset xrange " + plotRange(x.low, x.high) +
               "\nset yrange " + plotRange(y.low, y.high) + "\nset xlabel '" +
-              axis_names[horizontal] + " [m]' offset 0, 0.4\nset ylabel '" +
-              axis_names[vertical] + " [m]' offset 1, 0\nplot " +
+              axisLabel(horizontal, origin[horizontal]) + "' offset 0, 0.4\n" +
+              labelledAtLeft(axisLabel(vertical, origin[vertical])) + "plot " +
               dots("$target" + columns, x.span(), 2.0, target_colour) + ", " +
               dots("$source" + columns, x.span(), 2.0, source_colour) + '\n'};
 }

@@ -26,17 +26,21 @@ positionCovariance(const GaussianPose& pose)
   return R * pose.covariance.topLeftCorner<3, 3>() * R.transpose();
 }
 
-/** The two axes of scan 0 along which the trajectory is longest, in their order. */
+/** The two axes of scan 0 along which the trajectory is longest, in their order. A
+ * straight one is shown from above: the noise of its other axes says nothing. */
 Axes
 longestAxes(const std::vector<GaussianPose>& poses)
 {
+  constexpr double min_share = 0.02;
   Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
   for (const GaussianPose& pose : poses) {
     low = low.cwiseMin(pose.mean.head<3>());
     high = high.cwiseMax(pose.mean.head<3>());
   }
+  Eigen::Array3d lengths = high - low;
+  lengths = (lengths < min_share * lengths.maxCoeff()).select(0.0, lengths);
   Eigen::Index shortest = 0;
-  (high - low).reverse().minCoeff(&shortest);
+  lengths.reverse().minCoeff(&shortest);
   shortest = 2 - shortest; // of equal ones z
   return {shortest == 0 ? 1 : 0, shortest == 2 ? 1 : 2};
 }

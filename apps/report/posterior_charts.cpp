@@ -106,7 +106,7 @@ panelAt(int row, int column)
 std::string
 textPanel(const std::string& text, int font_size)
 {
-  return "unset border\nunset tics\nunset xlabel\nunset ylabel\nset xrange [0:1]\n"
+  return "unset border\nunset tics\nunset xlabel\nunset label\nset xrange [0:1]\n"
          "set yrange [0:1]\nset label 1 " +
          plot::quotedForGnuplot(text) + " at 0.5, 0.5 center font '," +
          std::to_string(font_size) + "'\nplot NaN\nunset label 1\n";
@@ -122,27 +122,29 @@ correlationPanel(const Matrix6d& covariance, int row, int column)
                    std::abs(correlation) >= 0.5 ? 20 : 13);
 }
 
-/** Range, label, and ticks at the mean and on both sides of it.
+/** Range, and ticks at the mean and on both sides of it.
  * \param[in] which axis of gnuplot: x or y */
 std::string
-axisScript(const std::string& which, const Axis& axis, double reach, bool has_labels)
+axisScript(const std::string& which, double reach, bool has_labels)
 {
   constexpr double share = 0.27;
   return "set " + which + "range " + plotRange(-reach, reach) + "\nset " + which +
          "tics " + plotNumber(io::roundedUp(2.0 * reach * share)) +
-         (has_labels ? " format '%g' font ',10'\nset " + which + "label '" + axis.name +
-                           " [" + axis.unit + "]'\n"
-                     : " format ''\nunset " + which + "label\n");
+         (has_labels ? " format '%g' font ',10'\n" : " format ''\n");
 }
 
 std::string
 scatterPanel(const DrawSet& draws, const Vector6d& reaches, int row, int column)
 {
-  const Axis& x = draws.axes[column];
-  const Axis& y = draws.axes[row];
-  const std::string script = "set border 15 linewidth 0.5\n" +
-                             axisScript("x", x, reaches[column], row == 5) +
-                             axisScript("y", y, reaches[row], column == 0);
+  const bool is_lowest = row == 5, is_leftmost = column == 0;
+  const auto name = [&draws](int k) {
+    return draws.axes[k].name + " [" + draws.axes[k].unit + ']';
+  };
+  const std::string script =
+      "set border 15 linewidth 0.5\n" + axisScript("x", reaches[column], is_lowest) +
+      axisScript("y", reaches[row], is_leftmost) +
+      (is_lowest ? "set xlabel '" + name(column) + "'\n" : "unset xlabel\n") +
+      (is_leftmost ? labelledAtLeft(name(row)) : "unset label\n");
   std::string plots;
   for (std::size_t i = 0; i < draws.chains.size(); ++i)
     plots += (i > 0 ? ", " : "plot ") +

@@ -6,6 +6,7 @@
 #include "io/numbers.h"
 #include "io/output_folder.h"
 #include "io/program.h"
+#include "register/json_values.h"
 #include "simulate/command_line.h"
 #include "simulator/option_fields.h"
 
@@ -17,7 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include <stdexcept>
-#include <vector>
+#include <type_traits>
 
 namespace bayesian_icp::simulator {
 namespace {
@@ -39,28 +40,15 @@ writeCloud(const Eigen::Matrix3Xf& points, std::ostream& stream)
     throw std::runtime_error("PCL cannot write the cloud");
 }
 
-/** A number or a name. */
+/** A number, a name, a vector or a matrix. */
 template <typename Value>
 Json
 jsonOf(const Value& value)
 {
-  return value;
-}
-
-template <int size>
-Json
-jsonOf(const Eigen::Matrix<double, size, 1>& values)
-{
-  return std::vector<double>(values.begin(), values.end());
-}
-
-Json
-jsonOf(const Eigen::Matrix4d& matrix)
-{
-  Json rows = Json::array();
-  for (int row = 0; row < 4; ++row)
-    rows.push_back(jsonOf(Eigen::Vector4d(matrix.row(row))));
-  return rows;
+  if constexpr (std::is_base_of_v<Eigen::MatrixBase<Value>, Value>)
+    return app::jsonOf(value);
+  else
+    return value;
 }
 
 Json

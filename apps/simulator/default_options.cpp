@@ -1,6 +1,3 @@
-/** \file
- * \brief The usual sensor, views, frame and offset for each scene.
- */
 #include "simulator/simulation.h"
 
 namespace bayesian_icp::simulator {

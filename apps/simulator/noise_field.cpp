@@ -1,6 +1,6 @@
 #include "simulator/noise_field.h"
 
-#include "threads/first_exception.h"
+#include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
 
@@ -25,13 +25,19 @@ blurKernel(double standard_deviation)
 }
 
 /** \brief White noise blurred along the row; \p kernel.size() - 1 more numbers than
- * columns are drawn. */
+ * columns are drawn. After the last column of a circle follows the first. */
 Eigen::ArrayXd
-blurredRow(int num_columns, const Eigen::ArrayXd& kernel, Random random)
+blurredRow(int num_columns,
+           const Eigen::ArrayXd& kernel,
+           bool is_circular,
+           Random random)
 {
   Eigen::ArrayXd white(num_columns + kernel.size() - 1);
   for (double& value : white)
     value = random.normal();
+  if (is_circular)
+    for (Eigen::Index i = num_columns; i < white.size(); ++i)
+      white[i] = white[i - num_columns];
   Eigen::ArrayXd blurred(num_columns);
   for (int column = 0; column < num_columns; ++column)
     blurred[column] = (kernel * white.segment(column, kernel.size())).sum();
@@ -54,21 +60,19 @@ NoiseField::NoiseField(const SensorOptions& options,
   const int num_rows = numRows(options);
   const int num_columns = raysPerRow(options);
   Eigen::ArrayXXd rows(num_columns, num_rows + kernel.size() - 1);
-  FirstException failure;
-#pragma omp parallel for schedule(static)
-  for (Eigen::Index row = 0; row < rows.cols(); ++row)
-    failure.guard([&] {
-      rows.col(row) =
-          blurredRow(num_columns,
-                     kernel,
-                     Random(seed, first_stream + static_cast<std::uint64_t>(row)));
-    });
-  failure.rethrow();
+  const bool is_circular = options.kind == SensorKind::Lidar;
+  forEachPiece(rows.cols(), 0, [&](Eigen::Index row) {
+    rows.col(row) =
+        blurredRow(num_columns,
+                   kernel,
+                   is_circular,
+                   Random(seed, first_stream + static_cast<std::uint64_t>(row)));
+  });
   field_ = Eigen::ArrayXXd::Zero(num_columns, num_rows);
-#pragma omp parallel for schedule(static)
-  for (int row = 0; row < num_rows; ++row)
+  forEachPiece(num_rows, 0, [&](int row) {
     for (Eigen::Index i = 0; i < kernel.size(); ++i)
       field_.col(row) += kernel[i] * rows.col(row + i);
+  });
 }
 
 double

@@ -1,6 +1,3 @@
-/** \file
- * \brief Scenes of the size of a hand or a table.
- */
 #include "simulator/scene_parts.h"
 
 #include <algorithm>

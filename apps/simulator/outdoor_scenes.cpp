@@ -1,7 +1,3 @@
-/** \file
- * \brief Things that stand on the ground out of doors, and scenes to drive through,
- * along the x axis.
- */
 #include "simulator/scene_parts.h"
 
 #include <bayesian_icp/random.h>

@@ -1,6 +1,3 @@
-/** \file
- * \brief Indoor places to walk or drive through, and plain ground.
- */
 #include "simulator/scene_parts.h"
 
 #include <algorithm>

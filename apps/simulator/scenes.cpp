@@ -3,7 +3,6 @@
 #include "simulator/scene_parts.h"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 

@@ -1,14 +1,13 @@
 #include "simulator/sensors.h"
 
 #include "simulator/noise_field.h"
-#include "threads/first_exception.h"
+#include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 namespace bayesian_icp::simulator {
 
@@ -267,20 +266,16 @@ scanScene(const Scene& scene,
   const NoiseField noise_field(options, seed, scan_number);
   std::vector<std::optional<Vector3d>> points(
       static_cast<std::size_t>(numRows(options)) * rays_per_row);
-  FirstException failure;
-#pragma omp parallel for schedule(dynamic)
-  for (int row = 0; row < numRows(options); ++row)
-    failure.guard([&] {
-      // A stream of random numbers per row: the same for any number of threads.
-      Random random(seed, (std::uint64_t{scan_number} << 32) + row);
-      for (int column = 0; column < rays_per_row; ++column) {
-        RayDraws draws(random);
-        draws.reading = noise_field.mixed(draws.reading, row, column);
-        points[std::size_t(row) * rays_per_row + column] =
-            beams.measure(row, column, draws);
-      }
-    });
-  failure.rethrow();
+  forEachPiece(numRows(options), 0, [&](int row) {
+    // A stream of random numbers per row: the same for any number of threads.
+    Random random(seed, (std::uint64_t{scan_number} << 32) + row);
+    for (int column = 0; column < rays_per_row; ++column) {
+      RayDraws draws(random);
+      draws.reading = noise_field.mixed(draws.reading, row, column);
+      points[std::size_t(row) * rays_per_row + column] =
+          beams.measure(row, column, draws);
+    }
+  });
   return scanOf(points);
 }
 

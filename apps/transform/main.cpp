@@ -10,6 +10,10 @@
 #include "io/posterior_file.h"
 #include "io/program.h"
 
+#include <bayesian_icp/exports.h>
+#include <bayesian_icp/pose.h>
+#include <bayesian_icp/summary.h>
+
 #include <Eigen/Geometry>
 
 #include <filesystem>
@@ -83,9 +87,7 @@ Example:
       --use mean
 )"};
 
-/** Read the command line.
- * \return nothing if it asks for help or version, which has been printed
- * \throws io::UsageError if it cannot be understood */
+/** As io::readCommandLine(). */
 std::optional<Request>
 parseCommandLine(int argc, const char* const* argv)
 {
@@ -109,17 +111,33 @@ parseCommandLine(int argc, const char* const* argv)
   return request;
 }
 
+/** Of a posterior.json: its final transformation, or its mean. */
+Eigen::Matrix4d
+motionOfPosterior(const Request& request)
+{
+  const io::PosteriorFile posterior = io::readPosterior(request.pose);
+  Status status = Status::NotRun;
+  readStatus(posterior.status, status);
+  if (request.use_mean && !hasUsableMean(status))
+    io::tell(request.pose + ": warning: the status is " + posterior.status +
+             ", so the mean may be far from any pose that the clouds allow");
+  return request.use_mean ? matrixOf(posterior.mean) : posterior.final_matrix;
+}
+
 Eigen::Matrix4d
 motionOf(const Request& request)
 {
-  // Of a posterior.json it takes the mean.
-  if (request.use_mean || fs::path(request.pose).extension() != ".json")
-    return io::readMotion("pose", request.pose);
-  const Eigen::Matrix4d motion = io::readPosterior(request.pose).final_matrix;
+  constexpr double rounding_of_icp = 1e-5;
+  const Eigen::Matrix4d motion = fs::path(request.pose).extension() == ".json"
+                                     ? motionOfPosterior(request)
+                                     : io::readMotion("pose", request.pose);
   const std::string complaint = io::complaintAboutMotion(motion);
   if (!complaint.empty())
     throw io::FileError(request.pose, complaint);
-  return motion;
+  // A matrix with few digits would stretch the cloud: the nearest rotation.
+  const Eigen::Matrix3d R = motion.topLeftCorner<3, 3>();
+  return (R * R.transpose()).isIdentity(rounding_of_icp) ? motion
+                                                         : matrixOf(poseOf(motion));
 }
 
 void

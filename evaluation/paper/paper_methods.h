@@ -12,6 +12,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -26,8 +27,9 @@ struct PaperProblem {
   /** Must outlive this object. */
   const ScanPair& pair;
   KdTree tree;
-  /** Gaussians of the methods that are no samplers, by the method's name. */
-  mutable std::map<std::string, TwistGaussian> gaussians;
+  /** Gaussians of the methods that are no samplers, by the method's name, and the CPU
+   * time that they took [s]. */
+  mutable std::map<std::string, std::pair<TwistGaussian, double>> gaussians;
 };
 
 /** \brief What is drawn, and from where. */

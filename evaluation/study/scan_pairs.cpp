@@ -81,6 +81,10 @@ readManifest(const std::string& folder)
   try {
     for (const auto& json : manifest) {
       const ManifestEntry entry = entryOf(json);
+      // Files of results have the name in theirs.
+      if (entry.name.empty() || entry.name.find('/') != std::string::npos)
+        throw std::runtime_error("the name " + io::inQuotes(entry.name) +
+                                 " is empty or has a slash");
       if (findNamed(entries, entry.name) != nullptr)
         throw std::runtime_error("has two pairs " + io::inQuotes(entry.name));
       entries.push_back(entry);

@@ -1,6 +1,5 @@
 #include "search/kd_tree_build.h"
-#include "threads/first_exception.h"
-#include "threads/num_threads.h"
+#include "threads/for_each_piece.h"
 
 #include <bayesian_icp/kd_tree.h>
 

@@ -4,7 +4,7 @@
 // pointers.
 #include "search/kd_tree_build.h"
 
-#include "threads/num_threads.h"
+#include "threads/for_each_piece.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,12 @@
 """report.html: what is in it, that it needs nothing else, and that a browser shows it."""
 
 import os
+import pathlib
 import re
 import subprocess
 import unittest
 
-from cli_tool import CALIBRATED, FAST, ToolTest, run, scans, strict_json
+from cli_tool import CALIBRATED, FAST, TOOL, ToolTest, run, scans, strict_json
 from html_page import Browser, Page, find_browser
 
 NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
@@ -69,6 +70,28 @@ class ReportPage(ReportTest):
                 self.check_needs_nothing_else(page, text)
                 self.assertEqual(len(page.ids()), len(set(page.ids())))
                 self.assertLess(len(text.encode()), MAX_SIZE)
+
+    def axis_names(self, text, figure):
+        """The texts with a unit of a figure."""
+        drawing = re.search(rf'<svg[^>]*id="{figure}".*?</svg>', text, re.S).group(0)
+        return re.findall(r"<text[^>]*>\s*(?:<tspan[^>]*>)?([^<]*\[[^<]*\])", drawing)
+
+    def test_all_axes_have_names(self):
+        _, text = self.report_of(*scans("table"), *CALIBRATED)
+        names = [name.split()[0] for name in self.axis_names(text, PAIRS)]
+        self.assertEqual(sorted(names), sorted(NAMES[1:] + NAMES[:5]))
+        for name in NAMES:
+            self.assertIn(f"{name} − mean", " ".join(self.axis_names(text, f"chains-{name}")))
+
+    def test_clouds_far_from_the_origin_are_drawn_about_round_numbers(self):
+        clouds = []
+        for cloud in scans("corridor"):
+            clouds.append(self.folder / f"far_{pathlib.Path(cloud).name}")
+            move = [f"{TOOL}_transform", cloud, clouds[-1], "--pose=20000,200000,-3000,0,0,0"]
+            subprocess.run(move, check=True, stderr=subprocess.DEVNULL)
+        _, text = self.report_of(*clouds, *FAST)
+        for figure, names in zip(CLOUDS, (["x - 20000 [m]", "y - 200000 [m]"], ["x - 20000 [m]", "z + 3000 [m]"])):
+            self.assertEqual(sorted(self.axis_names(text, figure)), names)
 
     def test_head_is_fit_for_phones_and_screen_readers(self):
         page = Page(self.report_of(*self.small_pair(), *FAST)[1])

@@ -1,5 +1,6 @@
 """pcl_bayesian_icp_transform: what it moves, what it keeps, what it refuses."""
 
+import json
 import math
 import random
 import struct
@@ -151,6 +152,27 @@ class TransformMotion(TransformTest):
         before = [dict(zip("xyz", (struct.pack("<f", c) for c in point))) for point in points]
         self.assert_moved(before, after, cloud_files.matrix_of(*POSE), normals=False)
 
+
+    def test_a_matrix_with_few_digits_does_not_stretch_the_cloud(self):
+        matrix = [[1.0004 if i == j else 0 for j in range(4)] for i in range(3)] + [[0, 0, 0, 1]]
+        pose = self.file("stretched.txt", "\n".join(" ".join(map(str, row)) for row in matrix))
+        far = self.file("far.pcd", cloud_files.pcd_bytes([(100, 0, 0), (0, 200, 0), (0, 0, 300)]))
+        output = self.folder / "out.pcd"
+        self.assert_done(transform(far, output, "--pose", pose))
+        self.assertEqual(cloud_files.read_pcd(output)[1], cloud_files.read_pcd(far)[1])
+
+    def test_a_mean_of_several_modes_is_warned_of(self):
+        output = self.folder / "output"
+        run(*self.small_pair(), *FAST, "-o", output, "--quiet")
+        file = output / "posterior.json"
+        document = strict_json(file.read_text())
+        document["status"]["name"] = "several_modes"
+        file.write_text(json.dumps(document))
+        words = (self.cloud(), self.folder / "moved.pcd", "--pose", file)
+        self.assert_done(transform(*words))
+        result = transform(*words, "--use=mean")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn(f"{file}: warning: the status is several_modes", result.stderr)
 
     def test_digits_that_32_bits_lose_are_told(self):
         output = self.folder / "out.pcd"

@@ -87,6 +87,8 @@ TEST_F(RealPairsTest, BadFoldersOfPairsAreNamed)
   const std::string good = contentOf(folder_ / "manifest.json");
   const std::string pair = good.substr(1, good.size() - 2);
   refuseManifest('[' + pair + ',' + pair + ']');
+  refuseManifest(
+      boost::replace_all_copy(good, "\"name\": \"pair\"", "\"name\": \"a/b\""));
   refuseManifest(boost::replace_all_copy(good, "0.2", "0"));
   refuseManifest(boost::replace_all_copy(good, "0.2", "-0.2"));
   writePair(folder_);

@@ -79,6 +79,25 @@ TEST(NoiseField, HasTheVarianceAndTheCorrelationOfTheClosedForm)
     expectCovariance(noise, apart.first, apart.second);
 }
 
+TEST(NoiseField, OfALidarIsACircle)
+{
+  SensorOptions options = correlatedCamera(1, 1);
+  options.kind = SensorKind::Lidar;
+  options.lidar.rings = 4000;
+  options.lidar.azimuth_step = 3.6;
+  options.noise_correlation = 1.0;
+  const NoiseField field(options, 5, 0);
+  const int last = raysPerRow(options) - 1;
+  double covariance = 0.0;
+  for (int row = 0; row < options.lidar.rings; ++row)
+    covariance += field.mixed(0.0, row, last) * field.mixed(0.0, row, 0);
+  // As in expectCovariance(), with the squared correlations of one column.
+  const double sum_of_squares = std::sqrt(360.0 * degree) * smoothing;
+  EXPECT_NEAR(covariance / options.lidar.rings,
+              expectedCovariance(0, 1) / shared_part,
+              bound_in_sigmas * std::sqrt(2.0 * sum_of_squares / options.lidar.rings));
+}
+
 TEST(NoiseField, DiffersBetweenScansAndSeeds)
 {
   const SensorOptions options = correlatedCamera(20, 10);

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <utility>
-#include <vector>
 
 namespace bayesian_icp {
 

@@ -3,8 +3,7 @@
 #include "calibrated/surface/patch_fit.h"
 #include "calibrated/surface/surface_model.h"
 #include "sampler/median.h"
-#include "threads/first_exception.h"
-#include "threads/num_threads.h"
+#include "threads/for_each_piece.h"
 
 #include <algorithm>
 #include <array>
