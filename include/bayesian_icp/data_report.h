@@ -115,8 +115,8 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   /** noise_scale in units of the target's own noise, or of the source's if the target
    * is far cleaner. Normally 1 to 1.5. */
   double residual_scale = std::numeric_limits<double>::quiet_NaN();
-  /** Number of independent patches of surface with the same information: 96 kappa_48 /
-   * kappa_inf. It is about 96 if neighbouring points are independent. */
+  /** Number of independent patches of surface with the same information: 96 max(1,
+   * kappa_48) / kappa_inf. It is about 96 if neighbouring points are independent. */
   double effective_patches = std::numeric_limits<double>::quiet_NaN();
   /** Share of the source points that lie on the target's surface, in [0, 1]. */
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
@@ -137,7 +137,8 @@ struct BAYESIAN_ICP_EXPORT DataReport {
    * starts do not converge further. */
   double basin_distance = std::numeric_limits<double>::quiet_NaN();
   /** Cost at the worse of the two ends, divided by that at the better one. A cost is
-   * the mean capped residual of the source points. */
+   * the mean capped residual of the source points with a patch at both ends or, if
+   * these do not tell the ends apart, of all. */
   double other_cost_ratio = std::numeric_limits<double>::quiet_NaN();
   /** Probability that the posterior's mean would be further from the prior's mean than
    * it is if the prior were right, without PriorOnly directions. Uniform in [0, 1] if

@@ -35,11 +35,10 @@ public:
   void
   step() override;
 
-  /** \brief Do one random walk with \p factor or, every other time, with 0.3 of it,
-   * which is accepted where the density is rough.
-   * \param[in] factor L of the step L z, where z is standard normal
-   * \param[in] temperature the density is exp(-U / temperature)
-   * \return whether the walk was accepted */
+  /** \brief Do one random walk with \p factor or, with a probability of 1/2, with 0.3
+   * of it, which is accepted where the density is rough. \param[in] factor L of the
+   * step L z, where z is standard normal \param[in] temperature the density is exp(-U /
+   * temperature) \return whether the walk was accepted */
   bool
   walk(const Matrix6d& factor, double temperature);
 

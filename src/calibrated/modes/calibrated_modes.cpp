@@ -331,7 +331,7 @@ betterFitOf(const SurfaceScorer& scorer,
   return squaredDeviations(subset, prior, best->pose);
 }
 
-/** The two directions along which the clouds tell least about translations. */
+/** The two directions in which the posterior's translation is widest. */
 std::vector<Eigen::Vector3d>
 weakTranslations(const CalibratedEstimate& e)
 {

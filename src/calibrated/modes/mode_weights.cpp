@@ -215,7 +215,7 @@ weighModes(const HeldPrior& prior,
                        energies.end(),
                        [](const auto& a, const auto& b) { return a.sum() < b.sum(); }) -
       energies.begin());
-  // There are points of both clouds.
+  // Half of the points are of each cloud. With source points alone, k is half as large.
   const double region =
       0.5 * region_of_cloud * static_cast<double>(energies[best].size());
   for (std::size_t m = 0; m < modes.size(); ++m) {

@@ -147,7 +147,7 @@ chooseOfCubes(const Eigen::Matrix3Xf& points,
  * over the square root of that number. */
 constexpr double cube_of_sheet = 8.0;
 /** A point with fewer points around it than the first number, itself included, is
- * isolated; with fewer than the second, it is sparse. An even sheet has 86 of them. */
+ * isolated; with fewer than the second, it is sparse. An even sheet has about 92. */
 constexpr double min_crowd = 5.0, sparse_crowd = 20.0;
 constexpr int num_bisections = 60;
 

@@ -45,10 +45,10 @@ evenChoice(Eigen::Matrix3Xf points, Eigen::Index count, ChoiceStream stream);
 /** \brief Columns of the points that are not stray, ascending. Dust, rain and stray
  * measurements fill space, and an even choice would prefer them to surfaces. A point is
  * isolated if there are fewer than 5 points around it, where an even sheet of all
- * points (of \p count if there are more) has 86. Isolated points are stray if they are
- * more than those with 5 to 19 points around them. Otherwise they are where the cloud
- * gets sparse, as the far points of a LiDAR are. \param[in] points 3 x n, finite, at
- * least one \param[in] count at least 1 */
+ * points (of \p count if there are more) has about 92. Isolated points are stray if
+ * they are more than those with 5 to 19 points around them. Otherwise they are where
+ * the cloud gets sparse, as the far points of a LiDAR are. \param[in] points 3 x n,
+ * finite, at least one \param[in] count at least 1 */
 std::vector<Eigen::Index>
 withoutStray(const Eigen::Matrix3Xf& points, Eigen::Index count);
 

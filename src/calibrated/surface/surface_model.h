@@ -41,8 +41,9 @@ struct SurfacePatch {
   /** In-plane (x, y) radius of the neighbourhood that was fitted [m]. */
   double radius;
   /** Standard deviation of the points across the surface [m]. For a quadric it is their
-   * noise, pooled over neighbouring quadrics. For a plane it is its own roughness and,
-   * where its points follow a curve, the possible error of its slope. */
+   * noise, pooled over neighbouring quadrics. For a plane it is its own roughness (four
+   * times that in an exact cloud) and, where its points follow a curve, the possible
+   * error of its slope. */
   double sigma;
   PatchKind kind;
   /** Whether the points of a plane follow one curve, like those of a scan line. They
