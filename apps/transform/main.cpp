@@ -121,23 +121,21 @@ motionOfPosterior(const Request& request)
   if (request.use_mean && !hasUsableMean(status))
     io::tell(request.pose + ": warning: the status is " + posterior.status +
              ", so the mean may be far from any pose that the clouds allow");
-  return request.use_mean ? matrixOf(posterior.mean) : posterior.final_matrix;
+  const Eigen::Matrix4d motion =
+      request.use_mean ? matrixOf(posterior.mean) : posterior.final_matrix;
+  const std::string complaint = io::complaintAboutMotion(motion);
+  if (!complaint.empty())
+    throw io::FileError(request.pose, complaint);
+  return motion;
 }
 
 Eigen::Matrix4d
 motionOf(const Request& request)
 {
-  constexpr double rounding_of_icp = 1e-5;
-  const Eigen::Matrix4d motion = fs::path(request.pose).extension() == ".json"
-                                     ? motionOfPosterior(request)
-                                     : io::readMotion("pose", request.pose);
-  const std::string complaint = io::complaintAboutMotion(motion);
-  if (!complaint.empty())
-    throw io::FileError(request.pose, complaint);
+  if (fs::path(request.pose).extension() == ".json")
+    return motionOfPosterior(request);
   // A matrix with few digits would stretch the cloud: the nearest rotation.
-  const Eigen::Matrix3d R = motion.topLeftCorner<3, 3>();
-  return (R * R.transpose()).isIdentity(rounding_of_icp) ? motion
-                                                         : matrixOf(poseOf(motion));
+  return matrixOf(poseOf(io::readMotion("pose", request.pose)));
 }
 
 void
