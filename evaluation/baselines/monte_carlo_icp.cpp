@@ -1,7 +1,7 @@
 #include "baselines/monte_carlo_icp.h"
 
 #include "geometry/twist.h"
-#include "sampler/run_state.h"
+#include "threads/for_each_piece.h"
 
 #include <bayesian_icp/random.h>
 
@@ -47,11 +47,10 @@ monteCarloIcp(const Eigen::Matrix3Xd& source,
   const int max_runs = std::numeric_limits<int>::max() - std::max(0, options.first_run);
   const int num_runs = std::clamp(options.num_runs, 0, max_runs);
   const int num_threads = numThreadsFor(options.num_threads, num_runs);
-  RunState state(ProgressCallback(), num_runs);
   std::vector<IcpRunner> icp(static_cast<std::size_t>(num_threads),
                              IcpRunner(source, target));
   std::vector<MonteCarloIcpRun> runs(static_cast<std::size_t>(num_runs));
-  forEachChain(num_runs, num_threads, state, [&](int i) {
+  forEachPiece(num_runs, num_threads, [&](int i) {
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     runs[static_cast<std::size_t>(i)] =
         makeRun(options, options.first_run + i, icp[thread]);
