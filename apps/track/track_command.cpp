@@ -146,8 +146,11 @@ requireWithin(double value, double least, double most, const std::string& option
 
 /** What a registration with ICP has, and a track has not. */
 void
-refuseIcp(const Settings& settings)
+refuseIcp(const po::variables_map& given, const Settings& settings)
 {
+  io::refuseOptions(given,
+                    {"iterations", "reciprocal", "one-to-one", "mean"},
+                    " has no meaning: a track does not run ICP");
   const Settings standard;
   if (settings.icp_iterations != standard.icp_iterations || settings.is_reciprocal ||
       settings.is_one_to_one || settings.use_mean)
@@ -183,7 +186,7 @@ check(const po::variables_map& given, const TrackCommand& command)
   requireWithin(request.span, 1, max_map_scans, "span");
   if (request.span > 1 && request.voxel_size > 0.0)
     throw io::UsageError("--span excludes --map");
-  refuseIcp(request.settings);
+  refuseIcp(given, request.settings);
   const PriorOptions& prior = request.settings.options.prior;
   if (!prior.variance.allFinite())
     throw io::UsageError("--prior-variance must be finite: it is how well the first "

@@ -3,6 +3,7 @@
 #include "html/inline_svg.h"
 #include "io/picture_numbers.h"
 #include "report/draw_set.h"
+#include "report/path_charts.h"
 #include "report/verdict.h"
 #include "summary/estimates.h"
 
@@ -10,7 +11,9 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <sstream>
 
 namespace bayesian_icp::app {
 namespace {
@@ -293,6 +296,44 @@ TEST(DrawSet, KernelIsAsNarrowAsTheChainsAreNotAsTheirDistance)
   EXPECT_NEAR(kernelWidth(near, 5), kernelWidth(far, 5), 1e-9);
   EXPECT_GT(kernelWidth(near, 5), 0.0);
   EXPECT_EQ(kernelWidth(near, 0), 0.0);
+}
+
+/** The numbers of a block of data of a picture's script. */
+std::vector<double>
+numbersOf(const std::string& block, const Chart& chart)
+{
+  const std::string begin = '$' + block + " << EOD\n";
+  const std::size_t from = chart.drawing.script.find(begin) + begin.size();
+  std::istringstream text(chart.drawing.script.substr(
+      from, chart.drawing.script.find("EOD\n", from) - from));
+  return {std::istream_iterator<double>(text), std::istream_iterator<double>()};
+}
+
+TEST(PathChart, DrawsRegionsInTheFrameOfScan0)
+{
+  // The second pose is turned by a right angle, and surest along its own y.
+  PathData path;
+  path.poses.resize(2);
+  path.poses[1].mean << 1.0, 2.0, 0.0, 0.0, 0.0, 0.5 * pi;
+  Vector6d deviations;
+  deviations << 0.1, 0.01, 0.02, 0.001, 0.002, 0.002;
+  path.poses[1].covariance = deviations.array().square().matrix().asDiagonal();
+  path.poses[0].covariance = 1e-8 * path.poses[1].covariance;
+  const std::vector<double> ellipses = numbersOf("ellipses", pathChart(path));
+  ASSERT_EQ(ellipses.size(), 10U);
+  // The 95 % quantile of chi-square with two degrees of freedom is 5.991.
+  const std::array<double, 4> expected = {
+      1.0, 2.0, 0.2 * std::sqrt(5.991465), 0.02 * std::sqrt(5.991465)};
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    EXPECT_NEAR(ellipses[5 + k], expected[k], 1e-6);
+  EXPECT_NEAR(std::abs(ellipses[9]), 90.0, 1e-6);
+
+  const std::vector<Chart> charts = deviationCharts({0.0, 1.0}, "time [s]", path);
+  ASSERT_EQ(charts.size(), 2U);
+  EXPECT_NEAR(numbersOf("data", charts[0]).back(), deviations.head<3>().norm(), 1e-6);
+  EXPECT_NEAR(numbersOf("data", charts[1]).back(),
+              deviations.tail<3>().norm() * 180.0 / pi,
+              1e-6);
 }
 
 TEST(EvenlySpaced, CoversAllAndGivesEachChainItsShare)

@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import shutil
 import subprocess
 import unittest
@@ -210,7 +211,11 @@ class Printed(ToolTest):
         words = "ICP did not converge; the posterior excludes it; it moves the points"
         result = run(*pair, "-d", "0.0001")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertIn(words, " ".join(result.stdout.split()))
+        printed = " ".join(result.stdout.split())
+        self.assertIn(words, printed)
+        final = strict_json(run(*pair, "-d", "0.0001", "--json").stdout)["final_transformation"]
+        millimetres = float(re.search(r"moves the points ([\d.e+]+) mm", printed)[1])
+        self.assertAlmostEqual(millimetres / final["distance_from_mean_m"], 1e3, delta=5.0)
         files = ["-d", "0.0001", "-o", self.folder / "output", "--no-report"]
         for option in ("--json", "--quiet"):
             result = run(*pair, *files, option)
@@ -237,7 +242,11 @@ class Printed(ToolTest):
             for number, value in zip(numbers, [mean, *map(coordinate.get, keys)]):
                 self.assertAlmostEqual(float(number), value, delta=0.6e-6)
             self.assertAlmostEqual(float(numbers[4]), coordinate["rhat"], delta=0.6e-3)
-        self.assertIn("yaw [deg]", text)
+            if coordinate["unit"] == "rad":
+                label = f"{coordinate['name']} [deg]"
+                row = next(line for line in text.splitlines() if line.startswith(label))
+                number = float(row[len(label) :].split()[0])
+                self.assertAlmostEqual(number, math.degrees(mean), delta=0.6e-4)
         self.assertIn("R-hat  bulk ESS  tail ESS", text)
         self.assertIn("Status: not mixed", text)
         self.assertIn("ICP:    converged", text)

@@ -198,6 +198,7 @@ class PoseGraphEdges(PoseGraphTest):
         pose, information = edges[1, 2]
         half = math.sin(0.1)
         self.assert_same_pose(pose, pose_of([0.1, 0.0, 0.0], [0.0, 0.0, half, math.cos(0.1)]))
+        self.assert_same_pose(vertices[3], vertices[2] @ pose)  # by the guess
         # 1 / variance, and 4 / variance of half angles; float round-off of differences.
         self.assert_close(information, np.diag([25.0] * 3 + [100.0] * 3), delta=1e-4)
 
@@ -212,7 +213,9 @@ class PoseGraphEdges(PoseGraphTest):
         self.assertEqual(sorted(vertices), [0, 1, 2, 3])
         self.assertNotIn((1, 2), edges)
 
-        # The graph is in two parts.
+        # The graph is in two parts. Files of an earlier run do not stay beside it.
+        (self.folder / "result").mkdir()
+        self.file("result/trajectory_tum.txt", "old")
         result = call(POSE_GRAPH, *scans, "--optimize", self.folder / "result", *options)
         self.assertEqual(result.returncode, 1)
         self.assertIn("cannot be optimized: no edges join scan 2 to scan 0", result.stderr)

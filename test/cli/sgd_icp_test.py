@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 import cloud_files
 from cli_tool import SMALL_PAIR_POSE, ToolTest, run, strict_json
 
@@ -79,6 +81,10 @@ class SgdIcp(ToolTest):
             point, actual = (cloud_files.numbers(row, *"xyz") for row in (before, after))
             expected = cloud_files.moved(document["T_target_source"], point)
             self.assertLess(math.dist(actual, expected), 1e-7)
+        _, target = cloud_files.read_pcd(self.folder / "target.pcd")
+        points = [np.array([cloud_files.numbers(row, *"xyz") for row in c]) for c in (aligned, target)]
+        squares = ((points[0][:, None] - points[1][None]) ** 2).sum(axis=2).min(axis=1)
+        self.assertAlmostEqual(document["mean_squared_distance_m2"] / squares.mean(), 1.0, delta=1e-4)
 
     def test_no_pairs_within_the_gate(self):
         output = self.folder / "out"

@@ -293,6 +293,26 @@ class TrackWithBadScans(TrackTest):
 
 
 class TrackUsage(TrackTest):
+    def test_guess_is_the_first_motion_whatever_the_period(self):
+        _, target = self.small_pair()
+        far = [(x + 50, y, z) for x, y, z in cloud_files.box_surface(seed=3)]
+        far = self.file("far.pcd", cloud_files.pcd_bytes(far))
+        guess = [0.3, 0.1, 0.0, 0.0, 0.0, 0.2]
+        for period in (0.1, 1.0):
+            self.track = self.folder / f"track_{period}"
+            self.run_track(target, far, "--period", period, "--guess", ",".join(map(str, guess)))
+            self.assertEqual(self.lines()[0]["kind"], "predicted")
+            mean = list(self.lines()[0]["edge"]["mean"].values())
+            self.assert_close([mean[:6]], [guess], delta=1e-9)
+
+    def test_largest_distance_is_that_of_the_preset(self):
+        source, target = self.small_pair()
+        exact = ["--preset", "exact", "--sigma", 0.005, "--effective-points", 300]
+        for distance, kinds in ((0.3, ("registered", "widened")), (1e-4, ("predicted",))):
+            self.track = self.folder / f"track_{distance}"
+            self.run_track(target, source, *exact, "--max-distance", distance)
+            self.assertIn(self.lines()[0]["kind"], kinds)
+
     def test_hardly_in_metres(self):
         """Said of scan 0, by all programs that register many scans."""
         points = [[6000 * c for c in p] for p in cloud_files.box_surface(seed=1)]
@@ -348,7 +368,9 @@ class TrackUsage(TrackTest):
             (2, [*two, "--prior-variance", "inf"], "must be finite"),
             (2, [*two, "--prior-frame", "source-centroid"], "--prior-frame"),
             (2, [*two, "--sigma", "1"], "--sigma"),
-            (2, [*two, "--iterations", 3], "a track does not run ICP"),
+            (2, [*two, "--iterations", 50], "--iterations has no meaning: a track does not"),
+            (2, [*two, "--reciprocal"], "--reciprocal has no meaning"),
+            (2, [*two, "--max-distance", 1], "preset calibrated has no largest distance"),
             (2, [*two, "--map", 1e-9], "--map is 1e-09"),
             (3, [*two, "--period", 2147483648], "not from 0 to below 2^31 s"),
             (3, [*two, "--times", "names"], "'target' is not a number"),

@@ -3,7 +3,7 @@
 import re
 
 import cloud_files
-from cli_tool import FAST, SMALL_PAIR_POSE, ToolTest, run, strict_json
+from cli_tool import FAST, SMALL_PAIR_POSE, ToolTest, run, scans, strict_json
 
 
 class Usage(ToolTest):
@@ -137,6 +137,13 @@ class Values(ToolTest):
         result = run(*self.small_pair(), "--json", *FAST, *arguments)
         self.assert_ran(result)
         return strict_json(result.stdout)["options"]
+
+    def test_icp_uses_its_correspondences(self):
+        ends = set()
+        for words in ([], ["--reciprocal"], ["--one-to-one"]):
+            result = run(*scans("table"), "--json", *FAST, *words)
+            ends.add(str(strict_json(result.stdout)["icp"]["T_target_source"]))
+        self.assertEqual(len(ends), 3)
 
     def test_dashes_and_separators(self):
         for words in (

@@ -265,6 +265,24 @@ TEST_F(LocalizerTest, WidensTheMeasurementOfWhatIsDoubtful)
                   .isApprox(9.0 * stated.estimate.covariance(convention), 1e-12));
 }
 
+TEST_F(LocalizerTest, AddsTheFloorToAPriorThatKnowsSomeMotionsExactly)
+{
+  app::StatedPose planar = somePrior();
+  for (const int k : {2, 3, 4}) {
+    planar.covariance.row(k).setZero();
+    planar.covariance.col(k).setZero();
+  }
+  LocalizerOptions options;
+  for (const double floor : {0.0, 0.03}) {
+    options.prior_floor = {floor, floor};
+    Localizer localizer(options);
+    localizer.setMap(map_);
+    localizer.addPrior(planar);
+    const Localization result = localizer.localize(*cloud_, stamp_ns);
+    EXPECT_EQ(result.posterior.has_value(), floor > 0.0) << result.message;
+  }
+}
+
 TEST_F(LocalizerTest, HasNoMeasurementThatConflictsWithThePrior)
 {
   localizer_.setMap(map_);

@@ -1,12 +1,18 @@
 // What a track does with good and bad steps, and its lines and files.
 #include "graph/trajectory_files.h"
+#include "support/test_support.h"
+#include "track/registration.h"
 #include "track/track.h"
 #include "track/track_line.h"
+
+#include <bayesian_icp/measurement.h>
+#include <bayesian_icp/pipeline.h>
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 
+#include <array>
 #include <stdexcept>
 
 using namespace bayesian_icp;
@@ -166,6 +172,31 @@ TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
             app::g2oText(again.poses(), again.edges()));
   EXPECT_EQ(app::tumCovarianceText(track.times(), track.poses()),
             app::tumCovarianceText(again.times(), again.poses()));
+}
+
+TEST(Registered, TriplesTheDeviationsOfWhatIsDoubtful)
+{
+  // Three of four points of each cloud are of something that the other one lacks.
+  const auto layers = [](std::uint64_t seed, const std::array<double, 4>& heights) {
+    const Eigen::Matrix3Xd surface = wavySurface(seed, 3000, 0.1);
+    Eigen::Matrix3Xd points(3, 4 * surface.cols());
+    for (std::size_t k = 0; k < heights.size(); ++k)
+      points.middleCols(static_cast<Eigen::Index>(k) * surface.cols(), surface.cols()) =
+          surface.colwise() + heights[k] * Eigen::Vector3d::UnitZ();
+    return points;
+  };
+  const PreparedCloud source(layers(1, {0.0, 0.5, 1.0, 1.5}));
+  const PreparedCloud target(layers(2, {0.0, 0.25, 0.75, 1.3}));
+  Options options;
+  options.prior.frame = PriorFrame::Origin;
+  const app::Registration result = app::registered(source, target, options, nullptr);
+  ASSERT_EQ(result.quality, app::Quality::Doubtful) << result.message;
+  const Summary summary =
+      estimatePosterior(source, target, options.prior.mean, options).summary;
+  const PoseMeasurement of_clouds = withoutPrior(
+      PoseEstimate(summary), Prior(options.prior.mean, options.prior.variance));
+  EXPECT_TRUE(result.edge.pose.covariance.isApprox(
+      9.0 * of_clouds.estimate.covariance(CovarianceConvention::RightSE3), 1e-12));
 }
 
 TEST(Track, RefusesLinesOfAnotherOne)
