@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -61,7 +62,8 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setNumberOfThre
 #if PCL_VERSION_COMPARE(>=, 1, 15, 0)
   Icp::setNumberOfThreads(nr_threads);
 #endif
-  options_.chains.num_threads = static_cast<int>(nr_threads);
+  options_.chains.num_threads = static_cast<int>(
+      std::min<unsigned int>(nr_threads, std::numeric_limits<int>::max()));
   this->own_tree_->seeded->num_threads = options_.chains.num_threads;
   this->own_estimation_->num_threads = options_.chains.num_threads;
 }
@@ -126,8 +128,11 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
   if (!is_cancelled)
     return (true);
   this->converged_ = false;
-  estimate_.summary.status = bayesian_icp::Status::Cancelled;
-  estimate_.summary.message = "interrupted before the first draw";
+  auto& summary = estimate_.summary;
+  if (summary.status == bayesian_icp::Status::NotRun) {
+    summary.status = bayesian_icp::Status::Cancelled;
+    summary.message = "interrupted before the first draw";
+  }
   return (false);
 }
 
@@ -226,26 +231,12 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::searchedTargetP
     const
 {
   using namespace bayesian_icp_detail;
-  const bool is_ready_tree = force_no_recompute_ && tree_->getInputCloud();
-  const auto& cloud = is_ready_tree ? *tree_->getInputCloud() : *target_;
-  const IndicesConstPtr selected =
-      is_ready_tree ? tree_->getIndices()
-                    : IndicesConstPtr(correspondence_estimation_->getIndicesTarget());
-  const bool is_whole = !selected || selected->empty();
-  Indices finite;
-  const auto addIfFinite = [&](index_t index) {
-    if (isXYZFinite(cloud[static_cast<std::size_t>(index)]))
-      finite.push_back(index);
-  };
-  if (is_whole)
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-      addIfFinite(static_cast<index_t>(i));
-  else
-    std::for_each(selected->begin(), selected->end(), addIfFinite);
-  if (is_whole && finite.size() == cloud.size())
+  const auto& cloud = this->searchedCloud();
+  const Indices found = this->searchedTarget();
+  if (isWholeCloud(found, cloud.size()))
     return (pointMatrix(cloud));
   PointCloud<PointTarget> selection;
-  copyPointCloud(cloud, finite, selection);
+  copyPointCloud(cloud, found, selection);
   return (pointMatrix(selection));
 }
 

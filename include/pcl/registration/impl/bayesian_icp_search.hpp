@@ -212,6 +212,8 @@ public:
     double max_distance;
     bool is_reciprocal;
     bool source_has_normals;
+    /** Whether a plug-in asks for the moved points or normals. */
+    bool needs_blob;
     /** Moves a cloud, and its normals if it has them. */
     std::function<void(const Source&, Source&, const Matrix4&)> transform;
   };
@@ -234,7 +236,7 @@ public:
       return (Correspondences());
     const auto batch = moveBatch(pose, source_indices);
     PCLPointCloud2::Ptr batch_blob;
-    if (needsBlob()) {
+    if (plugins_.needs_blob) {
       batch_blob.reset(new PCLPointCloud2);
       toPCLPointCloud2(*batch, *batch_blob);
     }
@@ -262,16 +264,6 @@ private:
     const Matrix4 T = bayesian_icp::matrixOf(pose).template cast<Scalar>();
     plugins_.transform(*batch, *batch, T);
     return (batch);
-  }
-
-  bool
-  needsBlob() const
-  {
-    bool is_needed = plugins_.estimation->requiresSourceNormals();
-    for (const auto& rejector : plugins_.rejectors)
-      is_needed |=
-          rejector->requiresSourcePoints() || rejector->requiresSourceNormals();
-    return (is_needed);
   }
 
   Correspondences

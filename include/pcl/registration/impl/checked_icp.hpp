@@ -159,12 +159,11 @@ public:
       indices_.resize(source.size());
       std::iota(indices_.begin(), indices_.end(), 0);
     }
-    const auto own = estimation.getIndicesSource();
-    if (!own || Opened::madeItsIndices(estimation))
+    taken_off_ = givenIndices(estimation);
+    if (!taken_off_)
       return;
-    taken_off_ = own;
     estimation_.setIndicesSource(IndicesPtr());
-    keepOnlyThose(*own, source.size());
+    keepOnlyThose(*taken_off_, source.size());
   }
   ~SourceSelection()
   {
@@ -181,14 +180,18 @@ public:
     return (indices_);
   }
 
+  /** Those that the user gave the estimation. Without any, PCL makes a list of all
+   * points of the input. */
+  static IndicesPtr
+  givenIndices(Estimation& estimation)
+  {
+    const bool are_given = !(estimation.*(&Opened::fake_indices_));
+    return (are_given ? estimation.getIndicesSource() : IndicesPtr());
+  }
+
 private:
   struct Opened : Estimation {
-    /** Without indices of the user's, PCL makes a list of all points of the input. */
-    static bool
-    madeItsIndices(const Estimation& estimation)
-    {
-      return (estimation.*(&Opened::fake_indices_));
-    }
+    using Estimation::fake_indices_;
   };
 
   void
@@ -198,11 +201,9 @@ private:
     for (const auto index : indices_)
       is_selected[static_cast<std::size_t>(index)] = true;
     indices_.clear();
-    for (const auto index : own) {
-      const auto position = static_cast<std::size_t>(index);
-      if (position < num_points && is_selected[position])
+    for (const auto index : own)
+      if (is_selected[static_cast<std::size_t>(index)])
         indices_.push_back(index);
-    }
   }
 
   Estimation& estimation_;
@@ -254,6 +255,17 @@ public:
   }
 
   static void*
+  operator new(std::size_t size, const std::nothrow_t&) noexcept
+  {
+    try {
+      return (Eigen::internal::aligned_malloc(size));
+    }
+    catch (const std::bad_alloc&) {
+      return (nullptr);
+    }
+  }
+
+  static void*
   operator new(std::size_t /* size */, void* place) noexcept
   {
     return (place);
@@ -269,6 +281,12 @@ public:
   operator delete[](void* objects) noexcept
   {
     Eigen::internal::aligned_free(objects);
+  }
+
+  static void
+  operator delete(void* object, const std::nothrow_t&) noexcept
+  {
+    Eigen::internal::aligned_free(object);
   }
 
   static void
@@ -334,20 +352,15 @@ public:
       fail(output, guess, false, complaint);
       return;
     }
-    try {
-      if (&output == input_.get()) { // PCL would cut it to the indices first
-        PointCloudSource moved;
-        Base::align(moved, guess);
-        output = std::move(moved);
-      }
-      else
-        Base::align(output, guess);
+    forgetResult(); // the user's search tree may throw before computeTransformation()
+    converged_ = false;
+    if (&output != input_.get()) {
+      Base::align(output, guess);
+      return;
     }
-    catch (...) { // of the user's search tree
-      forgetResult();
-      converged_ = false;
-      throw;
-    }
+    PointCloudSource moved; // PCL would cut the source to the indices first
+    Base::align(moved, guess);
+    output = std::move(moved);
   }
 
   /** \brief Set the search tree of the target, as PCL's. Refused, with a message, are a
@@ -467,15 +480,11 @@ protected:
         *correspondence_estimation_, *whole, *indices_);
     const Eigen::Matrix4f float_guess = guess.template cast<float>();
     const Indices usable = usablePoints(*whole, selection.indices(), float_guess);
-    const bool is_target_usable =
-        std::any_of(target_->begin(), target_->end(), [](const PointTarget& point) {
-          return (isXYZFinite(point));
-        });
     if (!float_guess.allFinite()) {
       fail(output, guess, false, "the initial guess is not finite");
       return;
     }
-    if (!is_target_usable ||
+    if (searchedTarget().empty() ||
         usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
       fail(output,
            guess,
@@ -503,6 +512,7 @@ protected:
     }
     catch (...) { // of a callback, a plug-in or the memory
       forgetResult();
+      correspondences_->clear(); // they count points of the subset
       converged_ = false;
       throw;
     }
@@ -590,11 +600,49 @@ protected:
     plugins.max_distance = max_distance;
     plugins.is_reciprocal = use_reciprocal_correspondence_;
     plugins.source_has_normals = source_has_normals_;
+    plugins.needs_blob = this->need_source_blob_;
     plugins.transform = [this](const PointCloudSource& in,
                                PointCloudSource& out,
                                const Matrix4& T) { transformCloud(in, out, T); };
     return (std::unique_ptr<PairSearch<PointTarget>>(
         new PluginSearch<PointSource, PointTarget, Scalar>(plugins, source, target_)));
+  }
+
+  bool
+  hasReadyTree() const
+  {
+    return (force_no_recompute_ && tree_->getInputCloud());
+  }
+
+  /** The cloud of the target points that the search tree finds. */
+  const PointCloudTarget&
+  searchedCloud() const
+  {
+    return (hasReadyTree() ? *tree_->getInputCloud() : *target_);
+  }
+
+  /** Indices of its finite points that the search tree finds. */
+  Indices
+  searchedTarget() const
+  {
+    if (force_no_recompute_ && !hasReadyTree() && isDefaultTree(*tree_))
+      return (Indices());
+    const PointCloudTarget& cloud = searchedCloud();
+    const IndicesConstPtr selected =
+        hasReadyTree()
+            ? tree_->getIndices()
+            : IndicesConstPtr(correspondence_estimation_->getIndicesTarget());
+    Indices found;
+    const auto addIfFinite = [&](index_t index) {
+      if (isXYZFinite(cloud[static_cast<std::size_t>(index)]))
+        found.push_back(index);
+    };
+    if (selected)
+      std::for_each(selected->begin(), selected->end(), addIfFinite);
+    else
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+        addIfFinite(static_cast<index_t>(i));
+    return (found);
   }
 
   /** The transformation next to \p to that the transformation estimation allows: a
@@ -651,9 +699,11 @@ private:
   static std::enable_if_t<traits::has_normal<PointT>::value>
   setNormals(PointCloud<PointT>& cloud)
   {
-    Eigen::Index axis = 0;
+    int axis = 0;
     for (PointT& point : cloud) {
-      point.getNormalVector3fMap() = Eigen::Vector3f::Unit(axis);
+      point.normal_x = axis == 0 ? 1.0F : 0.0F;
+      point.normal_y = axis == 1 ? 1.0F : 0.0F;
+      point.normal_z = axis == 2 ? 1.0F : 0.0F;
       axis = (axis + 1) % 3;
     }
   }
@@ -674,7 +724,7 @@ private:
     return (is_refused);
   }
 
-  /** What is wrong with clouds and indices; empty if nothing is, or PCL says it. */
+  /** What is wrong with clouds, indices and plug-ins; empty if nothing is. */
   std::string
   complaintAboutInput() const
   {
@@ -684,10 +734,20 @@ private:
       return ("the target that was set last is empty or a null pointer");
     if (!input_ || !target_)
       return (std::string("no ") + (input_ ? "target" : "source") + " has been set");
+    if (input_->empty() || target_->empty())
+      return (std::string("the ") + (input_->empty() ? "source" : "target") +
+              " has no points");
+    if (!correspondence_estimation_ || !transformation_estimation_)
+      return ("an estimation is a null pointer");
     // PCL adapts indices of its own to the source.
-    if (indices_ && !fake_indices_ && !areWithin(*indices_, input_->size()))
-      return ("an index is outside the source of " + std::to_string(input_->size()) +
-              " points");
+    for (const IndicesConstPtr& selected :
+         {IndicesConstPtr(fake_indices_ ? nullptr : indices_),
+          IndicesConstPtr(
+              SourceSelection<PointSource, PointTarget, Scalar>::givenIndices(
+                  *correspondence_estimation_))})
+      if (selected && !areWithin(*selected, input_->size()))
+        return ("an index is outside the source of " + std::to_string(input_->size()) +
+                " points");
     const IndicesConstPtr selected = correspondence_estimation_->getIndicesTarget();
     if (selected && !force_no_recompute_ && !areWithin(*selected, target_->size()))
       return ("an index is outside the target of " + std::to_string(target_->size()) +
