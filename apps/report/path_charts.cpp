@@ -147,6 +147,23 @@ pathScript(const PathData& path, const Axes& axes, const std::string& ellipses)
          colouredAs(path_colour) + '\n';
 }
 
+constexpr int width = 720;
+
+/** Of the picture: a metre is as long on both axes. */
+int
+heightFor(const std::vector<GaussianPose>& poses, const Axes& axes)
+{
+  constexpr double margins = 80.0, least = 200.0, most = 480.0;
+  Eigen::Array2d low = poses.front().mean(axes).array(), high = low;
+  for (const GaussianPose& pose : poses) {
+    low = low.min(pose.mean(axes).array());
+    high = high.max(pose.mean(axes).array());
+  }
+  const Eigen::Array2d span = high - low;
+  const double ratio = span[0] > 0.0 ? span[1] / span[0] : 1.0;
+  return static_cast<int>(std::clamp(margins + width * ratio, least, most));
+}
+
 /** A line of each pose: x and what \p deviationOf says of its covariance. */
 template <typename DeviationOf>
 std::string
@@ -176,7 +193,7 @@ pathChart(const PathData& path)
           "The trajectory",
           caption,
           caption,
-          {720, 480, pathScript(path, axes, ellipses)},
+          {width, heightFor(path.poses, axes), pathScript(path, axes, ellipses)},
           html::FigureWidth::Scrolled};
 }
 
