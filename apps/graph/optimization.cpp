@@ -15,6 +15,7 @@
 #include <ceres/problem.h>
 #include <ceres/product_manifold.h>
 #include <ceres/rotation.h>
+#include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
 
 #include <array>
@@ -77,30 +78,17 @@ secondCoefficient(const Eigen::Matrix<T, 3, 1>& w)
 using PoseManifold =
     ceres::ProductManifold<ceres::EuclideanManifold<3>, ceres::EigenQuaternionManifold>;
 
-/** log(T_edge^-1 T_0_target^-1 T_0_source), whitened, less what comes of noises that
- * other edges have, too: the edge's own part of the error, of variance 1. */
+/** log(T_edge^-1 T_0_target^-1 T_0_source), whitened and divided by the deviation of
+ * the edge's own part of it. */
 struct EdgeError {
   Eigen::Vector3d position;
   Eigen::Quaterniond rotation;
-  /** S^-1/2, symmetric. */
+  /** S^-1/2, symmetric, divided by this deviation. */
   Matrix6d whitening;
-  /** noiseToSource() of the edge. */
-  Matrix6d to_source;
-  /** directionOf() it. */
-  Vector6d direction;
-  SharedNoise shared;
 
-  /** \param[in] target_noise 6 independent numbers with variance 1
-   * \param[in] source_noise as well
-   * \param[in] common_noise num_common of all edges, column by column */
   template <typename T>
   bool
-  operator()(const T* target_pose,
-             const T* source_pose,
-             const T* target_noise,
-             const T* source_noise,
-             const T* common_noise,
-             T* residual) const
+  operator()(const T* target_pose, const T* source_pose, T* residual) const
   {
     using Vector3 = Eigen::Matrix<T, 3, 1>;
     const PoseView<T> target(target_pose), source(source_pose);
@@ -114,16 +102,74 @@ struct EdgeError {
     const Vector3 turned = w.cross(shift);
     Eigen::Matrix<T, 6, 1> error;
     error << shift - T(0.5) * turned + secondCoefficient<T>(w) * w.cross(turned), w;
-    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_target(target_noise);
-    const Eigen::Map<const Eigen::Matrix<T, 6, 1>> of_source(source_noise);
-    const Eigen::Map<const Eigen::Matrix<T, 6, 6>> of_all(common_noise);
-    Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} =
-        (whitening.cast<T>() * error -
-         T(std::sqrt(shared.scan)) * (of_source - to_source.cast<T>() * of_target) -
-         T(std::sqrt(shared.common)) * (of_all * direction.cast<T>())) /
-        T(std::sqrt(shared.own()));
+    Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} = whitening.cast<T>() * error;
     return true;
   }
+};
+
+EdgeError
+errorOf(const GraphEdge& edge)
+{
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
+  if (!(solver.eigenvalues()[0] > 0.0))
+    throw std::invalid_argument(
+        "the covariance of edge " + std::to_string(edge.target) + '-' +
+        std::to_string(edge.source) + " is not positive definite");
+  const Eigen::Isometry3d pose(edge.T_target_source);
+  return {pose.translation(),
+          Eigen::Quaterniond(pose.linear()).normalized(),
+          solver.operatorInverseSqrt() / std::sqrt(edge.shared.own())};
+}
+
+/** EdgeError less what comes of noises that other edges have, too: the edge's own part
+ * of the error, divided by its deviation. The parameters are the poses of target and
+ * source, the noises of their scans (6 independent numbers with variance 1 each), and
+ * the num_common numbers of the noise of all edges, column by column. */
+class OwnError : public ceres::SizedCostFunction<6, 7, 7, 6, 6, num_common> {
+public:
+  explicit OwnError(const GraphEdge& edge) : of_poses_(new EdgeError(errorOf(edge)))
+  {
+    const SharedNoise& shared = edge.shared;
+    const double of_scan = std::sqrt(shared.scan / shared.own());
+    of_target_ = of_scan * noiseToSource(edge.T_target_source);
+    of_source_ = -of_scan * Matrix6d::Identity();
+    const Vector6d direction = directionOf(edge.T_target_source);
+    for (int k = 0; k < 6; ++k)
+      of_all_.middleCols<6>(6 * k) = -std::sqrt(shared.common / shared.own()) *
+                                     direction[k] * Matrix6d::Identity();
+  }
+
+  bool
+  Evaluate(const double* const* parameters,
+           double* residuals,
+           double** jacobians) const override
+  {
+    if (!of_poses_.Evaluate(parameters, residuals, jacobians))
+      return false;
+    Eigen::Map<Vector6d>{residuals} +=
+        of_target_ * Eigen::Map<const Vector6d>(parameters[2]) +
+        of_source_ * Eigen::Map<const Vector6d>(parameters[3]) +
+        of_all_ * Eigen::Map<const OfAllEdges>(parameters[4]);
+    if (jacobians == nullptr)
+      return true;
+    if (jacobians[2] != nullptr)
+      Eigen::Map<RowMajor<6>>{jacobians[2]} = of_target_;
+    if (jacobians[3] != nullptr)
+      Eigen::Map<RowMajor<6>>{jacobians[3]} = of_source_;
+    if (jacobians[4] != nullptr)
+      Eigen::Map<RowMajor<num_common>>{jacobians[4]} = of_all_;
+    return true;
+  }
+
+private:
+  using OfAllEdges = Eigen::Matrix<double, num_common, 1>;
+  template <int columns>
+  using RowMajor = Eigen::Matrix<double, 6, columns, Eigen::RowMajor>;
+
+  ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7> of_poses_;
+  /** Derivatives by the noises, which are constant. */
+  Matrix6d of_target_, of_source_;
+  RowMajor<num_common> of_all_;
 };
 
 Parameters
@@ -143,23 +189,6 @@ transformOf(const Parameters& parameters)
   pose.linear() = view.rotation.normalized().toRotationMatrix();
   pose.translation() = view.position;
   return pose.matrix();
-}
-
-EdgeError
-errorOf(const GraphEdge& edge)
-{
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(edge.covariance);
-  if (!(solver.eigenvalues()[0] > 0.0))
-    throw std::invalid_argument(
-        "the covariance of edge " + std::to_string(edge.target) + '-' +
-        std::to_string(edge.source) + " is not positive definite");
-  const Eigen::Isometry3d pose(edge.T_target_source);
-  return {pose.translation(),
-          Eigen::Quaterniond(pose.linear()).normalized(),
-          solver.operatorInverseSqrt(),
-          noiseToSource(edge.T_target_source),
-          directionOf(edge.T_target_source),
-          edge.shared};
 }
 
 /** Whether edges lead from each vertex to vertex 0. */
@@ -284,15 +313,13 @@ private:
   {
     const auto target = static_cast<std::size_t>(edge.target);
     const auto source = static_cast<std::size_t>(edge.source);
-    problem_.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<EdgeError, 6, 7, 7, 6, 6, num_common>(
-            new EdgeError(errorOf(edge))),
-        lossOf(loss_, edge.shared),
-        pose(target),
-        pose(source),
-        noise(target),
-        noise(source),
-        commonNoise());
+    problem_.AddResidualBlock(new OwnError(edge),
+                              lossOf(loss_, edge.shared),
+                              pose(target),
+                              pose(source),
+                              noise(target),
+                              noise(source),
+                              commonNoise());
   }
 
   void
