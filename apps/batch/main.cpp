@@ -103,15 +103,13 @@ Example:
 }
 
 /** As io::readCommandLine(), and reads the configuration file that it names. */
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const auto read = io::readCommandLine(argc, argv, options, "manifest", toolText());
-  if (!read)
-    return std::nullopt;
-  const po::variables_map& given = *read;
+  const po::variables_map given =
+      io::readCommandLine(argc, argv, options, "manifest", toolText());
   const std::vector<std::string> manifests = io::optionTexts(given, "manifest");
   if (manifests.empty())
     throw io::UsageError("expected a manifest");
@@ -248,10 +246,7 @@ runToFile(const Request& request,
 int
 runTool(int argc, char** argv, const Ranks& ranks)
 {
-  const std::optional<Request> asked = parseCommandLine(argc, argv);
-  if (!asked)
-    return io::Good;
-  const Request& request = *asked;
+  const Request request = parseCommandLine(argc, argv);
   if (!request.note.empty() && !request.is_quiet && ranks.rank() == 0)
     io::tell("note: " + request.note);
   if (ranks.size() > 1 && request.results_file.empty())

@@ -85,14 +85,14 @@ generalOptions()
   return group;
 }
 
-std::optional<po::variables_map>
+po::variables_map
 readCommandLine(int argc,
                 const char* const* argv,
                 const po::options_description& options,
                 const char* positional_name,
                 const ToolText& tool)
 {
-  const po::variables_map given = splitCommandLine(
+  po::variables_map given = splitCommandLine(
       {argv + std::min(argc, 1), argv + argc}, options, positional_name);
   if (given.count("help") == 0 && given.count("version") == 0)
     return given;
@@ -102,7 +102,7 @@ readCommandLine(int argc,
   else
     text << tool.version << '\n';
   print(text.str());
-  return std::nullopt;
+  throw Answered();
 }
 
 void

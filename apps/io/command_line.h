@@ -16,7 +16,6 @@
 #include <boost/program_options/variables_map.hpp>
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -69,8 +68,8 @@ generalOptions();
 
 /** \brief splitCommandLine(), and print help or version if the command line asks for
  * it.
- * \return nothing if it does */
-std::optional<boost::program_options::variables_map>
+ * \throws Answered if it does */
+boost::program_options::variables_map
 readCommandLine(int argc,
                 const char* const* argv,
                 const boost::program_options::options_description& options,

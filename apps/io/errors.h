@@ -15,6 +15,10 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/** \brief The tool was asked about itself, for example for its help, and has answered:
+ * there is nothing more to do. */
+struct Answered {};
+
 /** \brief A file cannot be read, used or written; the message names it and the reason.
  */
 struct FileError : std::runtime_error {

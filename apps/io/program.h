@@ -74,6 +74,9 @@ runProgram(
   try {
     return work();
   }
+  catch (const Answered&) {
+    return Good;
+  }
   catch (const UsageError& error) {
     tell(std::string(error.what()) + " (see --help)");
     exit_code = BadUsage;

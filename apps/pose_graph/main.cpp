@@ -182,15 +182,13 @@ Example:
 )"};
 
 /** As io::readCommandLine(), and looks into the folder that it names. */
-std::optional<GraphCommand>
+GraphCommand
 parseCommandLine(int argc, const char* const* argv)
 {
   GraphCommand command;
   const po::options_description options = describeOptions(command);
-  const auto read = io::readCommandLine(argc, argv, options, "scan", tool_text);
-  if (!read)
-    return std::nullopt;
-  const po::variables_map& given = *read;
+  const po::variables_map given =
+      io::readCommandLine(argc, argv, options, "scan", tool_text);
   GraphRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);
@@ -340,7 +338,6 @@ main(int argc, char** argv)
 {
   using namespace bayesian_icp;
   return io::runProgram("pcl_bayesian_icp_pose_graph", [&] {
-    const auto command = app::parseCommandLine(argc, argv);
-    return command ? app::makeGraph(*command) : io::Good;
+    return app::makeGraph(app::parseCommandLine(argc, argv));
   });
 }

@@ -229,15 +229,13 @@ isSgdIcpAskedFor(const po::variables_map& given)
 
 } // namespace
 
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const auto read = io::readCommandLine(argc, argv, options, "cloud", toolText());
-  if (!read)
-    return std::nullopt;
-  const po::variables_map& given = *read;
+  const po::variables_map given =
+      io::readCommandLine(argc, argv, options, "cloud", toolText());
   request.command = io::commandOf(argc, argv);
   const bool is_sgd = isSgdIcpAskedFor(given);
   if (is_sgd)

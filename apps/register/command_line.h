@@ -33,11 +33,10 @@ struct Request {
   std::string note;
 };
 
-/** \brief Read the command line, and the configuration file that it names.
- * \return nothing if it asks for help or version, which has been printed
+/** \brief io::readCommandLine(), and the configuration file that it names.
  * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
  *         read */
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv);
 
 } // namespace bayesian_icp::app

@@ -154,10 +154,8 @@ registerAsAsked(const Request& request)
 int
 runTool(int argc, char** argv)
 {
-  const std::optional<Request> request = parseCommandLine(argc, argv);
-  if (!request)
-    return io::Good;
-  return request->sgd ? runSgdIcp(*request) : registerAsAsked(*request);
+  const Request request = parseCommandLine(argc, argv);
+  return request.sgd ? runSgdIcp(request) : registerAsAsked(request);
 }
 
 } // namespace

@@ -159,18 +159,16 @@ refuseOptionsWithoutEffect(const po::variables_map& given,
 
 } // namespace
 
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const auto read = io::readCommandLine(argc, argv, options, nullptr, tool_text);
-  if (!read)
-    return std::nullopt;
-  const po::variables_map& given = *read;
+  const po::variables_map given =
+      io::readCommandLine(argc, argv, options, nullptr, tool_text);
   if (given.count("list-scenes") > 0) {
     io::print(sceneList());
-    return std::nullopt;
+    throw io::Answered();
   }
   for (const char* required : {"scene", "output"})
     if (given.count(required) == 0)

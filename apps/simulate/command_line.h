@@ -5,7 +5,6 @@
 
 #include "simulator/simulation.h"
 
-#include <optional>
 #include <string>
 
 namespace bayesian_icp::simulator {
@@ -16,11 +15,10 @@ struct Request {
   std::string output_folder;
 };
 
-/** \brief Read the command line.
- * \return nothing if it asks for help or the list of scenes, which has been printed
+/** \brief io::readCommandLine(), which may also ask for the list of scenes.
  * \throws io::UsageError, or std::invalid_argument with a message for the user, if it
  *         cannot be understood */
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv);
 
 } // namespace bayesian_icp::simulator

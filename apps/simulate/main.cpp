@@ -155,20 +155,18 @@ writePair(const std::string& folder,
 int
 runTool(int argc, const char* const* argv)
 {
-  std::optional<Request> request;
+  Request request;
   ScanPair pair;
   try {
     request = parseCommandLine(argc, argv);
-    if (!request)
-      return io::Good;
-    pair = simulate(request->options);
+    pair = simulate(request.options);
   }
   catch (const std::invalid_argument& error) {
     throw io::UsageError(error.what());
   }
   io::catchInterrupt(); // from here on all files or none
-  writePair(request->output_folder, request->options, pair);
-  io::print(request->output_folder + ": " + request->options.scene + ", source " +
+  writePair(request.output_folder, request.options, pair);
+  io::print(request.output_folder + ": " + request.options.scene + ", source " +
             std::to_string(pair.source.cols()) + " points, target " +
             std::to_string(pair.target.cols()) + " points\n");
   return io::wasInterrupted() ? io::Interrupted : io::Good;

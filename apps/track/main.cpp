@@ -252,7 +252,6 @@ main(int argc, char** argv)
 {
   using namespace bayesian_icp;
   return io::runProgram("pcl_bayesian_icp_track", [&] {
-    const auto command = app::parseTrackCommand(argc, argv);
-    return command ? app::makeTrack(*command) : io::Good;
+    return app::makeTrack(app::parseTrackCommand(argc, argv));
   });
 }

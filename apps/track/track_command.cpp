@@ -250,16 +250,14 @@ Example:
 
 } // namespace
 
-std::optional<TrackCommand>
+TrackCommand
 parseTrackCommand(int argc, const char* const* argv)
 {
   TrackCommand command;
   TimeOptions times;
   const po::options_description options = describeOptionsOfTrack(command, times);
-  const auto read = io::readCommandLine(argc, argv, options, "scan", tool_text);
-  if (!read)
-    return std::nullopt;
-  const po::variables_map& given = *read;
+  const po::variables_map given =
+      io::readCommandLine(argc, argv, options, "scan", tool_text);
   TrackRequest& request = command.request;
   request.scans = io::scansOf(io::optionTexts(given, "scan"));
   io::takeOptions(given, options);

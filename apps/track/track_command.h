@@ -5,7 +5,6 @@
 
 #include "track/tracker.h"
 
-#include <optional>
 #include <string>
 
 namespace bayesian_icp::app {
@@ -21,11 +20,10 @@ struct TrackCommand {
   std::string command;
 };
 
-/** \brief Read the command line, and look into the folder that it names.
- * \return nothing if it asks for help or version, which has been printed
+/** \brief io::readCommandLine(), and look into the folder that it names.
  * \throws io::UsageError if it cannot be understood, io::FileError if a file cannot be
  *         read */
-std::optional<TrackCommand>
+TrackCommand
 parseTrackCommand(int argc, const char* const* argv);
 
 } // namespace bayesian_icp::app

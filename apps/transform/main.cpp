@@ -17,7 +17,6 @@
 #include <Eigen/Geometry>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -88,15 +87,13 @@ Example:
 )"};
 
 /** As io::readCommandLine(). */
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const auto read = io::readCommandLine(argc, argv, options, "cloud", tool_text);
-  if (!read)
-    return std::nullopt;
-  const po::variables_map& given = *read;
+  const po::variables_map given =
+      io::readCommandLine(argc, argv, options, "cloud", tool_text);
   const std::vector<std::string> clouds = io::optionTexts(given, "cloud");
   if (clouds.size() != 2)
     throw io::UsageError("expected two files, the input and the output, but got " +
@@ -167,11 +164,9 @@ transformCloud(const Request& request)
 int
 runTool(int argc, char** argv)
 {
-  if (const auto request = parseCommandLine(argc, argv)) {
-    io::silencePcl();
-    transformCloud(*request);
-  }
-  return io::wasInterrupted() ? io::Interrupted : 0;
+  io::silencePcl();
+  transformCloud(parseCommandLine(argc, argv));
+  return io::wasInterrupted() ? io::Interrupted : io::Good;
 }
 
 } // namespace

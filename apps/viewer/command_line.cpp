@@ -263,15 +263,13 @@ refuseSettings(const po::variables_map& given)
 
 } // namespace
 
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv)
 {
   Request request;
   const po::options_description options = describeOptions(request);
-  const auto read = io::readCommandLine(argc, argv, options, "file", toolText());
-  if (!read)
-    return std::nullopt;
-  const po::variables_map& given = *read;
+  const po::variables_map given =
+      io::readCommandLine(argc, argv, options, "file", toolText());
   takeFiles(given, request);
   io::takeOptions(given, options);
   const std::string& picture = request.view.screenshot_file;

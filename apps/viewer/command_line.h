@@ -6,7 +6,6 @@
 #include "register/settings.h"
 #include "viewer/view_options.h"
 
-#include <optional>
 #include <string>
 
 namespace bayesian_icp::viewer {
@@ -25,11 +24,10 @@ struct Request {
   std::string note;
 };
 
-/** \brief Read the command line.
- * \return nothing if it asks for help or version, which has been printed
+/** \brief io::readCommandLine(), and the configuration file that it names.
  * \throws io::UsageError if it cannot be understood, io::FileError if a configuration
  *         file cannot be read */
-std::optional<Request>
+Request
 parseCommandLine(int argc, const char* const* argv);
 
 } // namespace bayesian_icp::viewer

@@ -215,7 +215,6 @@ main(int argc, char** argv)
 {
   using namespace bayesian_icp;
   return io::runProgram("pcl_bayesian_icp_viewer", [&]() -> int {
-    const auto request = viewer::parseCommandLine(argc, argv);
-    return request ? viewer::show(*request) : io::Good;
+    return viewer::show(viewer::parseCommandLine(argc, argv));
   });
 }

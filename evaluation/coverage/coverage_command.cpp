@@ -22,7 +22,6 @@
 #include <iostream>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -166,23 +165,20 @@ refuseMisplaced(const po::variables_map& given, const CoverageOptions& options)
       refuse(name, "of random guesses, which --rows replaces");
 }
 
-/** \return nothing if the command line asks for help, which has been printed
- * \throws io::UsageError with a message for the user */
-std::optional<CoverageOptions>
+/** \throws io::UsageError with a message for the user */
+CoverageOptions
 readCoverageOptions(int argc, const char* const* argv)
 {
   constexpr int num_quick_cases = 3;
   CoverageOptions options;
   const auto given = readOptions(argc, argv, describeOptions(options), coverage_help);
-  if (!given)
-    return std::nullopt;
   options.sequences.seed = options.first_seed;
   options.has_sequences =
       !options.real_folder.empty() && !hasManifest(options.real_folder);
-  refuseMisplaced(*given, options);
-  if (options.is_quick && (*given)["seeds"].defaulted())
+  refuseMisplaced(given, options);
+  if (options.is_quick && given["seeds"].defaulted())
     options.num_seeds = num_quick_cases;
-  if (options.is_quick && (*given)["pairs"].defaulted())
+  if (options.is_quick && given["pairs"].defaulted())
     options.sequences.max_pairs = num_quick_cases;
   return options;
 }
@@ -407,20 +403,18 @@ reportProgress(const StudyProgress& progress, const CoverageCaseName& last)
 int
 runCoverageCommand(int argc, const char* const* argv)
 {
-  const std::optional<CoverageOptions> options = readCoverageOptions(argc, argv);
-  if (!options)
-    return 0;
+  const CoverageOptions options = readCoverageOptions(argc, argv);
   io::silencePcl();
-  CoverageStudy study = studyOf(*options);
+  CoverageStudy study = studyOf(options);
   study.report = reportProgress;
-  CoverageFile results(options->result.file);
+  CoverageFile results(options.result.file);
   runCoverageStudy(study, results);
   std::cout
       << "Share of truths within the regions of some probabilities, with its 95 % "
          "interval\n(which counts a real pair once, for all seeds):\n";
   for (const TextTable& table : coverageTables(runsOf(study, results)))
     table.print(std::cout);
-  return options->result.report();
+  return options.result.report();
 }
 
 } // namespace bayesian_icp::evaluate

@@ -173,9 +173,7 @@ runCyclesCommand(int argc, const char* const* argv)
   // clang-format on
   addResultOptions(options.result, description, "CSV file of the closures");
   const auto given = readOptions(argc, argv, description, cycles_help, "graph");
-  if (!given)
-    return 0;
-  const std::vector<std::string> files = io::optionTexts(*given, "graph");
+  const std::vector<std::string> files = io::optionTexts(given, "graph");
   if (files.size() != 1)
     throw io::UsageError("a graph is needed: GRAPH.g2o");
   if (io::isSameFile(files[0], options.result.file))

@@ -8,7 +8,6 @@
 
 #include <iostream>
 #include <numeric>
-#include <optional>
 
 namespace bayesian_icp::evaluate {
 
@@ -122,9 +121,8 @@ describeOptions(PaperStudyOptions& options)
 
 /** \param[in] help is printed before the options if it is asked for
  * \param[in] unused as in NamedExperiment
- * \return nothing if that was help
  * \throws io::UsageError with a message for the user */
-std::optional<PaperStudyOptions>
+PaperStudyOptions
 readPaperOptions(int argc,
                  const char* const* argv,
                  const std::string& help,
@@ -132,14 +130,12 @@ readPaperOptions(int argc,
 {
   PaperStudyOptions options;
   const auto given = readOptions(argc, argv, describeOptions(options), help);
-  if (!given)
-    return std::nullopt;
   for (const std::string& name : unused)
-    if (!(*given)[name].defaulted())
+    if (!given[name].defaulted())
       throw io::UsageError("--" + name + ": has no effect on this experiment");
-  options.has_report = given->count("no-report") == 0;
+  options.has_report = given.count("no-report") == 0;
   const auto makeSmaller = [&](const char* name, int& count, int quick) {
-    if (options.is_quick && (*given)[name].defaulted())
+    if (options.is_quick && given[name].defaulted())
       count = quick;
   };
   makeSmaller("points", options.num_points, num_quick_points);
@@ -159,15 +155,12 @@ runExperiments(const std::string& summary,
 {
   PaperStudy study;
   study.command = "pcl_bayesian_icp_evaluate " + io::commandOf(argc, argv);
-  const auto options =
+  study.options =
       readPaperOptions(argc,
                        argv,
                        std::string("Usage: pcl_bayesian_icp_evaluate ") + argv[0] +
                            " [options]\n\n" + summary + help_of_all,
                        unused);
-  if (!options)
-    return 0;
-  study.options = *options;
   io::silencePcl();
   study.pairs = readPairs(study.options, std::cerr, study.num_skipped);
   study.report = [](const std::string& line) { std::cerr << line << std::endl; };

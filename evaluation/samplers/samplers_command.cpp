@@ -16,7 +16,6 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -166,23 +165,20 @@ describeOptions(SamplersOptions& options)
   return description;
 }
 
-/** \return nothing if the command line asks for help, which has been printed
- * \throws io::UsageError with a message for the user */
-std::optional<SamplersOptions>
+/** \throws io::UsageError with a message for the user */
+SamplersOptions
 readSamplersOptions(int argc, const char* const* argv)
 {
   SamplersOptions options;
   const auto given = readOptions(argc, argv, describeOptions(options), samplers_help);
-  if (!given)
-    return std::nullopt;
   if (options.scenes.empty())
     throw io::UsageError("--scenes names no scene");
   if (options.is_quick) {
-    if ((*given)["scenes"].defaulted())
+    if (given["scenes"].defaulted())
       options.scenes = {"can"};
-    if ((*given)["seeds"].defaulted())
+    if (given["seeds"].defaulted())
       options.num_seeds = 2;
-    if ((*given)["points"].defaulted())
+    if (given["points"].defaulted())
       options.num_points = 500;
   }
   options.gold.num_threads = options.num_threads;
@@ -368,21 +364,19 @@ ProblemStudy::run()
 int
 runSamplersCommand(int argc, const char* const* argv)
 {
-  const std::optional<SamplersOptions> options = readSamplersOptions(argc, argv);
-  if (!options)
-    return 0;
+  const SamplersOptions options = readSamplersOptions(argc, argv);
   io::silencePcl();
   std::vector<Scene> scenes;
-  for (const std::string& name : options->scenes)
+  for (const std::string& name : options.scenes)
     scenes.push_back(readScene(
-        options->data_folder, name, static_cast<std::size_t>(options->num_points)));
-  ResultFile results(options->result.file);
+        options.data_folder, name, static_cast<std::size_t>(options.num_points)));
+  ResultFile results(options.result.file);
   bool all_converged = true;
   std::set<std::string> keys;
   for (const Scene& scene : scenes)
-    for (const Cell& cell : options->cells) {
-      const Problem problem(scene, cell, options->residual);
-      ProblemStudy study{problem, *options, results};
+    for (const Cell& cell : options.cells) {
+      const Problem problem(scene, cell, options.residual);
+      ProblemStudy study{problem, options, results};
       all_converged &= study.run();
       keys.insert(study.gold_key);
     }
@@ -391,7 +385,7 @@ runSamplersCommand(int argc, const char* const* argv)
     return keys.count(run.name.gold_key) == 0;
   });
   samplerTable(runs).print(std::cout);
-  const int report_code = options->result.report();
+  const int report_code = options.result.report();
   return all_converged ? report_code : 1;
 }
 

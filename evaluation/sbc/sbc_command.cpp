@@ -119,8 +119,7 @@ int
 runSbcCommand(int argc, const char* const* argv)
 {
   SbcOptions options;
-  if (!readOptions(argc, argv, describeOptions(options), sbc_help))
-    return 0;
+  readOptions(argc, argv, describeOptions(options), sbc_help);
   RankFile results(options.result.file);
   runMissing(options, results);
   std::vector<RankRun> runs;

@@ -113,17 +113,16 @@ addResultOptions(ResultOptions& result,
   // clang-format on
 }
 
-std::optional<po::variables_map>
+po::variables_map
 readOptions(int argc,
             const char* const* argv,
             const po::options_description& description,
             const std::string& help,
             const char* positional_name)
 {
-  const auto given = io::readCommandLine(
+  po::variables_map given = io::readCommandLine(
       argc, argv, description, positional_name, {"", help + '\n', ""});
-  if (given)
-    io::takeOptions(*given, description);
+  io::takeOptions(given, description);
   return given;
 }
 

@@ -8,7 +8,6 @@
 #include "io/command_line.h"
 
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -89,9 +88,10 @@ addResultOptions(ResultOptions& result,
 /** \brief Read a command line, and fill the places of its options.
  * \param[in] help is printed before the options if it is asked for
  * \param[in] positional_name as in io::splitCommandLine()
- * \return what is given; nothing if that was help
- * \throws io::UsageError with a message for the user */
-std::optional<boost::program_options::variables_map>
+ * \return what is given
+ * \throws io::UsageError with a message for the user, io::Answered if it is help that
+ * is asked for */
+boost::program_options::variables_map
 readOptions(int argc,
             const char* const* argv,
             const boost::program_options::options_description& description,

@@ -281,9 +281,7 @@ runTrajectoriesCommand(int argc, const char* const* argv)
   TrajectoriesOptions options;
   const po::options_description description = describe(options);
   const auto given = readOptions(argc, argv, description, trajectoriesHelp(), "folder");
-  if (!given)
-    return 0;
-  const std::vector<std::string> folders = io::optionTexts(*given, "folder");
+  const std::vector<std::string> folders = io::optionTexts(given, "folder");
   if (folders.size() > 1)
     throw io::UsageError("one folder of recordings at most");
   std::vector<RegisteredRecording> recordings =

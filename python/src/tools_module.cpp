@@ -53,14 +53,15 @@ simulate(const std::vector<std::string>& arguments)
   for (const std::string& argument : arguments)
     words.push_back(argument.c_str());
   simulator::ScanPair pair;
-  {
+  try {
     const py::gil_scoped_release release;
-    const auto request =
-        simulator::parseCommandLine(static_cast<int>(words.size()), words.data());
-    if (!request)
-      throw std::invalid_argument(
-          "help, version and list_scenes are no options of simulate()");
-    pair = simulator::simulate(request->options);
+    pair = simulator::simulate(
+        simulator::parseCommandLine(static_cast<int>(words.size()), words.data())
+            .options);
+  }
+  catch (const io::Answered&) {
+    throw std::invalid_argument(
+        "help, version and list_scenes are no options of simulate()");
   }
   return py::make_tuple(RowMajorPoints(pair.source.transpose()),
                         RowMajorPoints(pair.target.transpose()),
