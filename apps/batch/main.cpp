@@ -37,8 +37,6 @@ struct Request {
   bool is_quiet = false;
   /** Of pairs that say nothing else. */
   Settings settings;
-  /** Something that the user ought to know; empty if nothing. */
-  std::string note;
 };
 
 po::options_description
@@ -122,7 +120,7 @@ parseCommandLine(int argc, const char* const* argv)
     io::refuseOptions(given,
                       {"prior-mean", "prior-variance", "prior-frame"},
                       " and --suggested-prior exclude each other");
-  request.settings = settingsFrom(given, request.note);
+  request.settings = settingsFrom(given);
   return request;
 }
 
@@ -247,8 +245,8 @@ int
 runTool(int argc, char** argv, const Ranks& ranks)
 {
   const Request request = parseCommandLine(argc, argv);
-  if (!request.note.empty() && !request.is_quiet && ranks.rank() == 0)
-    io::tell("note: " + request.note);
+  if (!request.settings.note.empty() && !request.is_quiet && ranks.rank() == 0)
+    io::tell("note: " + request.settings.note);
   if (ranks.size() > 1 && request.results_file.empty())
     throw io::UsageError("several processes need --results");
   io::silencePcl();

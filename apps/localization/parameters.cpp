@@ -79,13 +79,12 @@ readParameters(const std::map<std::string, std::string>& parameters)
   }
   const po::variables_map given = io::splitCommandLine(arguments, all, nullptr);
   io::takeOptions(given, own);
-  std::string note;
-  options.settings = settingsFrom(given, note);
+  options.settings = settingsFrom(given);
   for (const char* name : not_of_calibrated)
     if (options.settings.options.preset == Preset::Calibrated && given.count(name) > 0)
       throw io::UsageError(std::string(name) + " has no effect with preset calibrated");
-  if (!note.empty())
-    std::cerr << note << '\n';
+  if (!options.settings.note.empty())
+    std::cerr << options.settings.note << '\n';
   const std::string complaint = options.validate();
   if (!complaint.empty())
     throw io::UsageError(complaint);

@@ -38,8 +38,6 @@ struct GraphCommand {
   std::string optimized_folder;
   RobustLoss loss = RobustLoss::None;
   bool is_quiet = false;
-  /** Something that the user ought to know; empty if nothing. */
-  std::string note;
   /** As a shell takes it. */
   std::string command;
 };
@@ -194,7 +192,7 @@ parseCommandLine(int argc, const char* const* argv)
   io::takeOptions(given, options);
   for (const std::string& text : io::optionTexts(given, "loop"))
     request.loops.push_back(loopOf(text, request.scans.size()));
-  request.settings = settingsFrom(given, command.note);
+  request.settings = settingsFrom(given);
   check(given, command);
   command.command = io::commandOf(argc, argv);
   return command;
@@ -278,8 +276,8 @@ planeNormalOfScan(const std::string& file)
 int
 makeGraph(const GraphCommand& command)
 {
-  if (!command.note.empty() && !command.is_quiet)
-    io::tell("note: " + command.note);
+  if (!command.request.settings.note.empty() && !command.is_quiet)
+    io::tell("note: " + command.request.settings.note);
   io::silencePcl();
   const std::filesystem::path file(command.output_file);
   std::optional<io::OutputFolder> folder_of_file, optimized_folder;

@@ -259,7 +259,7 @@ parseCommandLine(int argc, const char* const* argv)
     throw io::UsageError("--json and --quiet exclude each other");
   checkExports(request);
   if (!is_sgd)
-    request.settings = settingsFrom(given, request.note);
+    request.settings = settingsFrom(given);
   return request;
 }
 

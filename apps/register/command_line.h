@@ -28,9 +28,6 @@ struct Request {
   Settings settings;
   /** With --method sgd-icp, in place of the settings above. */
   std::optional<SgdSettings> sgd;
-  /** Something in a configuration file that the user ought to know; empty if nothing.
-   */
-  std::string note;
 };
 
 /** \brief io::readCommandLine(), and the configuration file that it names.

@@ -170,10 +170,9 @@ isAuthorsConfig(const json& document)
  * coordinates; mini-batches from a shuffled source; icp.max-matching-distance as the
  * gate; normalize-cloud scales both clouds, and all lengths of the file are then in
  * scaled units; icp.filter rejects repeated matches of one target point. Its
- * convergence limits concern its optimisers only.
- * \param[out] note what is read but has no effect */
+ * convergence limits concern its optimisers only. */
 Settings
-settingsOfAuthorsConfig(const json& file, std::string& note)
+settingsOfAuthorsConfig(const json& file)
 {
   const JsonNode document(file);
   checkKeys(document);
@@ -190,16 +189,14 @@ settingsOfAuthorsConfig(const json& file, std::string& note)
   settings.is_step_size_times_points = true;
   settings.is_effective_points_source_size = true;
   takeSampler(document, settings.options);
-  note = noteAbout(document);
+  settings.note = noteAbout(document);
   return settings;
 }
 
 } // namespace
 
 Settings
-readConfigFile(const std::string& file,
-               const std::optional<Preset>& preset,
-               std::string& note)
+readConfigFile(const std::string& file, const std::optional<Preset>& preset)
 {
   const json document = io::readJson(file, max_config_size);
   try {
@@ -212,7 +209,7 @@ readConfigFile(const std::string& file,
     if (preset.value_or(Preset::Paper) != Preset::Paper)
       throw io::UsageError(std::string("is for preset paper, and the preset is ") +
                            toString(*preset));
-    return settingsOfAuthorsConfig(document, note);
+    return settingsOfAuthorsConfig(document);
   }
   catch (const io::UsageError& error) {
     throw io::UsageError(file + ": " + error.what());

@@ -14,12 +14,9 @@ namespace bayesian_icp::app {
  * posterior.json itself, or a config.json of the authors' program. Settings that it
  * does not mention have their defaults.
  * \param[in] preset replaces that of the file; the file must have settings of it only
- * \param[out] note something that the user ought to know; empty if nothing
  * \throws io::FileError if there is no JSON in the file, io::UsageError if what it asks
  *         for is unknown, malformed or not available */
 Settings
-readConfigFile(const std::string& file,
-               const std::optional<Preset>& preset,
-               std::string& note);
+readConfigFile(const std::string& file, const std::optional<Preset>& preset);
 
 } // namespace bayesian_icp::app

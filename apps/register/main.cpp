@@ -130,8 +130,8 @@ report(const Request& request, const Run& run)
 int
 registerAsAsked(const Request& request)
 {
-  if (!request.note.empty() && !request.is_quiet)
-    io::tell("note: " + request.note);
+  if (!request.settings.note.empty() && !request.is_quiet)
+    io::tell("note: " + request.settings.note);
   std::optional<io::OutputFolder> folder;
   if (!request.output_folder.empty())
     folder.emplace(request.output_folder);

@@ -41,6 +41,9 @@ struct Settings {
   bool is_step_size_times_points = false;
   bool is_effective_points_source_size = false;
 
+  /** \brief What the user ought to know of the configuration file; empty if nothing. */
+  std::string note;
+
   /** \brief Whether the clouds are to be scaled: preset `paper` alone has a scale of
    * its own, 1 m, that this changes. */
   bool

@@ -37,7 +37,7 @@ describeSettings(po::options_description& options)
 }
 
 Settings
-settingsFrom(const po::variables_map& given, std::string& note)
+settingsFrom(const po::variables_map& given)
 {
   Settings settings;
   std::string config;
@@ -49,7 +49,7 @@ settingsFrom(const po::variables_map& given, std::string& note)
                       }));
   io::takeOptions(given, first);
   if (!config.empty())
-    settings = readConfigFile(config, preset, note);
+    settings = readConfigFile(config, preset);
   OptionReader reader{given};
   visitSettings(settings, reader);
   if (settings.are_lengths_scaled)

@@ -19,9 +19,8 @@ void
 describeSettings(boost::program_options::options_description& options);
 
 /** \brief What the command line, and the file that --config names, say of the settings.
- * \param[out] note something that the user ought to know; empty if nothing
  * \throws io::UsageError or io::FileError naming the option or file */
 Settings
-settingsFrom(const boost::program_options::variables_map& given, std::string& note);
+settingsFrom(const boost::program_options::variables_map& given);
 
 } // namespace bayesian_icp::app

@@ -193,8 +193,8 @@ int
 makeTrack(const TrackCommand& command)
 {
   const TrackRequest& request = command.request;
-  if (!command.note.empty() && !command.is_quiet)
-    io::tell("note: " + command.note);
+  if (!command.request.settings.note.empty() && !command.is_quiet)
+    io::tell("note: " + command.request.settings.note);
   io::silencePcl();
   io::OutputFolder folder(command.output_folder);
   const MotionModel model = motionModelOf(request);

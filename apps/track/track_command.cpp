@@ -264,7 +264,7 @@ parseTrackCommand(int argc, const char* const* argv)
   if (!times.source.empty())
     io::refuseOptions(given, {"period"}, " and --times exclude each other");
   requireWithin(times.period, shortest_interval, io::time_limit, "period");
-  request.settings = settingsFrom(given, command.note);
+  request.settings = settingsFrom(given);
   Options& options_of_presets = request.settings.options;
   for (double* const gate : {&options_of_presets.exact.residual.max_distance,
                              &options_of_presets.paper.max_distance})

@@ -14,8 +14,6 @@ struct TrackCommand {
   TrackRequest request;
   std::string output_folder;
   bool is_quiet = false;
-  /** Something that the user ought to know; empty if nothing. */
-  std::string note;
   /** As a shell takes it. */
   std::string command;
 };

@@ -283,7 +283,7 @@ parseCommandLine(int argc, const char* const* argv)
       (request.view.width < 2 * least_width || request.view.height < 2 * least_height))
     throw io::UsageError("--size: with -multiview 1 at least 600x400");
   if (request.posterior_file.empty())
-    request.settings = app::settingsFrom(given, request.note);
+    request.settings = app::settingsFrom(given);
   else
     refuseSettings(given);
   return request;

@@ -20,8 +20,6 @@ struct Request {
   app::Settings settings;
   ViewOptions view;
   bool is_quiet = false;
-  /** Something about the settings that the user ought to know; empty if nothing. */
-  std::string note;
 };
 
 /** \brief io::readCommandLine(), and the configuration file that it names.

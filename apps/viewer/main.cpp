@@ -177,8 +177,8 @@ int
 show(const Request& request)
 {
   io::silencePcl();
-  if (!request.note.empty() && !request.is_quiet)
-    io::tell("note: " + request.note);
+  if (!request.settings.note.empty() && !request.is_quiet)
+    io::tell("note: " + request.settings.note);
   // It is known before the work whether the picture can be written.
   std::optional<io::OutputFolder> folder;
   const std::filesystem::path file = request.view.screenshot_file;

@@ -33,9 +33,7 @@ LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   const std::string file =
       fuzz::writeInput(evaluate::manifest_name, fuzz::textOf(data, size));
   app::Settings settings;
-  std::string note;
-  if (fuzz::isAccepted(
-          [&] { settings = app::readConfigFile(file, std::nullopt, note); }))
+  if (fuzz::isAccepted([&] { settings = app::readConfigFile(file, std::nullopt); }))
     checkSettings(settings);
   for (const bool use_suggested_prior : {false, true})
     fuzz::isAccepted([&] {
