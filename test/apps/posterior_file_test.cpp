@@ -124,62 +124,44 @@ TEST(PosteriorJson, HasEachNumberUnderItsName)
 {
   app::Run run = runWith(someDraws(50));
   Summary& summary = run.result.summary;
-  summary.coordinates[4] = CoordinateSummary();
   CoordinateSummary& pitch = summary.coordinates[4];
-  pitch.mean = 1.0;
-  pitch.standard_deviation = 2.0;
-  pitch.quantile_2_5 = 3.0;
-  pitch.median = 4.0;
-  pitch.quantile_97_5 = 5.0;
-  pitch.rhat = 6.0;
-  pitch.bulk_ess = 7.0;
-  pitch.tail_ess = 8.0;
-  pitch.mcse = 9.0;
   DataReport& data = summary.data;
   data.is_available = true;
-  data.noise_scale = 10.0;
-  data.residual_scale = 11.0;
-  data.effective_patches = 12.0;
-  data.degrees_of_freedom = 13;
-  data.correlation_factor = 14.0;
-  data.active_fraction = 15.0;
-  data.active_fraction_of_target = 16.0;
-  data.basin_distance = 17.0;
-  data.other_cost_ratio = 18.0;
-  data.prior_probability = 19.0;
-  DataDirection direction;
-  direction.standard_deviation = 20.0;
-  direction.prior_standard_deviation = 21.0;
-  direction.relative_information = 22.0;
-  data.directions = {direction};
-
-  const auto document = nlohmann::json::parse(app::posteriorJson(run));
+  data.directions.resize(1);
+  DataDirection& direction = data.directions[0];
   const std::string coordinate = "/posterior/coordinates/4/";
-  const std::pair<std::string, double> expected[] = {
-      {coordinate + "mean", 1.0},
-      {coordinate + "standard_deviation", 2.0},
-      {coordinate + "quantile_2.5_percent", 3.0},
-      {coordinate + "median", 4.0},
-      {coordinate + "quantile_97.5_percent", 5.0},
-      {coordinate + "rhat", 6.0},
-      {coordinate + "bulk_ess", 7.0},
-      {coordinate + "tail_ess", 8.0},
-      {coordinate + "mcse_of_mean", 9.0},
-      {"/data/noise_scale_m", 10.0},
-      {"/data/noise_scale_in_units_of_the_target", 11.0},
-      {"/data/effective_patches", 12.0},
-      {"/data/degrees_of_freedom", 13.0},
-      {"/data/correlation_factor", 14.0},
-      {"/data/active_fraction", 15.0},
-      {"/data/active_fraction_of_target", 16.0},
-      {"/data/basin_distance_in_standard_deviations", 17.0},
-      {"/data/other_start_cost_ratio", 18.0},
-      {"/data/prior_probability", 19.0},
-      {"/data/directions/0/standard_deviation_m", 20.0},
-      {"/data/directions/0/prior_standard_deviation_m", 21.0},
-      {"/data/directions/0/information_in_units_of_the_prior", 22.0}};
-  for (const auto& [pointer, value] : expected)
-    EXPECT_EQ(document.at(nlohmann::json::json_pointer(pointer)), value) << pointer;
+  const std::pair<std::string, double&> numbers[] = {
+      {coordinate + "mean", pitch.mean},
+      {coordinate + "standard_deviation", pitch.standard_deviation},
+      {coordinate + "quantile_2.5_percent", pitch.quantile_2_5},
+      {coordinate + "median", pitch.median},
+      {coordinate + "quantile_97.5_percent", pitch.quantile_97_5},
+      {coordinate + "rhat", pitch.rhat},
+      {coordinate + "bulk_ess", pitch.bulk_ess},
+      {coordinate + "tail_ess", pitch.tail_ess},
+      {coordinate + "mcse_of_mean", pitch.mcse},
+      {"/data/noise_scale_m", data.noise_scale},
+      {"/data/noise_scale_in_units_of_the_target", data.residual_scale},
+      {"/data/effective_patches", data.effective_patches},
+      {"/data/correlation_factor", data.correlation_factor},
+      {"/data/active_fraction", data.active_fraction},
+      {"/data/active_fraction_of_target", data.active_fraction_of_target},
+      {"/data/basin_distance_in_standard_deviations", data.basin_distance},
+      {"/data/other_start_cost_ratio", data.other_cost_ratio},
+      {"/data/prior_probability", data.prior_probability},
+      {"/data/directions/0/standard_deviation_m", direction.standard_deviation},
+      {"/data/directions/0/prior_standard_deviation_m",
+       direction.prior_standard_deviation},
+      {"/data/directions/0/information_in_units_of_the_prior",
+       direction.relative_information}};
+  data.degrees_of_freedom = 100;
+  double next = 1.0;
+  for (const auto& [pointer, number] : numbers)
+    number = next++;
+  const auto document = nlohmann::json::parse(app::posteriorJson(run));
+  for (const auto& [pointer, number] : numbers)
+    EXPECT_EQ(document.at(nlohmann::json::json_pointer(pointer)), number) << pointer;
+  EXPECT_EQ(document["data"]["degrees_of_freedom"], 100);
 }
 
 TEST_F(PosteriorFiles, UndefinedNumbersAreNan)

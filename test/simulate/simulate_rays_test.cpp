@@ -33,25 +33,6 @@ TEST(SensorPose, LooksAlongTheView)
   }
 }
 
-TEST(SensorRays, OfTheLidarHaveTheStatedAngles)
-{
-  SimulationOptions options = cleanOptions("room");
-  options.sensor.noise = 1.0;
-  const Scan scan = scanTarget(options);
-  ASSERT_EQ(raysPerRow(options.sensor), 180);
-  ASSERT_EQ(scan.points.cols(), 32 * 180) << "a closed room returns every ray";
-  for (Eigen::Index i = 0; i < scan.points.cols(); ++i) {
-    const Vector3d point = scan.points.col(i);
-    const Eigen::Index ring = i / 180;
-    const double elevation = std::asin(point.z() / point.norm());
-    ASSERT_NEAR(
-        elevation, (-30.0 + 40.0 / 31.0 * static_cast<double>(ring)) * degree, 1e-9);
-    const double azimuth = 2.0 * static_cast<double>(i % 180) * degree;
-    const Vector3d across(-std::sin(azimuth), std::cos(azimuth), 0.0);
-    ASSERT_NEAR(across.dot(point), 0.0, 1e-9);
-  }
-}
-
 TEST(SensorRays, OfTheCameraGoThroughThePixelsUpToTheJitter)
 {
   SimulationOptions options = cleanOptions("table");
