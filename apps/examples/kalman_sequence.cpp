@@ -69,9 +69,7 @@ readArguments(int argc, char** argv)
 Vector6d
 varianceOf(double metres, double radians)
 {
-  Vector6d deviation;
-  deviation << metres, metres, metres, radians, radians, radians;
-  return deviation.cwiseAbs2();
+  return Vector6d(metres, metres, metres, radians, radians, radians).cwiseAbs2();
 }
 
 /** A line of poses.txt, T_world_sensor. */

@@ -42,13 +42,15 @@ textOf(Number value)
 }
 
 /** \brief The value with at most \p num_digits significant digits, without trailing
- * zeros. */
+ * zeros; with another \p format as many digits as that says. */
 inline std::string
-textOf(double value, int num_digits)
+textOf(double value,
+       int num_digits,
+       std::chars_format format = std::chars_format::general)
 {
-  char buffer[64];
-  const auto result = std::to_chars(
-      buffer, buffer + sizeof(buffer), value, std::chars_format::general, num_digits);
+  char buffer[512];
+  const auto result =
+      std::to_chars(buffer, buffer + sizeof(buffer), value, format, num_digits);
   return std::string(buffer, result.ptr);
 }
 
@@ -56,10 +58,7 @@ textOf(double value, int num_digits)
 inline std::string
 fixedTextOf(double value, int num_decimals)
 {
-  char buffer[512];
-  const auto result = std::to_chars(
-      buffer, buffer + sizeof(buffer), value, std::chars_format::fixed, num_decimals);
-  return std::string(buffer, result.ptr);
+  return textOf(value, num_decimals, std::chars_format::fixed);
 }
 
 /** \brief The pieces of \p text between characters of \p separators, empty ones left

@@ -5,6 +5,7 @@
 #include "io/errors.h"
 #include "io/field_triple.h"
 #include "io/numbers.h"
+#include "io/time_stamps.h"
 #include "register/configure.h"
 
 #include <bayesian_icp/measurement.h>
@@ -18,8 +19,6 @@
 namespace bayesian_icp::app {
 
 namespace {
-
-constexpr double ns_per_s = 1e9;
 
 /** ROS 1 had frames with a leading slash, ROS 2 has none. */
 std::string
@@ -67,12 +66,6 @@ pointsOf(const pcl::PCLPointCloud2& message, const std::string& what)
   if (cloud->empty())
     throw Refusal(the_cloud + "has no finite points");
   return cloud;
-}
-
-double
-secondsBetween(std::int64_t a_ns, std::int64_t b_ns)
-{
-  return static_cast<double>(a_ns - b_ns) / ns_per_s;
 }
 
 std::string
@@ -226,7 +219,7 @@ Localizer::priorNear(std::int64_t stamp_ns) const
   if (priors_.empty())
     throw Refusal("no prior has arrived");
   const auto distance = [stamp_ns](const StatedPose& prior) {
-    return std::abs(secondsBetween(prior.stamp_ns, stamp_ns));
+    return std::abs(io::secondsOf(prior.stamp_ns - stamp_ns));
   };
   // Of equally near ones the last, which may be a correction.
   const auto nearest = std::min_element(
@@ -263,7 +256,7 @@ Localizer::localize(const pcl::PCLPointCloud2& cloud,
     const Cloud::Ptr source = pointsOf(cloud, "cloud");
     result.values.emplace_back("finite points", std::to_string(source->size()));
     const StatedPose stated = priorNear(stamp_ns);
-    const double age = secondsBetween(stamp_ns, stated.stamp_ns);
+    const double age = io::secondsOf(stamp_ns - stated.stamp_ns);
     result.values.emplace_back("prior's age [s]", shortly(age));
     if (std::abs(age) > options_.max_prior_age)
       throw Refusal("no prior is near enough in time: the nearest is " +

@@ -48,12 +48,11 @@ complaintWithOption(const std::string& complaint, const VisitFields& visit_field
   std::string name = complaint.substr(0, complaint.find_first_of(" ["));
   name.erase(0, name.find('.') + 1);
   std::string option;
-  const auto look = [&](const Field& field, const auto&) {
+  visit_fields([&](const Field& field, const auto&) {
     const std::string key = field.key;
     if (key == name || "num_" + key == name || key.rfind(name + '_', 0) == 0)
       option = "--" + longNameOf(field) + ": ";
-  };
-  visit_fields(look);
+  });
   return option + complaint;
 }
 

@@ -84,8 +84,7 @@ largestCoordinate(const Eigen::Matrix3Xf& points)
 void
 scaleSummary(double unit, Summary& summary)
 {
-  Vector6d factors;
-  factors << unit, unit, unit, 1.0, 1.0, 1.0;
+  const Vector6d factors(unit, unit, unit, 1.0, 1.0, 1.0);
   summary.mean = factors.cwiseProduct(summary.mean);
   const auto scale = [&](std::array<Matrix6d, 4>& covariances) {
     for (Matrix6d& covariance : covariances)
@@ -119,8 +118,7 @@ scaleResult(double unit, RegistrationResult& result)
   for (Chain& chain : result.chains)
     chain.draws.leftCols<3>() *= unit;
   scaleSummary(unit, result.summary);
-  Vector6d factors;
-  factors << unit, unit, unit, 1.0, 1.0, 1.0;
+  const Vector6d factors(unit, unit, unit, 1.0, 1.0, 1.0);
   const Prior& prior = result.prior;
   result.prior = Prior(factors.cwiseProduct(prior.mean()),
                        factors.cwiseAbs2().cwiseProduct(prior.variance()),

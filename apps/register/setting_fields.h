@@ -19,7 +19,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /** \brief Call visit(field, value) for the settings of the registration. */
 template <typename SettingsT, typename Visitor>
 void
-visitRegistration(SettingsT& settings, Visitor& visit)
+visitRegistration(SettingsT& settings, Visitor&& visit)
 {
   constexpr const char* group = "registration";
   visit({group, "guess_matrix", "guess", "POSE|FILE",
@@ -50,7 +50,7 @@ visitRegistration(SettingsT& settings, Visitor& visit)
 /** \brief Call visit(field, value) for the settings of the posterior. */
 template <typename OptionsT, typename Visitor>
 void
-visitPosterior(OptionsT& options, Visitor& visit)
+visitPosterior(OptionsT& options, Visitor&& visit)
 {
   visit({"posterior", "preset", "preset", "NAME",
          "Posterior to sample: paper is Algorithm 1, literally; exact draws correctly "
@@ -75,7 +75,7 @@ visitPosterior(OptionsT& options, Visitor& visit)
  */
 template <typename ChainsT, typename Visitor>
 void
-visitChains(ChainsT& chains, Visitor& visit)
+visitChains(ChainsT& chains, Visitor&& visit)
 {
   visit({"chains", "num_chains", "chains", "N",
          "Number of independent chains."}, chains.num_chains);
@@ -92,7 +92,7 @@ visitChains(ChainsT& chains, Visitor& visit)
  */
 template <typename ScaleT, typename Visitor>
 void
-visitScale(ScaleT& scale, Visitor& visit)
+visitScale(ScaleT& scale, Visitor&& visit)
 {
   visit({"posterior", "effective_points", "effective-points", "N",
          "N of the paper's eq. (5): weight of the likelihood, not the size of the "
@@ -105,7 +105,7 @@ visitScale(ScaleT& scale, Visitor& visit)
 /** \brief Call visit(field, value) for the lengths of the chains. */
 template <typename PresetT, typename Visitor>
 void
-visitLengths(PresetT& preset, Visitor& visit)
+visitLengths(PresetT& preset, Visitor&& visit)
 {
   visit({"chains", "num_burn_in", "burn-in", "N",
          "Number of steps at the start of each chain that are not kept."},
@@ -117,7 +117,7 @@ visitLengths(PresetT& preset, Visitor& visit)
 /** \brief Call visit(field, value) for the settings of preset `paper`. */
 template <typename SettingsT, typename Visitor>
 void
-visitPaper(SettingsT& settings, Visitor& visit)
+visitPaper(SettingsT& settings, Visitor&& visit)
 {
   auto& paper = settings.options.paper;
   visitScale(paper.scale, visit);
@@ -162,7 +162,7 @@ visitPaper(SettingsT& settings, Visitor& visit)
  * residual is that of the registration. */
 template <typename SettingsT, typename Visitor>
 void
-visitExact(SettingsT& settings, Visitor& visit)
+visitExact(SettingsT& settings, Visitor&& visit)
 {
   auto& exact = settings.options.exact;
   visitScale(exact.scale, visit);
@@ -204,7 +204,7 @@ visitExact(SettingsT& settings, Visitor& visit)
 /** \brief Call visit(field, value) for the settings of preset `calibrated`. */
 template <typename SettingsT, typename Visitor>
 void
-visitCalibrated(SettingsT& settings, Visitor& visit)
+visitCalibrated(SettingsT& settings, Visitor&& visit)
 {
   auto& calibrated = settings.options.calibrated;
   visitLengths(calibrated, visit);
@@ -220,7 +220,7 @@ visitCalibrated(SettingsT& settings, Visitor& visit)
 /** \brief Call visit(field, value) for the settings of \p preset. */
 template <typename SettingsT, typename Visitor>
 void
-visitPreset(Preset preset, SettingsT& settings, Visitor& visit)
+visitPreset(Preset preset, SettingsT& settings, Visitor&& visit)
 {
   switch (preset) {
   case Preset::Paper:
@@ -236,7 +236,7 @@ visitPreset(Preset preset, SettingsT& settings, Visitor& visit)
  * which itself comes before those that depend on it. */
 template <typename SettingsT, typename Visitor>
 void
-visitSettings(SettingsT& settings, Visitor& visit)
+visitSettings(SettingsT& settings, Visitor&& visit)
 {
   visitRegistration(settings, visit);
   visitPosterior(settings.options, visit);

@@ -23,11 +23,10 @@ hasSetting(Preset preset, const std::string& name)
 {
   const Settings settings;
   bool has_it = false;
-  auto look = [&](const Field& field, const auto&) {
+  visitPreset(preset, settings, [&](const Field& field, const auto&) {
     has_it |= name == "--" + longNameOf(field) || name == field.group ||
               name == pathOf(field);
-  };
-  visitPreset(preset, settings, look);
+  });
   return has_it;
 }
 

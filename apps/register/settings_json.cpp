@@ -117,15 +117,14 @@ settingsOf(const json& document, const Settings& defaults)
   Settings settings = defaults;
   const JsonNode root(document);
   std::set<std::string> known;
-  const auto take = [&](const Field& field, auto& value) {
+  visitSettings(settings, [&](const Field& field, auto& value) {
     known.insert({field.group, pathOf(field)});
     if (!root.has(field.group))
       return;
     root[field.group].requireObject();
     if (root[field.group].has(field.key))
       read(field, root[field.group][field.key], value);
-  };
-  visitSettings(settings, take);
+  });
   for (const auto& [group, content] : document.items()) {
     refuseIfUnknown(group, known, settings.options.preset);
     for (const auto& item : content.items())

@@ -21,17 +21,14 @@ describeSettings(po::options_description& options)
       "Read settings from a posterior.json, from its 'options' alone, or from a "
       "config.json of the authors' program. Options on the command line take "
       "precedence. Without it, all settings have their defaults.");
-  Describer describe_registration{registration};
-  visitRegistration(defaults, describe_registration);
+  visitRegistration(defaults, Describer{registration});
   po::options_description posterior("Posterior");
-  Describer describe_posterior{posterior};
-  visitPosterior(defaults.options, describe_posterior);
-  visitChains(defaults.options.chains, describe_posterior);
+  visitPosterior(defaults.options, Describer{posterior});
+  visitChains(defaults.options.chains, Describer{posterior});
   options.add(registration).add(posterior);
   for (const Preset preset : choicesOf(Preset())) {
     po::options_description group(std::string("Preset ") + toString(preset));
-    Describer describe{group};
-    visitPreset(preset, defaults, describe);
+    visitPreset(preset, defaults, Describer{group});
     options.add(group);
   }
 }
@@ -50,8 +47,7 @@ settingsFrom(const po::variables_map& given)
   io::takeOptions(given, first);
   if (!config.empty())
     settings = readConfigFile(config, preset);
-  OptionReader reader{given};
-  visitSettings(settings, reader);
+  visitSettings(settings, OptionReader{given});
   if (settings.are_lengths_scaled)
     io::refuseOptions(
         given,

@@ -18,7 +18,7 @@ constexpr const char* group = "options";
 /** Calls visit(field, value) for what only SGD-ICP has. */
 template <typename OptionsT, typename Visitor>
 void
-visitOwnFields(OptionsT& options, Visitor& visit)
+visitOwnFields(OptionsT& options, Visitor&& visit)
 {
   visit({group, "optimizer", "optimizer", "NAME",
          "Optimizer that turns gradients into steps."}, options.optimizer);
@@ -39,7 +39,7 @@ visitOwnFields(OptionsT& options, Visitor& visit)
 /** As visitOwnFields(), for what Bayesian ICP has, too. */
 template <typename SettingsT, typename Visitor>
 void
-visitSharedFields(SettingsT& settings, Visitor& visit)
+visitSharedFields(SettingsT& settings, Visitor&& visit)
 {
   auto& options = settings.options;
   visit({group, "step_size", "step-size", "", ""}, options.step_size);
@@ -53,7 +53,7 @@ visitSharedFields(SettingsT& settings, Visitor& visit)
 
 template <typename SettingsT, typename Visitor>
 void
-visitSgdFields(SettingsT& settings, Visitor& visit)
+visitSgdFields(SettingsT& settings, Visitor&& visit)
 {
   visitOwnFields(settings.options, visit);
   visitSharedFields(settings, visit);
@@ -63,11 +63,10 @@ void
 refuseOptionsOfThePosterior(const po::variables_map& given)
 {
   std::set<std::string> known = {"method", "output", "json", "quiet", "cloud"};
-  const auto note = [&known](const Field& field, const auto&) {
-    known.insert(longNameOf(field));
-  };
   const SgdSettings settings;
-  visitSgdFields(settings, note);
+  visitSgdFields(settings, [&known](const Field& field, const auto&) {
+    known.insert(longNameOf(field));
+  });
   for (const auto& option : given)
     if (known.count(option.first) == 0)
       throw io::UsageError("--" + option.first + ": has no effect with method sgd-icp");
@@ -98,9 +97,8 @@ po::options_description
 describeSgdOptions()
 {
   po::options_description options("Method sgd-icp only");
-  Describer describe{options};
   const StochasticGradientIcpOptions defaults;
-  visitOwnFields(defaults, describe);
+  visitOwnFields(defaults, Describer{options});
   return options;
 }
 
@@ -109,8 +107,7 @@ sgdSettingsFrom(const po::variables_map& given)
 {
   refuseOptionsOfThePosterior(given);
   SgdSettings settings;
-  OptionReader reader{given};
-  visitSgdFields(settings, reader);
+  visitSgdFields(settings, OptionReader{given});
   settings.options.is_one_to_one = given.count("keep-duplicates") == 0;
   check(settings, given.count("step-size") > 0);
   if (std::isnan(settings.options.step_size))

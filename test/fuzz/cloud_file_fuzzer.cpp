@@ -17,9 +17,7 @@ using namespace bayesian_icp;
 Eigen::Matrix4d
 someMotion()
 {
-  Vector6d pose;
-  pose << 1.0, -2.0, 0.5, 0.1, -0.2, 3.0;
-  return matrixOf(pose);
+  return matrixOf({1.0, -2.0, 0.5, 0.1, -0.2, 3.0});
 }
 
 /** Equal, or both NaN. */

@@ -137,37 +137,31 @@ public:
   bool
   operator()(double& number)
   {
-    const bool is_changed = isNext();
-    if (is_changed)
-      number = oddNumber(bytes_);
-    return is_changed;
+    return changeBy([&] { number = oddNumber(bytes_); });
   }
 
   bool
   operator()(Vector6d& vector)
   {
-    const bool is_changed = isNext();
-    if (is_changed)
-      vector = oddVector(bytes_);
-    return is_changed;
+    return changeBy([&] { vector = oddVector(bytes_); });
   }
 
   bool
   operator()(int& count, int least, int most)
   {
-    const bool is_changed = isNext();
-    if (is_changed)
-      count = oddCount(bytes_, least, most);
-    return is_changed;
+    return changeBy([&] { count = oddCount(bytes_, least, most); });
   }
 
 private:
+  template <typename Change>
   bool
-  isNext()
+  changeBy(const Change& change)
   {
-    const bool is_set = (fields_ & 1U) != 0;
+    const bool is_changed = (fields_ & 1U) != 0;
     fields_ >>= 1U;
-    return is_set;
+    if (is_changed)
+      change();
+    return is_changed;
   }
 
   Bytes& bytes_;
@@ -224,15 +218,13 @@ optionsOf(Bytes& bytes)
 }
 
 /** Any, but what is asked for takes memory: 5 MB for 100 000 draws. */
-ChainOptions
-oddChains(Bytes& bytes)
+void
+makeOdd(Bytes& bytes, ChainOptions& chains)
 {
   constexpr int largest_int = std::numeric_limits<int>::max();
-  ChainOptions chains;
   chains.num_chains = oddCount(bytes, 1, 20);
   chains.num_draws = bytes.PickValueInArray({-1, 0, 1, 20, 500, 100000});
   chains.num_threads = bytes.PickValueInArray({1, 2, 0, -1, largest_int});
-  return chains;
 }
 
 StochasticGradientIcpOptions
@@ -278,12 +270,8 @@ widen(Bytes& bytes, RegistrationInput& input)
 {
   if (bytes.ConsumeBool())
     input.options.prior.frame = choiceOf<PriorFrame>(bytes, 3);
-  if (bytes.ConsumeBool()) {
-    const ChainOptions chains = oddChains(bytes);
-    input.options.chains.num_chains = chains.num_chains;
-    input.options.chains.num_draws = chains.num_draws;
-    input.options.chains.num_threads = chains.num_threads;
-  }
+  if (bytes.ConsumeBool())
+    makeOdd(bytes, input.options.chains);
   if (!bytes.ConsumeBool()) {
     input.source = input.source.cast<float>().cast<double>();
     input.target = input.target.cast<float>().cast<double>();

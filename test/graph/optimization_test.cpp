@@ -120,9 +120,8 @@ TEST(OptimizedPosesOf, TwoParallelEdgesAreTheirMeanWeightedByInformation)
 TEST(OptimizedPosesOf, AnEdgeThatLeavesARotationFreeLetsItGoAnyFar)
 {
   // About an axis 2 m away, as of a round object. The other edge is exact.
-  Vector6d turn;
-  turn << 0.0, -2.0, 0.0, 0.0, 0.0, 1.0;
-  Matrix6d tight = 1e-6 * Matrix6d::Identity();
+  const Vector6d turn(0.0, -2.0, 0.0, 0.0, 0.0, 1.0);
+  const Matrix6d tight = 1e-6 * Matrix6d::Identity();
   for (const double angle : {0.35, 1.2, 2.0, 3.0}) {
     GraphEdge measured, free;
     measured.source = free.source = 1;

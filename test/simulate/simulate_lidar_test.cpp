@@ -161,8 +161,7 @@ TEST(CarLidar, MeasuresFromWhereItIsAtTheTimeOfEachRay)
   const Scene scene = makeScene("room");
   const Isometry3d T_world_sensor =
       sensorPose(SensorKind::Lidar, {{0.0, 0.0, 1.2}, {1.0, 0.1, 1.2}});
-  Vector6d motion;
-  motion << 1.0, 0.1, -0.05, 0.02, -0.03, 0.2;
+  const Vector6d motion(1.0, 0.1, -0.05, 0.02, -0.03, 0.2);
   const Scan scan = scanScene(scene, options, T_world_sensor, 1, 0, motion);
   ASSERT_GT(scan.points.cols(), 1000);
   for (const Vector3d point : scan.points.colwise()) {
