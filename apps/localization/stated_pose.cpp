@@ -2,8 +2,9 @@
 
 #include "io/numbers.h"
 
+#include <bayesian_icp/measurement.h>
+
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -90,33 +91,16 @@ checkedCovariance(const Matrix6d& stated, const PriorFloor& floor)
   return covariance;
 }
 
-/** To first order, the change of roll, pitch and yaw by rotations about the fixed axes.
- */
-Eigen::Matrix3d
-angleRates(const Vector6d& pose)
-{
-  const auto derivatives = rotationDerivativesOf(pose);
-  const Eigen::Matrix3d back = rotationOf(pose).transpose();
-  Eigen::Matrix3d rotations; // by the angles
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const Eigen::Matrix3d cross = derivatives[static_cast<std::size_t>(k)] * back;
-    rotations.col(k) << cross(2, 1), cross(0, 2), cross(1, 0);
-  }
-  return rotations.inverse();
-}
-
 } // namespace
 
 StatedPose
 statedPoseOf(const Vector6d& mean, const Matrix6d& right_se3)
 {
   StatedPose stated;
-  const Eigen::Matrix3d R = rotationOf(mean);
   stated.position = mean.head<3>();
-  stated.orientation = R;
-  Matrix6d turn = Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R;
-  stated.covariance = turn * right_se3 * turn.transpose();
+  stated.orientation = rotationOf(mean);
+  stated.covariance = estimateOf(mean, right_se3, CovarianceConvention::RightSE3)
+                          .covariance(CovarianceConvention::R3xSO3);
   return stated;
 }
 
@@ -126,10 +110,10 @@ priorFrom(const StatedPose& pose, const PriorFloor& floor)
   PriorOptions prior;
   prior.mean = meanOf(pose);
   prior.frame = PriorFrame::Origin;
-  Matrix6d rates = Matrix6d::Identity();
-  rates.bottomRightCorner<3, 3>() = angleRates(prior.mean);
-  const Matrix6d covariance =
-      rates * checkedCovariance(pose.covariance, floor) * rates.transpose();
+  const Matrix6d covariance = estimateOf(prior.mean,
+                                         checkedCovariance(pose.covariance, floor),
+                                         CovarianceConvention::R3xSO3)
+                                  .covariance(CovarianceConvention::Parameters);
   // By Gershgorin's theorem, the difference to the stated covariance has no negative
   // eigenvalue.
   const Vector6d factors = correlationsOf(covariance).cwiseAbs().rowwise().sum();
