@@ -73,7 +73,6 @@ private:
   {
     const double start = io::wallSeconds();
     const std::string state = pair.filesState();
-    const auto seconds = [start] { return io::wallSeconds() - start; };
     std::optional<Run> run;
     std::string complaint;
     try {
@@ -85,47 +84,38 @@ private:
     catch (const std::exception& error) {
       complaint = error.what();
     }
-    if (!run) {
-      removeFiles(pair);
-      give({pair, nullptr, error_status, complaint, seconds(), state});
+    BatchResult result{
+        pair, nullptr, error_status, complaint, io::wallSeconds() - start, state};
+    if (run) {
+      const Summary& summary = run->result.summary;
+      if (summary.status == Status::Cancelled)
+        return;
+      result.run = &*run;
+      result.status = toString(summary.status);
+      result.message = summary.message;
     }
-    else if (run->result.summary.status != Status::Cancelled)
-      give(pair, *run, seconds(), state);
+    if (!output_folder_.empty())
+      putFiles(result);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failure_.isThere())
+      take_(result);
   }
 
   /** Nothing of an older result stays where a pair cannot be registered. */
   void
-  removeFiles(const BatchPair& pair) const
+  putFiles(const BatchResult& result) const
   {
-    const auto folder = std::filesystem::path(output_folder_) / pair.name;
+    const auto path = std::filesystem::path(output_folder_) / result.pair.name;
     std::error_code error;
-    if (output_folder_.empty() || !std::filesystem::exists(folder, error))
+    if (result.run == nullptr && !std::filesystem::exists(path, error))
       return;
-    io::OutputFolder files(folder.string());
-    for (const char* const name : {"posterior.json", "samples.csv"})
-      files.leaveOut(name);
+    io::OutputFolder files(path.string());
+    if (result.run != nullptr)
+      addPosteriorFiles(*result.run, files);
+    else
+      for (const char* const name : {"posterior.json", "samples.csv"})
+        files.leaveOut(name);
     files.commit();
-  }
-
-  void
-  give(const BatchPair& pair, const Run& run, double seconds, const std::string& state)
-  {
-    const Summary& summary = run.result.summary;
-    if (!output_folder_.empty()) {
-      const std::filesystem::path root(output_folder_);
-      io::OutputFolder folder((root / pair.name).string());
-      addPosteriorFiles(run, folder);
-      folder.commit();
-    }
-    give({pair, &run, toString(summary.status), summary.message, seconds, state});
-  }
-
-  void
-  give(const BatchResult& result)
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (!failure_.isThere())
-      take_(result);
   }
 
   const std::vector<BatchPair>& pairs_;
