@@ -306,7 +306,9 @@ makeGraph(const GraphCommand& command)
     return io::Interrupted;
   }
   io::tell(unmeasuredText(graph.numUnmeasured(), graph.chain.size() - 1));
-  const std::vector<GraphEdge> edges = edgesOf(graph.taken());
+  std::vector<GraphEdge> edges;
+  for (const ScanEdge& taken : graph.taken())
+    edges.push_back(taken.edge);
   std::optional<OptimizedPoses> optimum;
   if (optimized_folder) {
     optimum = optimized(graph, edges, command.loss);

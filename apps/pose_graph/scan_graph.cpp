@@ -57,6 +57,16 @@ pathBetween(int target, int source)
   return path;
 }
 
+/** "0.0312 m and 1.2 degrees" */
+std::string
+sizeOf(const Vector6d& twist)
+{
+  constexpr int num_digits = 3;
+  return io::textOf(twist.head<3>().norm(), num_digits) + " m and " +
+         io::textOf(degrees_per_radian * twist.tail<3>().norm(), num_digits) +
+         " degrees";
+}
+
 /** Makes a ScanGraph. */
 class Registrar {
 public:
@@ -307,28 +317,10 @@ toString(EdgeKind kind)
   return names[static_cast<std::size_t>(kind)];
 }
 
-std::vector<GraphEdge>
-edgesOf(const std::vector<ScanEdge>& edges)
-{
-  std::vector<GraphEdge> plain;
-  for (const ScanEdge& edge : edges)
-    plain.push_back(edge.edge);
-  return plain;
-}
-
 std::string
 nameOf(const GraphEdge& edge)
 {
   return io::textOf(edge.target) + '-' + io::textOf(edge.source);
-}
-
-std::string
-sizeOf(const Vector6d& twist)
-{
-  constexpr int num_digits = 3;
-  return io::textOf(twist.head<3>().norm(), num_digits) + " m and " +
-         io::textOf(degrees_per_radian * twist.tail<3>().norm(), num_digits) +
-         " degrees";
 }
 
 std::vector<ScanEdge>

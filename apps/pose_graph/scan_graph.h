@@ -75,17 +75,9 @@ struct ScanEdge {
   }
 };
 
-/** \brief The edges without their stories. */
-std::vector<GraphEdge>
-edgesOf(const std::vector<ScanEdge>& edges);
-
 /** \brief "3-7": the target, then the source. */
 std::string
 nameOf(const GraphEdge& edge);
-
-/** \brief "0.0312 m and 1.2 degrees" */
-std::string
-sizeOf(const Vector6d& twist);
 
 /** \brief Registrations, and the graph that they make. Vertex k is the pose of scan k
  * in the frame of scan 0. */

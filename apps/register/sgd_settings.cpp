@@ -79,8 +79,6 @@ check(const SgdSettings& settings, bool has_step_size)
   if (!(settings.max_distance > 0.0))
     throw io::UsageError("--max-distance: is " + io::textOf(settings.max_distance) +
                          ", but must be positive (m)");
-  if (!settings.guess.allFinite())
-    throw io::UsageError("--guess: must be finite");
   if (has_step_size && options.optimizer == SgdOptimizer::AdaDelta)
     throw io::UsageError("--step-size: has no effect with optimizer adadelta");
   if (has_step_size && std::isnan(options.step_size))
