@@ -36,22 +36,15 @@ rankFilesOf(const std::string& name)
   return found;
 }
 
-ordered_json
-covariancesOf(const Summary& summary)
-{
-  auto list = ordered_json::array();
-  for (const auto convention :
-       {CovarianceConvention::Parameters, CovarianceConvention::RightSE3})
-    list.push_back(covarianceJson(convention, summary.covariance(convention)));
-  return list;
-}
-
 void
 addPosterior(const Run& run, ordered_json& line)
 {
   const RegistrationResult& result = run.result;
   line["mean"] = meanJson(result.summary.mean);
-  line["covariances"] = covariancesOf(result.summary);
+  for (const auto convention :
+       {CovarianceConvention::Parameters, CovarianceConvention::RightSE3})
+    line["covariances"].push_back(
+        covarianceJson(convention, result.summary.covariance(convention)));
   line["final_transformation"] = finalTransformationJson(run);
   line["icp"] = icpJson(result);
   line["draws"] = result.summary.num_draws;

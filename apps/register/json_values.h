@@ -29,6 +29,17 @@ jsonOf(const Eigen::MatrixBase<Derived>& matrix)
   return list;
 }
 
+/** \brief The list of what \p toJson makes of each of \p items. */
+template <typename Items, typename ToJson>
+nlohmann::ordered_json
+listOf(const Items& items, const ToJson& toJson)
+{
+  auto list = nlohmann::ordered_json::array();
+  for (const auto& item : items)
+    list.push_back(toJson(item));
+  return list;
+}
+
 /** \brief As text. Names of files need not be UTF-8; what is not becomes U+FFFD.
  * \param[in] indent number of blanks; -1: all in one line */
 inline std::string

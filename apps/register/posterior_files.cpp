@@ -68,28 +68,14 @@ coordinatesJson(const Summary& summary)
 }
 
 ordered_json
-covariancesJson(const Summary& summary)
+modeJson(const Mode& mode)
 {
-  auto list = ordered_json::array();
-  for (const Convention& convention : conventions)
-    list.push_back(covarianceJson(convention.convention,
-                                  summary.covariance(convention.convention)));
-  return list;
-}
-
-ordered_json
-modesJson(const std::vector<Mode>& modes)
-{
-  auto list = ordered_json::array();
-  for (const Mode& mode : modes)
-    list.push_back(
-        {{"weight", mode.weight},
-         {"chains", mode.chains},
-         {"mean", meanJson(mode.mean)},
-         {"covariance",
-          covarianceJson(CovarianceConvention::Parameters,
-                         mode.covariance(CovarianceConvention::Parameters))}});
-  return list;
+  return {{"weight", mode.weight},
+          {"chains", mode.chains},
+          {"mean", meanJson(mode.mean)},
+          {"covariance",
+           covarianceJson(CovarianceConvention::Parameters,
+                          mode.covariance(CovarianceConvention::Parameters))}};
 }
 
 ordered_json
@@ -106,13 +92,17 @@ chainsJson(const std::vector<Chain>& chains)
 ordered_json
 posteriorOf(const RegistrationResult& result)
 {
+  const auto covarianceOf = [&result](const Convention& convention) {
+    return covarianceJson(convention.convention,
+                          result.summary.covariance(convention.convention));
+  };
   return {{"draws", result.summary.num_draws},
           {"draws_note",
            "draws of chains that have diverged are left out here and in samples.csv"},
           {"mean", meanJson(result.summary.mean)},
           {"coordinates", coordinatesJson(result.summary)},
-          {"covariances", covariancesJson(result.summary)},
-          {"modes", modesJson(result.summary.modes)},
+          {"covariances", listOf(conventions, covarianceOf)},
+          {"modes", listOf(result.summary.modes, modeJson)},
           {"modes_note",
            "weights are estimates, accurate to a factor of a few; mean and covariances "
            "of the whole posterior mix modes in proportion to their draws; preset "
@@ -121,18 +111,14 @@ posteriorOf(const RegistrationResult& result)
 }
 
 ordered_json
-directionsJson(const std::vector<DataDirection>& directions)
+directionJson(const DataDirection& direction)
 {
-  auto list = ordered_json::array();
-  for (const DataDirection& direction : directions)
-    list.push_back(
-        {{"description", direction.description},
-         {"observability", toString(direction.observability)},
-         {"standard_deviation_m", direction.standard_deviation},
-         {"prior_standard_deviation_m", direction.prior_standard_deviation},
-         {"information_in_units_of_the_prior", direction.relative_information},
-         {"twist", jsonOf(direction.twist)}});
-  return list;
+  return {{"description", direction.description},
+          {"observability", toString(direction.observability)},
+          {"standard_deviation_m", direction.standard_deviation},
+          {"prior_standard_deviation_m", direction.prior_standard_deviation},
+          {"information_in_units_of_the_prior", direction.relative_information},
+          {"twist", jsonOf(direction.twist)}};
 }
 
 ordered_json
@@ -164,7 +150,7 @@ dataJson(const DataReport& report)
       {"flags", flagsJson(report.flags)},
       {"flag_messages", describeFlags(report)},
       {"centre_m", jsonOf(report.centre)},
-      {"directions", directionsJson(report.directions)},
+      {"directions", listOf(report.directions, directionJson)},
       {"directions_note",
        "best known first; twist (v, w) [1, rad/m] in the target frame, T = exp(xi) T "
        "about centre_m, of unit root mean squared displacement of the source's points: "

@@ -86,9 +86,6 @@ trackLine(const TrackRequest& request, const Track& track)
   const auto k = static_cast<std::size_t>(step.scan);
   std::string message = step.message;
   std::replace(message.begin(), message.end(), '\n', ' ');
-  auto more_edges = ordered_json::array();
-  for (const TrackEdge& edge : step.more_edges)
-    more_edges.push_back(edgeJson(edge));
   const ordered_json line = {{"scan", step.scan},
                              {"file", request.scans.at(k)},
                              {"time_s", io::secondsOf(request.times.at(k))},
@@ -96,7 +93,7 @@ trackLine(const TrackRequest& request, const Track& track)
                              {"status", step.status},
                              {"message", message},
                              {"edge", edgeJson(step.edge)},
-                             {"more_edges", more_edges},
+                             {"more_edges", listOf(step.more_edges, edgeJson)},
                              {"is_velocity_doubted", step.is_velocity_doubted},
                              {"innovation", track.innovations().back()},
                              {"pose_in_scan_0", poseJson(track.poses().back())},
