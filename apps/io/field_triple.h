@@ -54,14 +54,12 @@ public:
     Eigen::Vector3d vector;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto* place = &cloud.data[index * cloud.point_step + fields_[k].offset];
-      double number = 0.0;
-      float short_number = 0.0F;
-      if (isDouble(fields_[k]))
-        std::memcpy(&number, place, sizeof(double));
-      else
-        std::memcpy(&short_number, place, sizeof(float));
+      const auto read = [place](auto number) {
+        std::memcpy(&number, place, sizeof(number));
+        return double(number);
+      };
       vector[static_cast<Eigen::Index>(k)] =
-          isDouble(fields_[k]) ? number : double(short_number);
+          isDouble(fields_[k]) ? read(0.0) : read(0.0F);
     }
     return vector;
   }
@@ -75,11 +73,10 @@ public:
     for (std::size_t k = 0; k < 3; ++k) {
       auto* place = &cloud.data[index * cloud.point_step + fields_[k].offset];
       const double number = vector[static_cast<Eigen::Index>(k)];
-      const auto short_number = static_cast<float>(number);
-      if (isDouble(fields_[k]))
-        std::memcpy(place, &number, sizeof(double));
-      else
-        std::memcpy(place, &short_number, sizeof(float));
+      const auto write = [place](auto value) {
+        std::memcpy(place, &value, sizeof(value));
+      };
+      isDouble(fields_[k]) ? write(number) : write(static_cast<float>(number));
     }
   }
 

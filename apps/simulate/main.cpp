@@ -146,9 +146,7 @@ writePair(const std::string& folder,
     const Eigen::IOFormat plain(17, Eigen::DontAlignCols, " ", "\n", "", "", "", "\n");
     stream << pair.T_target_source.format(plain);
   });
-  files.add("scene.json", [&](std::ostream& stream) {
-    stream << recordOf(options, pair).dump(2) << '\n';
-  });
+  files.add("scene.json", recordOf(options, pair).dump(2) + '\n');
   files.commit();
 }
 
