@@ -73,10 +73,8 @@ isNumberedBefore(const std::string& file, const std::string& other_file)
 {
   const std::string a = fs::path(file).stem().string();
   const std::string b = fs::path(other_file).stem().string();
-  const std::size_t shorter = std::min(a.size(), b.size());
   const auto first = static_cast<std::size_t>(
-      std::mismatch(a.begin(), a.begin() + std::ptrdiff_t(shorter), b.begin()).first -
-      a.begin());
+      std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
   const NumberedName name(a, first), other(b, first);
   const bool has_decimals = !name.before.empty() && name.before.back() == '.';
   return !has_decimals && withoutNumbers(name.after) == withoutNumbers(other.after) &&
