@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 using namespace bayesian_icp;
+using namespace bayesian_icp::test;
 using app::StepKind;
 using app::Track;
 using app::TrackRequest;
