@@ -14,6 +14,7 @@ source points into the target frame. Covariances have translation first.
 
 from __future__ import annotations
 
+import importlib.util
 from typing import TYPE_CHECKING, Any
 
 from ._align import align
@@ -32,6 +33,7 @@ from ._core import (
     SgldOptions,
     Target,
 )
+from ._core import __version__ as __version__
 from ._draws import ess, mcse, rhat
 from ._poses import (
     convert_covariance,
@@ -70,13 +72,13 @@ _LATER = {
     "scenes": "_simulation",
     "simulate": "_simulation",
 }
+if importlib.util.find_spec("._tools", __name__) is None:  # a build without the programs
+    __all__ = [name for name in __all__ if name not in _LATER]
 
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'bayesian_icp' has no attribute {name!r}")
-    import importlib
-
     return getattr(importlib.import_module("." + _LATER[name], __name__), name)
 
 

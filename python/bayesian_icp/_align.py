@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, Callable, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._checks import numbers
 from ._progress import Bar
 from ._result import Result
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    Observer = Callable[[int, int, NDArray[np.float64]], Optional[bool]]
+Observer = Callable[[int, int, NDArray[np.float64]], Optional[bool]]
 
 
 def align(

@@ -5,6 +5,8 @@ from typing import Any, Callable, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__version__: str
+
 _Array = NDArray[np.float64]
 
 class PriorOptions:

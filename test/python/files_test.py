@@ -1,9 +1,12 @@
 """Readers, report, simulator, the program, and what importing costs."""
 
+import inspect
 import json
 import os
 import pathlib
+import shutil
 import subprocess
+import typing
 
 import numpy as np
 import pytest
@@ -129,10 +132,33 @@ def test_module_without_the_program(python, tmp_path):
 
 
 def test_importing_loads_little(python):
-    code = ("import sys, numpy; before = set(sys.modules); import bayesian_icp; text = open('/proc/self/maps').read(); "
+    code = ("import sys, numpy.typing; before = set(sys.modules); import bayesian_icp; text = open('/proc/self/maps').read(); "
             "new = {name.partition('.')[0] for name in set(sys.modules) - before} - set(sys.stdlib_module_names); "
             "print('libpcl_common' in text, 'libboost' in text, '_tools' in text, *new)")
     assert subprocess.check_output([*python, "-c", code], text=True).split() == ["False"] * 3 + ["bayesian_icp"]
+
+
+def test_import_of_all_without_the_tools(python, tmp_path):
+    package = pathlib.Path(bayesian_icp.__file__).parent
+    shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("_tools*", "__pycache__"))
+    code = "from bayesian_icp import *; print(align.__name__, 'read_pcd' in globals())"
+    run = [*python, "-c", code]
+    text = subprocess.check_output(run, env={**os.environ, "PYTHONPATH": str(tmp_path)}, text=True)
+    assert text.split() == ["align", "False"]
+    assert "read_pcd" in bayesian_icp.__all__ and "read_pcd" in dir(bayesian_icp)
+
+
+def test_version_is_that_of_the_program(program):
+    said = subprocess.check_output([program, "--version"], text=True)
+    assert bayesian_icp.__version__ == said.split()[-1]
+
+
+def test_types_can_be_looked_up():
+    functions = [getattr(bayesian_icp, name) for name in bayesian_icp.__all__]
+    functions += [function for _, function in inspect.getmembers(bayesian_icp.Result, inspect.isfunction)]
+    for function in filter(inspect.isfunction, functions):
+        assert "return" in typing.get_type_hints(function)
+    assert typing.get_type_hints(bayesian_icp.align)["return"] is bayesian_icp.Result
 
 
 def test_open3d(mug, result):
