@@ -64,6 +64,11 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   foreach(page IN LISTS pages)
     compress(${page})
   endforeach()
+  # Debian's packages are for all versions of Python.
+  file(GLOB python_dir ${root}/lib/python3.*)
+  if(python_dir)
+    file(RENAME ${python_dir} ${root}/lib/python3)
+  endif()
   # In /usr the dynamic linker finds the libraries by itself.
   file(GLOB_RECURSE files ${root}/bin/* ${root}/lib/*.so.* ${root}/lib/python3/*.so)
   foreach(file IN LISTS files)
