@@ -1,6 +1,6 @@
 #include "html/inline_svg.h"
 
-#include "html/escape.h"
+#include "html/page.h"
 
 #include <boost/algorithm/string/replace.hpp>
 

@@ -8,10 +8,17 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace bayesian_icp::html {
+
+/** \brief \p text fit for elements and for attributes in either quotes. What is not
+ * UTF-8, and control characters other than tab and newline, which HTML does not allow,
+ * become U+FFFD. */
+std::string
+escaped(std::string_view text);
 
 /** \brief A table whose first column names its rows. */
 struct Table {

@@ -1,5 +1,4 @@
 // The report's verdict in words, its escaping, and what its charts are given.
-#include "html/escape.h"
 #include "html/inline_svg.h"
 #include "io/picture_numbers.h"
 #include "report/draw_set.h"
