@@ -1,6 +1,6 @@
 /** \file
- * \brief How values of the core look in Python: enumerations are their short names,
- * `automatic` is None.
+ * \brief The parts of the extension bayesian_icp._core, and how values of the core look
+ * in Python: enumerations are their short names, `automatic` is None.
  */
 #pragma once
 
@@ -16,6 +16,18 @@
 #include <string>
 #include <type_traits>
 #include <vector>
+
+namespace bayesian_icp::python {
+
+/** \brief Options and what they are made of. */
+void
+bindOptions(pybind11::module_& module);
+
+/** \brief Target, estimate() and the result. */
+void
+bindEstimate(pybind11::module_& module);
+
+} // namespace bayesian_icp::python
 
 namespace pybind11::detail {
 

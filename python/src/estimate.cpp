@@ -1,4 +1,3 @@
-#include "bindings.h"
 #include "converters.h"
 #include "job.h"
 #include "points.h"

@@ -1,4 +1,3 @@
-#include "bindings.h"
 #include "converters.h"
 
 #include <bayesian_icp/exports.h>
