@@ -202,13 +202,6 @@ main(int argc, char** argv)
       return 1;
     }
     const Input input = readInput(argv[i]);
-    if (input.source->empty() || input.target->empty()) {
-      std::fprintf(stderr,
-                   "%s: %s has no source.pcd and target.pcd, and no two scans\n",
-                   argv[0],
-                   argv[i]);
-      return 1;
-    }
     std::printf("%s: source %zu points, target %zu points\n",
                 input.name.c_str(),
                 input.source->size(),

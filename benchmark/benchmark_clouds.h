@@ -83,6 +83,15 @@ pointsOf(const Cloud& cloud)
   return points;
 }
 
+inline Cloud::Ptr
+cloudOf(const Eigen::Matrix3Xf& points)
+{
+  const Cloud::Ptr cloud(new Cloud);
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    cloud->emplace_back(points(0, i), points(1, i), points(2, i));
+  return cloud;
+}
+
 /** \p size points: evenly thinned, or repeated with 1 mm of noise. */
 inline Eigen::Matrix3Xf
 resized(const Eigen::Matrix3Xf& points, Eigen::Index size)

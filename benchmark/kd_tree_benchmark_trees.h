@@ -5,12 +5,12 @@
  */
 #pragma once
 
+#include "benchmark_clouds.h"
 #include "search/point_neighbors.h"
 
 #include <bayesian_icp/kd_tree.h>
 
 #include <pcl/kdtree/kdtree_flann.h>
-#include <pcl/point_types.h>
 
 #include <nanoflann.hpp>
 
@@ -20,11 +20,8 @@
 
 class FlannTree {
 public:
-  explicit FlannTree(const Eigen::Matrix3Xf& points)
-  : cloud_(new pcl::PointCloud<pcl::PointXYZ>)
+  explicit FlannTree(const Eigen::Matrix3Xf& points) : cloud_(cloudOf(points))
   {
-    for (Eigen::Index i = 0; i < points.cols(); ++i)
-      cloud_->emplace_back(points(0, i), points(1, i), points(2, i));
     build();
   }
 
@@ -49,7 +46,7 @@ public:
   }
 
 private:
-  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud_;
+  Cloud::Ptr cloud_;
   pcl::KdTreeFLANN<pcl::PointXYZ> tree_;
   pcl::Indices index_ = pcl::Indices(1);
   std::vector<float> distance_ = std::vector<float>(1);

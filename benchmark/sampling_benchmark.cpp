@@ -93,13 +93,8 @@ pointsOfSteps(const Pair& pair, const PoseMatrix& poses)
 void
 flannQueries(benchmark::State& state, const Pair& pair, const PoseMatrix& poses)
 {
-  const Cloud::Ptr target(new Cloud);
-  for (Eigen::Index i = 0; i < pair.target->points().cols(); ++i) {
-    const Eigen::Vector3f p = pair.target->points().col(i);
-    target->emplace_back(p.x(), p.y(), p.z());
-  }
   pcl::KdTreeFLANN<pcl::PointXYZ> tree;
-  tree.setInputCloud(target);
+  tree.setInputCloud(cloudOf(pair.target->points()));
   const Cloud points = pointsOfSteps(pair, poses);
   if (points.size() != num_steps * batch_size)
     state.SkipWithError("chains diverged");
