@@ -1,4 +1,4 @@
-#include "viewer/display.h"
+#include "viewer/window.h"
 
 #include "io/errors.h"
 

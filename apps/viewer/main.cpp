@@ -10,7 +10,6 @@
 #include "register/progress_bar.h"
 #include "register/report_text.h"
 #include "viewer/command_line.h"
-#include "viewer/display.h"
 #include "viewer/drawing.h"
 #include "viewer/live_view.h"
 

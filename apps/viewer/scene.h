@@ -4,7 +4,6 @@
 #pragma once
 
 #include "viewer/geometry/pose_spread.h"
-#include "viewer/geometry/shapes.h"
 #include "viewer/view_options.h"
 
 #include <Eigen/Geometry>

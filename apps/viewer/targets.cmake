@@ -3,7 +3,6 @@ add_library(
   bayesian_icp_viewer_scene STATIC
   viewer/geometry/camera.cpp
   viewer/geometry/pose_spread.cpp
-  viewer/geometry/shapes.cpp
   viewer/legend.cpp
   viewer/live_state.cpp
   viewer/scene.cpp

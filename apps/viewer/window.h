@@ -20,6 +20,12 @@ class PCLVisualizer;
 
 namespace bayesian_icp::viewer {
 
+/** \brief Make sure that the X display answers; VTK, off-screen too, aborts the program
+ * where none does.
+ * \throws std::runtime_error that says what to do */
+void
+requireDisplay();
+
 /** \brief A PCLVisualizer with panels, set up as the user asked. */
 class Window {
 public:

@@ -2,7 +2,6 @@
 // each point, ellipsoid, cones, camera.
 #include "viewer/geometry/camera.h"
 #include "viewer/geometry/pose_spread.h"
-#include "viewer/geometry/shapes.h"
 
 #include <bayesian_icp/random.h>
 
