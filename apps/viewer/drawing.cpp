@@ -48,40 +48,33 @@ setSizeAndOpacity(
 }
 
 /** Draws the layers of one panel. */
-class PanelDrawing {
-public:
-  PanelDrawing(const Scene& scene,
-               const ViewOptions& options,
-               int viewport,
-               Window& window)
-  : scene_(scene)
-  , options_(options)
-  , viewport_(viewport)
-  , window_(window)
-  {}
+struct PanelDrawing {
+  const Scene& scene;
+  const ViewOptions& options;
+  int viewport;
+  Window& window;
 
   void
   draw(Layer layer)
   {
     const std::string id =
-        std::string(nameOf(layer).name) + "/" + std::to_string(viewport_);
+        std::string(nameOf(layer).name) + "/" + std::to_string(viewport);
     const auto add = [&](const Eigen::Matrix3Xd& points, const PointStyle& style) {
-      addPoints(points, style, id, viewport_, window_);
+      addPoints(points, style, id, viewport, window);
     };
     switch (layer) {
     case Layer::Source:
-      return add(Eigen::Affine3d(scene_.guess) * scene_.source,
-                 options_.styleOf(layer));
+      return add(Eigen::Affine3d(scene.guess) * scene.source, options.styleOf(layer));
     case Layer::Target:
-      return add(scene_.target, options_.styleOf(layer));
+      return add(scene.target, options.styleOf(layer));
     case Layer::Aligned:
-      return add(Eigen::Affine3d(scene_.final_matrix) * scene_.source,
-                 options_.styleOf(layer));
+      return add(Eigen::Affine3d(scene.final_matrix) * scene.source,
+                 options.styleOf(layer));
     case Layer::Deviation:
       return addDeviations(id);
     case Layer::Draws:
-      return add(pointsAtDraws(scene_, max_points_of_draws),
-                 {colorOf(layer, options_), 2, 0.35});
+      return add(pointsAtDraws(scene, max_points_of_draws),
+                 {colorOf(layer, options), 2, 0.35});
     case Layer::Position:
       return addEllipsoid(id);
     case Layer::Rotation:
@@ -89,14 +82,12 @@ public:
     }
   }
 
-private:
   void
   addDeviations(const std::string& id)
   {
-    const Uncertainty& uncertainty = *scene_.uncertainty;
+    const Uncertainty& uncertainty = *scene.uncertainty;
     const Eigen::Matrix3Xf points =
-        (Eigen::Affine3d(uncertainty.spread.meanMatrix()) * scene_.source)
-            .cast<float>();
+        (Eigen::Affine3d(uncertainty.spread.meanMatrix()) * scene.source).cast<float>();
     const double maximum = io::roundedUp(uncertainty.point_deviations.maxCoeff());
     pcl::PointCloud<pcl::PointXYZRGB>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZRGB>);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -106,23 +97,23 @@ private:
       cloud->push_back(
           {points(0, i), points(1, i), points(2, i), color.r, color.g, color.b});
     }
-    window_.visualizer().addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport_);
-    const PointStyle& style = options_.styleOf(Layer::Aligned);
-    setSizeAndOpacity(style.size + 1, style.opacity, id, viewport_, window_);
-    addColorBar(maximum, textColorOn(options_.background), viewport_, window_);
+    window.visualizer().addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport);
+    const PointStyle& style = options.styleOf(Layer::Aligned);
+    setSizeAndOpacity(style.size + 1, style.opacity, id, viewport, window);
+    addColorBar(maximum, textColorOn(options.background), viewport, window);
   }
 
   void
   addEllipsoid(const std::string& id)
   {
-    const Eigen::Affine3d ball = positionEllipsoid(scene_);
-    auto& visualizer = window_.visualizer();
+    const Eigen::Affine3d ball = positionEllipsoid(scene);
+    auto& visualizer = window.visualizer();
     visualizer.addEllipsoid(
-        Eigen::Isometry3d(ball.matrix()), 1.0, 1.0, 1.0, id, viewport_);
+        Eigen::Isometry3d(ball.matrix()), 1.0, 1.0, 1.0, id, viewport);
     // PCL's way to set the colour of a shape would take its shading away.
     vtkProperty& look =
         *vtkActor::SafeDownCast((*visualizer.getShapeActorMap())[id])->GetProperty();
-    const auto [red, green, blue] = colorOf(Layer::Position, options_);
+    const auto [red, green, blue] = colorOf(Layer::Position, options);
     look.SetColor(red, green, blue);
     look.SetOpacity(0.7);
   }
@@ -130,9 +121,9 @@ private:
   void
   addCones(const std::string& id)
   {
-    auto& visualizer = window_.visualizer();
-    const std::array<Eigen::Matrix3Xd, 3> cones = rotationCones(scene_);
-    const Color text_color = textColorOn(options_.background);
+    auto& visualizer = window.visualizer();
+    const std::array<Eigen::Matrix3Xd, 3> cones = rotationCones(scene);
+    const Color text_color = textColorOn(options.background);
     for (std::size_t k = 0; k < 3; ++k) {
       Color color = {0.15, 0.15, 0.15};
       color[k] = 0.9;
@@ -142,24 +133,19 @@ private:
       for (int i = 1; i <= last; ++i)
         triangles[i - 1].vertices = {0, i, i % last + 1};
       visualizer.addPolygonMesh<pcl::PointXYZ>(
-          cloudOf(cones[k]), triangles, name, viewport_);
+          cloudOf(cones[k]), triangles, name, viewport);
       visualizer.setPointCloudRenderingProperties(visualization::PCL_VISUALIZER_COLOR,
                                                   color[0],
                                                   color[1],
                                                   color[2],
                                                   name,
-                                                  viewport_);
+                                                  viewport);
       visualizer.setPointCloudRenderingProperties(
-          visualization::PCL_VISUALIZER_OPACITY, 0.6, name, viewport_);
+          visualization::PCL_VISUALIZER_OPACITY, 0.6, name, viewport);
       // A quarter round the rim, which is the middle of a fan.
-      addAxisName(k, cones[k].col(1 + last / 4), text_color, name, viewport_, window_);
+      addAxisName(k, cones[k].col(1 + last / 4), text_color, name, viewport, window);
     }
   }
-
-  const Scene& scene_;
-  const ViewOptions& options_;
-  int viewport_;
-  Window& window_;
 };
 
 /** Axes of the target frame. PCL's own are drawn by what VTK 9 warns of at length. */
@@ -217,7 +203,7 @@ drawScene(const Scene& scene, const ViewOptions& options, Window& window)
   std::size_t num_lines = 0;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const auto& [title, layers] = panels[i];
-    PanelDrawing drawing(scene, options, viewports[i], window);
+    PanelDrawing drawing{scene, options, viewports[i], window};
     for (const Layer layer : layers)
       drawing.draw(layer);
     shown.insert(layers.begin(), layers.end());

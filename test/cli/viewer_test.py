@@ -91,13 +91,20 @@ class ScreenTest(ViewerTest):
             result = run(*scans(name), *CALIBRATED, "-o", cls.results / name, "--quiet")
             assert result.returncode == 0, result.stderr
 
+    @property
+    def path(self):
+        return self.folder / "picture.png"
+
+    def draw(self, *arguments, size=(300, 200)):
+        """The completed process that writes the picture."""
+        words = ["--screenshot", self.path, "--size", f"{size[0]}x{size[1]}"]
+        return view(*arguments, *words, display=self.display)
+
     def picture(self, *arguments, size=(WIDTH, HEIGHT)):
-        path = self.folder / "picture.png"
-        words = ["--screenshot", path, "--size", f"{size[0]}x{size[1]}"]
-        result = view(*arguments, *words, display=self.display)
+        result = self.draw(*arguments, size=size)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertEqual(sorted(self.folder.iterdir()), [path])
-        picture = Picture(path)
+        self.assertEqual(sorted(self.folder.iterdir()), [self.path])
+        picture = Picture(self.path)
         self.assertEqual(picture.image.size, size)
         return picture
 
@@ -214,13 +221,11 @@ class Pictures(ScreenTest):
         self.assertGreater(two.count_hues(60, 170), 3000)
 
     def test_what_cannot_be_trusted_is_shown_and_said(self):
-        path = self.folder / "picture.png"
         few = ["--samples", "40", "--chains", "2"]
-        words = ["--screenshot", path, "--size", "300x200"]
-        result = view(*scans("mug"), *CALIBRATED, *few, *words, display=self.display)
+        result = self.draw(*scans("mug"), *CALIBRATED, *few)
         self.assertEqual(result.returncode, 1)
         self.assertIn("not mixed: ", result.stderr)
-        self.assertEqual(Picture(path).image.width, 300)
+        self.assertEqual(Picture(self.path).image.width, 300)
 
     def test_clouds_that_a_posterior_names_may_have_moved(self):
         saved = self.results / "mug" / "posterior.json"
@@ -229,10 +234,7 @@ class Pictures(ScreenTest):
         moved = self.results / "moved" / "posterior.json"
         moved.write_text(text)
         shutil.copy(self.results / "mug" / "samples.csv", moved.parent)
-        words = ["--screenshot", self.folder / "picture.png"]
-        self.refuse(
-            3, moved, *words, parts=["/nowhere/source.pcd", "no such file"], display=self.display
-        )
+        self.assert_refused(3, self.draw(moved), "/nowhere/source.pcd", "no such file")
         shown = self.picture(moved, *scans("mug"), "--show", "draws")
         self.assert_same_pixels(shown, self.saved("mug", "--show", "draws"))
 
@@ -240,19 +242,16 @@ class Pictures(ScreenTest):
         self.small_pair()
         words = ["source.pcd", "target.pcd", *FAST, "-o", ".", "--quiet"]
         self.assert_ran(run(*words, cwd=self.folder))
-        words = ["--screenshot", self.folder / "picture.png"]
-        result = view(self.folder / "posterior.json", *words, display=self.display)
-        self.assert_ran(result)
-        self.assertTrue((self.folder / "picture.png").exists())
+        self.assert_ran(self.draw(self.folder / "posterior.json"))
+        self.assertTrue(self.path.exists())
 
-    def view_mixed(self, samples, *arguments, size="480x360"):
+    def view_mixed(self, samples, *arguments):
         """The mug's posterior.json beside other draws; the completed process."""
         mixed = self.folder / "mixed"
         mixed.mkdir()
         (mixed / "samples.csv").write_text(samples)
         saved = shutil.copy(self.results / "mug" / "posterior.json", mixed)
-        words = ["--screenshot", self.folder / "picture.png", "--size", size]
-        result = view(saved, *arguments, *words, display=self.display)
+        result = self.draw(saved, *arguments, size=(WIDTH, HEIGHT))
         self.assertEqual(result.returncode, 1)
         return result
 
@@ -263,7 +262,7 @@ class Pictures(ScreenTest):
         green = ["--show", "target", "-fc", "1,1,1", "-fc", "0,1,0"]
         result = self.view_mixed((other / "samples.csv").read_text(), *green)
         self.assertIn("samples.csv has another mean or other deviations", result.stderr)
-        picture = Picture(self.folder / "picture.png")
+        picture = Picture(self.path)
         warned = picture.rows_with(WHITE)
         # The text is below the target, however many lines it has.
         self.assertGreater(min(warned), max(picture.rows_with((0, 255, 0))))
@@ -288,8 +287,7 @@ class Pictures(ScreenTest):
     def test_points_that_are_not_finite_count(self):
         exact = ["--preset=exact", "--sigma=0.01"]
         saved = self.saved_result([*box_surface(), (math.nan, 0, 0)], *exact)
-        words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
-        result = view(saved, *words, display=self.display)
+        result = self.draw(saved)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("in place of", result.stderr)
 
@@ -298,20 +296,17 @@ class Pictures(ScreenTest):
         stein = ["--preset=exact", "--sigma=0.01", "--steps=stein-newton"]
         for options in (FAST, [*FAST, "--normalize-cloud"], single, stein):
             saved = self.saved_result(box_surface(), *options)
-            words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
-            self.assertNotIn("samples.csv", view(saved, *words, display=self.display).stderr)
+            self.assertNotIn("samples.csv", self.draw(saved).stderr)
 
     def test_run_without_draws_is_shown(self):
         saved = self.saved_result(box_surface(), "--preset=paper", "--step-size=10")
-        words = ["--screenshot", self.folder / "picture.png", "--size", "300x200"]
-        result = view(saved, *words, display=self.display)
+        result = self.draw(saved)
         self.assertIn(result.returncode, (0, 1), result.stderr)
-        self.assertTrue((self.folder / "picture.png").exists())
+        self.assertTrue(self.path.exists())
 
     def test_bad_camera(self):
         saved = self.results / "mug" / "posterior.json"
-        words = ["--screenshot", self.folder / "picture.png", "-cam", "1/2"]
-        self.refuse(2, saved, *words, parts=["-cam", "'1/2'"], display=self.display)
+        self.assert_refused(2, self.draw(saved, "-cam", "1/2"), "-cam", "'1/2'")
 
 
 class WindowOnScreen(ScreenTest):
