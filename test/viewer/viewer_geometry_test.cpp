@@ -19,17 +19,6 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double rounding = 1e-12;
 
-/** \p n draws that turn about the z axis by all multiples of 1/n of a turn. */
-PoseMatrix
-fullTurn(Eigen::Index n)
-{
-  PoseMatrix draws = PoseMatrix::Zero(n, 6);
-  for (Eigen::Index i = 0; i < n; ++i)
-    draws(i, 5) =
-        wrapAngle(2.0 * pi * (static_cast<double>(i) + 0.5) / static_cast<double>(n));
-  return draws;
-}
-
 PoseMatrix
 randomDraws(Eigen::Index n, const Vector6d& deviations, const Vector6d& mean)
 {
@@ -61,16 +50,6 @@ deviationOf(const Eigen::Vector3d& point, const PoseMatrix& draws)
                    draws.row(i).head<3>().transpose();
   const Eigen::Matrix3Xd centred = moved.colwise() - moved.rowwise().mean();
   return std::sqrt(centred.squaredNorm() / static_cast<double>(draws.rows() - 1));
-}
-
-TEST(PointDeviations, OfAFullTurnAreTheDistancesFromTheAxis)
-{
-  constexpr Eigen::Index n = 720;
-  const Eigen::VectorXd deviations = pointDeviations(somePoints(), fullTurn(n));
-  for (Eigen::Index i = 0; i < 4; ++i) {
-    const double radius = somePoints().col(i).head<2>().norm();
-    EXPECT_NEAR(deviations[i], radius * std::sqrt(n / (n - 1.0)), 1e-7);
-  }
 }
 
 TEST(PointDeviations, AreThoseOfTheMovedPoints)
