@@ -1,6 +1,5 @@
-#include "viewer/window.h"
-
 #include "io/errors.h"
+#include "viewer/window.h"
 
 #include <X11/Xlib.h>
 

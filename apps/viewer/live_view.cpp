@@ -1,8 +1,8 @@
-#include "viewer/live_view.h"
-
 #include "io/interrupt.h"
+#include "register/run.h"
 #include "viewer/annotations.h"
 #include "viewer/drawing.h"
+#include "viewer/live_state.h"
 
 #include <bayesian_icp/random.h>
 

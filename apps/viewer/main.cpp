@@ -11,7 +11,6 @@
 #include "register/report_text.h"
 #include "viewer/command_line.h"
 #include "viewer/drawing.h"
-#include "viewer/live_view.h"
 
 #include <bayesian_icp/summary.h>
 
