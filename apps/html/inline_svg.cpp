@@ -1,5 +1,3 @@
-#include "html/inline_svg.h"
-
 #include "html/page.h"
 
 #include <boost/algorithm/string/replace.hpp>

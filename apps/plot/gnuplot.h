@@ -34,7 +34,7 @@ struct Drawing {
 };
 
 /** \brief The drawings as SVG documents, in their order. Backgrounds are transparent;
- * html/inline_svg.h puts them into pages.
+ * html::inlineSvg() puts them into pages.
  * \throws GnuplotError if it is not there, or does not draw them */
 std::vector<std::string>
 drawSvgs(const std::vector<Drawing>& drawings);

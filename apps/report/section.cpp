@@ -1,6 +1,5 @@
 #include "report/section.h"
 
-#include "html/inline_svg.h"
 #include "io/program.h"
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // The report's verdict in words, its escaping, and what its charts are given.
-#include "html/inline_svg.h"
+#include "html/page.h"
 #include "io/picture_numbers.h"
 #include "report/draw_set.h"
 #include "report/path_charts.h"
