@@ -51,8 +51,7 @@ from ._poses import (
 from ._result import COORDINATES, Measurement, Mode, Prior, Result
 
 if TYPE_CHECKING:
-    from ._files import read_pcd, read_ply
-    from ._simulation import ScanPair, scenes, simulate
+    from ._scans import ScanPair, read_pcd, read_ply, scenes, simulate
 
 __all__ = [
     "COORDINATES", "CalibratedOptions", "ChainOptions", "CoordinateSummary", "DataReport",
@@ -65,13 +64,7 @@ __all__ = [
 ]
 
 # What needs PCL or Boost is loaded when it is first used.
-_LATER = {
-    "read_pcd": "_files",
-    "read_ply": "_files",
-    "ScanPair": "_simulation",
-    "scenes": "_simulation",
-    "simulate": "_simulation",
-}
+_LATER = ("ScanPair", "read_pcd", "read_ply", "scenes", "simulate")
 if importlib.util.find_spec("._tools", __name__) is None:  # a build without the programs
     __all__ = [name for name in __all__ if name not in _LATER]
 
@@ -79,7 +72,7 @@ if importlib.util.find_spec("._tools", __name__) is None:  # a build without the
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'bayesian_icp' has no attribute {name!r}")
-    return getattr(importlib.import_module("." + _LATER[name], __name__), name)
+    return getattr(importlib.import_module("._scans", __name__), name)
 
 
 def __dir__() -> list[str]:

@@ -1,7 +1,6 @@
 """The registration: what it finds, what it is given, how it is watched and ended."""
 
 import concurrent.futures
-import csv
 import multiprocessing
 import os
 import signal
@@ -13,6 +12,8 @@ import numpy as np
 import pytest
 
 import bayesian_icp
+
+from conftest import turns_during
 
 
 def test_finds_the_true_pose(mug, result):
@@ -30,9 +31,7 @@ def draws_of_program(program, folder, *arguments):
     """Those of the C++ program, (chains, draws, 6)."""
     subprocess.run([program, *map(str, arguments), "-o", str(folder), "--no-report", "--quiet"],
                    stderr=subprocess.DEVNULL)
-    with open(folder / "samples.csv") as file:
-        rows = [[float(x) for x in row] for row in list(csv.reader(file))[1:]]
-    table = np.array(rows)
+    table = np.loadtxt(folder / "samples.csv", delimiter=",", skiprows=1)
     return table[:, 2:].reshape(int(table[-1, 0]) + 1, -1, 6)
 
 
@@ -172,23 +171,9 @@ def test_the_bar_ends_with_a_line(mug, capsys):
 
 
 def test_other_threads_run_meanwhile(mug):
-    count = 0
-    done = threading.Event()
-
-    def work():
-        nonlocal count
-        while not done.is_set():
-            count += 1
-            time.sleep(0.001)
-
-    thread = threading.Thread(target=work)
-    thread.start()
     options = bayesian_icp.Options()
     options.chains.num_draws = 20_000
-    bayesian_icp.align(source=mug[0], target=mug[1], options=options)
-    done.set()
-    thread.join()
-    assert count > 20
+    assert turns_during(lambda: bayesian_icp.align(source=mug[0], target=mug[1], options=options)) > 20
 
 
 def test_several_at_once_are_as_one_after_the_other(mug, result):

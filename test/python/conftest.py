@@ -3,6 +3,7 @@
 import os
 import pathlib
 import sys
+import threading
 
 import hypothesis
 import numpy as np
@@ -15,6 +16,24 @@ hypothesis.settings.register_profile("repeatable", database=None, derandomize=Tr
 hypothesis.settings.load_profile("repeatable")
 
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+
+
+def turns_during(work):
+    """How often another thread has a turn, one each millisecond at the most, while this one works."""
+    turns, done = [], threading.Event()
+
+    def take_turns():
+        while not done.wait(0.001):
+            turns.append(1)
+
+    thread = threading.Thread(target=take_turns)
+    thread.start()
+    before = len(turns)
+    work()
+    during = len(turns) - before
+    done.set()
+    thread.join()
+    return during
 
 
 @pytest.fixture(scope="session")

@@ -6,6 +6,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import typing
 
 import numpy as np
@@ -153,6 +154,7 @@ def test_version_is_that_of_the_program(program):
     assert bayesian_icp.__version__ == said.split()[-1]
 
 
+@pytest.mark.skipif(sys.version_info < (3, 10), reason="Python 3.9 does not evaluate X | None")
 def test_types_can_be_looked_up():
     functions = [getattr(bayesian_icp, name) for name in bayesian_icp.__all__]
     functions += [function for _, function in inspect.getmembers(bayesian_icp.Result, inspect.isfunction)]

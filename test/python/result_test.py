@@ -1,13 +1,11 @@
 """What a result gives to others: covariances, exports, diagnostics, measurement."""
 
-import threading
-
 import numpy as np
 import pytest
 
 import bayesian_icp
 
-from conftest import DATA
+from conftest import DATA, turns_during
 
 CONVENTIONS = ("parameters", "r3xso3", "left_se3", "right_se3")
 
@@ -108,20 +106,7 @@ def test_diagnostics_are_those_of_the_result(result):
     (bayesian_icp.mean_pose, (400_000, 6)), (bayesian_icp.rhat, (4, 250_000)), (bayesian_icp.ess, (4, 250_000))])
 def test_long_work_lets_other_threads_run(function, shape):
     draws = np.random.default_rng(1).normal(scale=0.1, size=shape)
-    turns, done = [], threading.Event()
-
-    def work():
-        while not done.wait(0.001):
-            turns.append(1)
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    before = len(turns)
-    function(draws)
-    during = len(turns) - before
-    done.set()
-    thread.join()
-    assert during > 20
+    assert turns_during(lambda: function(draws)) > 20
 
 
 def test_to_arviz(result):
