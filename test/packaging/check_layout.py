@@ -8,11 +8,11 @@ that includes every header.
 Arguments: object file, list; --write writes the list anew.
 """
 
-import difflib
-import pathlib
 import re
 import subprocess
 import sys
+
+import committed_list
 
 ENTRY = re.compile(r" <(\d+)><[0-9a-f]+>: Abbrev Number: \d+ \(DW_TAG_(\w+)\)")
 ATTRIBUTE = re.compile(
@@ -94,26 +94,13 @@ def types_in(object_file):
     ]
 
 
-def main():
-    object_file, path = sys.argv[1], pathlib.Path(sys.argv[2])
-    found = []
-    for lines in sorted({tuple(each.lines()) for each in types_in(object_file)}):
-        found.extend(lines)
-    if "--write" in sys.argv[3:]:
-        path.write_text("\n".join(found) + "\n")
-        return
-    expected = path.read_text().splitlines()
-    difference = list(difflib.unified_diff(expected, found, "expected", "found", n=0, lineterm=""))
-    if not difference:
-        print(f"{object_file}: {len(found)} lines, as expected")
-        return
-    print("\n".join(difference))
-    sys.exit(
-        f"\nThe layout is not the one of {path}.\n"
-        "Programs that were compiled before do not work any more: the minor version has to be\n"
-        "raised after a release. If that is on purpose:\n"
-        f"  python3 {sys.argv[0]} {object_file} {path} --write"
-    )
+def lines_in(object_file):
+    groups = sorted({tuple(each.lines()) for each in types_in(object_file)})
+    return [line for lines in groups for line in lines]
 
 
-main()
+committed_list.check(
+    lines_in,
+    "Programs that were compiled before do not work any more: the minor version has to be\n"
+    "raised after a release.",
+)

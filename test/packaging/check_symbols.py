@@ -7,11 +7,10 @@ scalars of the list's first lines, for each of which it is exported.
 Arguments: library, list; --write writes the list anew.
 """
 
-import difflib
-import pathlib
 import re
 import subprocess
-import sys
+
+import committed_list
 
 # The classes of registration: <source point, the same target point, scalar>.
 ARGUMENTS = re.compile(r"<(pcl::\w+), \1, (float|double)>")
@@ -56,25 +55,9 @@ def list_of(names):
     return lines
 
 
-def main():
-    library, path = sys.argv[1], pathlib.Path(sys.argv[2])
-    found = list_of(exported_names(library))
-    if "--write" in sys.argv[3:]:
-        path.write_text("\n".join(found) + "\n")
-        return
-    expected = path.read_text().splitlines()
-    difference = list(difflib.unified_diff(expected, found, "expected", "exported", n=0, lineterm=""))
-    if not difference:
-        print(f"{library}: {len(found)} lines, as expected")
-        return
-    print("\n".join(difference))
-    sys.exit(
-        f"\n{library} exports other symbols than {path} says.\n"
-        "A line with - is gone: programs that were linked before do not start any more, and\n"
-        "the minor version has to be raised. A line with + is new: if it is meant for users,\n"
-        "it is declared in a public header. If all of it is on purpose:\n"
-        f"  python3 {sys.argv[0]} {library} {path} --write"
-    )
-
-
-main()
+committed_list.check(
+    lambda library: list_of(exported_names(library)),
+    "A line with - is gone: programs that were linked before do not start any more, and\n"
+    "the minor version has to be raised. A line with + is new: if it is meant for users,\n"
+    "it is declared in a public header.",
+)
