@@ -2,7 +2,6 @@
 
 import concurrent.futures
 import multiprocessing
-import os
 import signal
 import subprocess
 import threading
@@ -13,7 +12,7 @@ import pytest
 
 import bayesian_icp
 
-from conftest import turns_during
+from conftest import DATA, draw, turns_during
 
 
 def test_finds_the_true_pose(mug, result):
@@ -42,8 +41,7 @@ GUESS = bayesian_icp.matrix_from_pose([0.02, -0.01, 0.01, 0.05, -0.05, 0.1]).ast
 @pytest.mark.parametrize("preset, rivals", [("calibrated", False), ("exact", False), ("exact", True),
                                             ("paper", False)])
 def test_draws_are_those_of_the_program_to_the_last_bit(preset, rivals, mug, program, tmp_path):
-    options = bayesian_icp.Options()
-    options.chains.num_draws = 400
+    options = draw(400)
     lines = ["--preset", preset, "--seed", 7, "--prior-variance", 0.04]
     if preset == "exact":
         options.exact.scale.measurement_sigma = 0.05
@@ -58,8 +56,8 @@ def test_draws_are_those_of_the_program_to_the_last_bit(preset, rivals, mug, pro
     else:
         lines += ["--samples", 400]
     np.savetxt(tmp_path / "guess.txt", GUESS, fmt="%.17g")
-    data = os.path.join(os.path.dirname(__file__), "../../data/mug/")
-    expected = draws_of_program(program, tmp_path / "out", data + "source.pcd", data + "target.pcd",
+    clouds = [DATA / "mug" / name for name in ("source.pcd", "target.pcd")]
+    expected = draws_of_program(program, tmp_path / "out", *clouds,
                                 "--guess", tmp_path / "guess.txt", *lines)
     found = bayesian_icp.align(source=mug[0], target=mug[1], init_T_target_source=GUESS, preset=preset, seed=7,
                                prior_variance=(0.04, 0.04), options=options)
@@ -108,18 +106,14 @@ def test_guess_and_prior(mug):
 
 
 def test_keywords_leave_the_options_alone(mug):
-    options = bayesian_icp.Options()
-    options.chains.num_draws = 40
+    options = draw(40)
     found = bayesian_icp.align(source=mug[0], target=mug[1], seed=5, options=options)
     assert options.chains.seed == 1 and found.options.chains.seed == 5
     assert found.samples.shape == (4, 10, 6) and found.status == "not_mixed"
 
 
 def test_uneven_chains_are_cut(mug):
-    options = bayesian_icp.Options()
-    options.chains.num_draws = 10
-    options.chains.num_chains = 3
-    found = bayesian_icp.align(source=mug[0], target=mug[1], options=options)
+    found = bayesian_icp.align(source=mug[0], target=mug[1], options=draw(10, num_chains=3))
     assert found.samples.shape == (3, 3, 6)
     assert [len(found.chain(i)) for i in range(3)] == [4, 3, 3]
     for index in (3, -1):
@@ -142,9 +136,7 @@ def test_progress_is_told_in_the_calling_thread_and_can_cancel(mug):
         told.append((steps, total_steps, threading.get_ident()))
         return steps < 100
 
-    options = bayesian_icp.Options()
-    options.chains.num_draws = 2_000_000
-    found = bayesian_icp.align(source=mug[0], target=mug[1], progress=observe, options=options)
+    found = bayesian_icp.align(source=mug[0], target=mug[1], progress=observe, options=draw(2_000_000))
     assert found.status == "interrupted"
     assert told[-1][0] >= 100
     assert {thread for *_, thread in told} == {threading.get_ident()}
@@ -171,9 +163,8 @@ def test_the_bar_ends_with_a_line(mug, capsys):
 
 
 def test_other_threads_run_meanwhile(mug):
-    options = bayesian_icp.Options()
-    options.chains.num_draws = 20_000
-    assert turns_during(lambda: bayesian_icp.align(source=mug[0], target=mug[1], options=options)) > 20
+    work = lambda: bayesian_icp.align(source=mug[0], target=mug[1], options=draw(20_000))
+    assert turns_during(work) > 20
 
 
 def test_several_at_once_are_as_one_after_the_other(mug, result):
@@ -193,12 +184,16 @@ def test_a_forked_process_registers_too(mug, result):
     assert np.array_equal(mean, result.mean)
 
 
-DAEMON = """
-import threading, time, bayesian_icp
+ENDLESS = """
+import threading, time, numpy, bayesian_icp
 scans = bayesian_icp.simulate("mug")
 options = bayesian_icp.Options()
 options.chains.num_draws = 10_000_000
-run = lambda: bayesian_icp.align(source=scans.source, target=scans.target, options=options)
+def run(repeat=1):
+    clouds = dict(source=numpy.repeat(scans.source, repeat, 0), target=numpy.repeat(scans.target, repeat, 0))
+    bayesian_icp.align(**clouds, options=options)
+"""
+DAEMON = ENDLESS + """
 threading.Thread(target=run, daemon=True).start()
 time.sleep(0.5)
 """
@@ -222,15 +217,10 @@ def test_digits_are_doubted_of_the_cloud_that_lost_them(mug):
     assert status((target + far).astype(np.float32))[1]
 
 
-INTERRUPTED = """
-import numpy, bayesian_icp
-scans = bayesian_icp.simulate("mug")
-options = bayesian_icp.Options()
-options.chains.num_draws = 10_000_000
-clouds = dict(source=numpy.repeat(scans.source, {repeat}, 0), target=numpy.repeat(scans.target, {repeat}, 0))
+INTERRUPTED = ENDLESS + """
 print("begins", flush=True)
 try:
-    bayesian_icp.align(**clouds, options=options)
+    run({repeat})
 except KeyboardInterrupt:
     print("interrupted", flush=True)
 """

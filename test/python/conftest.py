@@ -1,4 +1,4 @@
-"""Clouds that the tests share."""
+"""Clouds that the tests share, and what else they do."""
 
 import os
 import pathlib
@@ -16,6 +16,11 @@ hypothesis.settings.register_profile("repeatable", database=None, derandomize=Tr
 hypothesis.settings.load_profile("repeatable")
 
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+
+
+def draw(num_draws, **chains):
+    """Options for so many draws."""
+    return bayesian_icp.Options(chains=bayesian_icp.ChainOptions(num_draws=num_draws, **chains))
 
 
 def turns_during(work):

@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 import bayesian_icp
 
+from conftest import draw
+
 RNG = np.random.default_rng(1)
 CLOUD = RNG.normal(size=(100, 3))
 
@@ -236,12 +238,6 @@ def test_options_show_themselves_and_pickle():
     assert np.array_equal(copy.prior.mean, POSE) and copy.exact.thinning == 3
 
 
-def few_draws():
-    options = bayesian_icp.Options()
-    options.chains.num_draws = 8
-    return options
-
-
 SHEET = RNG.uniform(-1, 1, (60, 3)) * [1, 1, 0.1]
 
 
@@ -257,8 +253,8 @@ def test_any_layout_gives_the_same_draws(dtype, order, stride, is_backward, is_r
     cloud.setflags(write=not is_read_only)
     before = cloud.copy()
     plain = np.ascontiguousarray(values, dtype=np.float64)
-    found = bayesian_icp.align(source=cloud, target=cloud, preset="exact", options=few_draws())
-    expected = bayesian_icp.align(source=plain, target=plain, preset="exact", options=few_draws())
+    found = bayesian_icp.align(source=cloud, target=cloud, preset="exact", options=draw(8))
+    expected = bayesian_icp.align(source=plain, target=plain, preset="exact", options=draw(8))
     assert np.array_equal(found.samples, expected.samples)
     assert np.array_equal(cloud, before)
 
@@ -270,7 +266,7 @@ def test_any_layout_gives_the_same_draws(dtype, order, stride, is_backward, is_r
     st.lists(st.lists(st.floats())), st.text(), st.binary()))
 def test_whatever_is_given_is_registered_or_refused(cloud):
     try:
-        found = bayesian_icp.align(source=cloud, target=SHEET, preset="exact", options=few_draws())
+        found = bayesian_icp.align(source=cloud, target=SHEET, preset="exact", options=draw(8))
     except (TypeError, ValueError) as error:
         assert "source" in str(error)
     else:

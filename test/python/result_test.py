@@ -5,7 +5,7 @@ import pytest
 
 import bayesian_icp
 
-from conftest import DATA, turns_during
+from conftest import DATA, draw, turns_during
 
 CONVENTIONS = ("parameters", "r3xso3", "left_se3", "right_se3")
 
@@ -79,9 +79,7 @@ def test_exports_refuse_what_is_bad(result, mug):
         result.to_tum(timestamp_ns=-5)
     with pytest.raises(ValueError, match="vert"):
         result.to_g2o(target_vertex=1, source_vertex=1)
-    options = bayesian_icp.Options()
-    options.chains.num_draws = 40
-    unmixed = bayesian_icp.align(source=mug[0], target=mug[1], options=options)
+    unmixed = bayesian_icp.align(source=mug[0], target=mug[1], options=draw(40))
     with pytest.raises(ValueError, match="mixed"):
         unmixed.to_tum()
     assert unmixed.to_tum(accept_unreliable=True)
