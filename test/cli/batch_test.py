@@ -17,6 +17,7 @@ from faults import BATCH
 # About 0.3 s a pair.
 SLOW = ["--preset", "paper", "--samples", "200", "--chains", "2", "--thinning", "10"]
 SLOW += ["--step-size", "1e-6"]
+PAIR = {"source": "source.pcd", "target": "target.pcd"}
 
 
 def run_batch(*arguments, launcher=()):
@@ -49,31 +50,26 @@ class BatchTest(ToolTest):
     def manifest(self, pairs):
         return self.file("manifest.json", json.dumps(pairs))
 
+    def printed(self, manifest, *options):
+        """The results of a run without --results."""
+        return without_times(results_of(run_batch(manifest, *options).stdout))
+
+    def written(self):
+        return without_times(results_of(self.results.read_text()))
+
     def seeds(self, count):
         """A manifest of one small pair with several seeds."""
         self.small_pair()
-        return self.manifest(
-            [
-                {
-                    "name": f"seed {seed}",
-                    "source": "source.pcd",
-                    "target": "target.pcd",
-                    "settings": {"chains": {"seed": seed}},
-                }
-                for seed in range(count)
-            ]
-        )
+        settings = [{"chains": {"seed": seed}} for seed in range(count)]
+        return self.manifest([{"name": f"seed {k}", **PAIR, "settings": s} for k, s in enumerate(settings)])
 
 
 class BatchResults(BatchTest):
     def test_a_line_says_what_the_single_program_says(self):
         source, target = self.small_pair()
         pose = [0.01, -0.02, 0.01, 0.05, -0.04, 0.08]
-        manifest = self.manifest(
-            [{"name": "box", "source": "source.pcd", "target": "target.pcd", "guess": pose}]
-        )
-        output = self.folder / "files"
-        batch = run_batch(manifest, *FAST, "--seed", 7, "-o", output)
+        manifest = self.manifest([{"name": "box", **PAIR, "guess": pose}])
+        batch = run_batch(manifest, *FAST, "--seed", 7, "-o", self.output)
         guess = ",".join(map(str, pose))
         single = run(source, target, *FAST, "--seed", 7, "--guess", guess, "--json")
         self.assertEqual(batch.returncode, single.returncode, batch.stderr)
@@ -82,49 +78,41 @@ class BatchResults(BatchTest):
         self.assertEqual(line["status"], document["status"]["name"])
         self.assertEqual(line["message"], document["status"]["message"])
         self.assertEqual(line["mean"], document["posterior"]["mean"])
-        for covariance in line["covariances"]:
-            self.assertIn(covariance, document["posterior"]["covariances"])
-        self.assertEqual(
-            [covariance["convention"] for covariance in line["covariances"]],
-            ["parameters", "right_se3"],
-        )
+        parameters, _, _, right_se3 = document["posterior"]["covariances"]
+        self.assertEqual(line["covariances"], [parameters, right_se3])
         for key in ("final_transformation", "icp", "source", "target"):
             self.assertEqual(line[key], document[key])
         self.assertEqual(line["seed"], 7)
         self.assertGreater(line["time"]["total_s"], line["time"]["icp_s"])
-        files = output / "box"
-        self.assertEqual(
-            sorted(path.name for path in files.iterdir()), ["posterior.json", "samples.csv"]
-        )
-        written = strict_json((files / "posterior.json").read_text())
+        self.output = self.output / "box"
+        self.assertEqual(self.names_of_output(), ["posterior.json", "samples.csv"])
+        written = strict_json((self.output / "posterior.json").read_text())
         self.assertEqual(written["posterior"], document["posterior"])
         self.assertEqual(written["options"], document["options"])
 
     def test_failures_are_of_their_pair_only(self):
         self.small_pair()
         self.file("broken.pcd", b"VERSION .7\nFIELDS x y z\nrubbish")
-        self.file("two.pcd", cloud_files.pcd_bytes([(0, 0, 0), (1, 0, 0)]))
+        self.pcd("two.pcd", [(0, 0, 0), (1, 0, 0)])
         self.file("matrix.txt", "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 2")
-        far = [(x + 50, y, z) for x, y, z in cloud_files.box_surface(seed=1)]
-        self.file("far.pcd", cloud_files.pcd_bytes(far))
-        good = {"source": "source.pcd", "target": "target.pcd"}
+        self.pcd("far.pcd", cloud_files.far_box())
         manifest = self.manifest(
             [
-                {"name": "first", **good},
-                {"name": "missing", **good, "source": "no_such.pcd"},
-                {"name": "broken", **good, "target": "broken.pcd"},
-                {"name": "two points", **good, "source": "two.pcd"},
-                {"name": "bad guess", **good, "guess": "matrix.txt"},
-                {"name": "apart", **good, "target": "far.pcd"},
-                {"name": "last", **good},
+                {"name": "first", **PAIR},
+                {"name": "missing", **PAIR, "source": "no_such.pcd"},
+                {"name": "broken", **PAIR, "target": "broken.pcd"},
+                {"name": "two points", **PAIR, "source": "two.pcd"},
+                {"name": "bad guess", **PAIR, "guess": "matrix.txt"},
+                {"name": "apart", **PAIR, "target": "far.pcd"},
+                {"name": "last", **PAIR},
             ]
         )
-        apart, missing = (self.folder / "files" / name for name in ("apart", "missing"))
+        apart, missing = self.output / "apart", self.output / "missing"
         for folder in (apart, missing):
             folder.mkdir(parents=True)
             for name in ("posterior.json", "samples.csv"):
                 (folder / name).write_text("of an older posterior")
-        result = run_batch(manifest, *FAST, "-d", 0.5, "-o", apart.parent)
+        result = run_batch(manifest, *FAST, "-d", 0.5, "-o", self.output)
         self.assertEqual(result.returncode, 1, result.stderr)
         lines = results_of(result.stdout)
         self.assertEqual(len(lines), 7)
@@ -143,17 +131,14 @@ class BatchResults(BatchTest):
         self.assertEqual([path.name for path in apart.iterdir()], ["posterior.json"])
         strict_json((apart / "posterior.json").read_text())
         self.assertEqual(list(missing.iterdir()), [])
-        self.assertFalse((apart.parent / "broken").exists())
+        self.assertFalse((self.output / "broken").exists())
         self.assertEqual(lines["first"]["mean"], lines["last"]["mean"])
         self.assertGreater(lines["first"]["draws"], 0)
         self.assertEqual(len(result.stderr.splitlines()), 7)
 
     def test_threads_do_not_matter(self):
         manifest = self.seeds(5)
-        runs = [
-            without_times(results_of(run_batch(manifest, *FAST, "--threads", n).stdout))
-            for n in (1, 3, 8)
-        ]
+        runs = [self.printed(manifest, *FAST, "--threads", n) for n in (1, 3, 8)]
         self.assertEqual(len(runs[0]), 5)
         self.assertNotEqual(runs[0]["seed 0"]["mean"], runs[0]["seed 1"]["mean"])
         self.assertEqual(runs[0], runs[1])
@@ -177,18 +162,17 @@ class BatchResults(BatchTest):
                 }
             ]
         )
-        output = self.folder / "files"
-        run_batch(manifest, *FAST, "--suggested-prior", "-o", output)
-        options = strict_json((output / "box" / "posterior.json").read_text())["options"]
+        run_batch(manifest, *FAST, "--suggested-prior", "-o", self.output)
+        options = strict_json((self.output / "box" / "posterior.json").read_text())["options"]
         self.assertEqual(options["registration"]["guess_matrix"][1][3], -0.02)
         self.assertEqual(options["prior"]["frame"], "source-centroid")
-        for k, variance in enumerate(options["prior"]["variance_m2_rad2"]):
-            self.assertAlmostEqual(variance, 0.03**2 if k < 3 else 0.2**2, places=12)
+        expected = [0.03**2] * 3 + [0.2**2] * 3
+        self.assert_close(options["prior"]["variance_m2_rad2"], expected, delta=1e-12)
 
 
 class BatchRefused(BatchTest):
     def test_manifests(self):
-        good = {"name": "a", "source": "s.pcd", "target": "t.pcd"}
+        good = {"name": "a", **PAIR}
         for content, *parts in (
             ("[", "broken JSON"),
             ('[{"name": "a", "source": "s.pcd", "source": "t.pcd"}]', "'source' twice"),
@@ -216,7 +200,7 @@ class BatchRefused(BatchTest):
         """Those of the authors' file in units of the clouds, those of a pair in metres."""
         config = self.file("c.json", json.dumps({**AUTHORS_CONFIG, "normalize-cloud": True}))
         self.small_pair()
-        pair = {"name": "a", "source": "source.pcd", "target": "target.pcd"}
+        pair = {"name": "a", **PAIR}
         for own in ({"guess": [0] * 6}, {"settings": {"registration": {"max_distance_m": 1}}}):
             manifest = self.manifest([{**pair, **own}])
             result = run_batch(manifest, "--config", config)
@@ -227,37 +211,31 @@ class BatchRefused(BatchTest):
 
     def test_an_output_folder_that_cannot_be_made(self):
         """Before any pair is registered."""
-        good = {"name": "a", "source": "s.pcd", "target": "t.pcd"}
-        manifest = self.file("manifest.json", json.dumps([good]))
+        manifest = self.manifest([{"name": "a", **PAIR}])
         in_file = manifest / "files"
         self.assert_refused(3, run_batch(manifest, "-o", in_file), in_file, "cannot be made")
 
     def test_usage(self):
         manifest = self.seeds(1)
-        for words, *parts in (
+        cases = [
             ([], "expected a manifest"),
             ([manifest, "more"], "'more'"),
             ([manifest, "--sigma", "x"], "--sigma"),
             ([manifest, "--suggested-prior", "--prior-variance", "1"], "exclude"),
             ([manifest, "--suggested-prior", "--prior-frame", "origin"], "exclude"),
-        ):
-            with self.subTest(words=words):
-                self.assert_refused(2, run_batch(*words), *parts)
+        ]
+        self.assert_each_refused(2, [BATCH], cases)
         self.assert_refused(3, run_batch(manifest, "--suggested-prior"), "suggested_prior_sigma")
 
 
 class BatchResume(BatchTest):
-    def whole_run(self, manifest, *options):
-        return without_times(results_of(run_batch(manifest, *options).stdout))
-
     def whole_lines(self):
         content = self.results.read_bytes() if self.results.exists() else b""
         return content[: content.rfind(b"\n") + 1]
 
     def resumed(self, manifest, *options):
-        result = run_batch(manifest, *options, "--results", self.results)
-        self.assertIn(result.returncode, (0, 1), result.stderr)
-        return without_times(results_of(self.results.read_text()))
+        self.assert_ran(run_batch(manifest, *options, "--results", self.results))
+        return self.written()
 
     def test_killed_again_and_again(self):
         """Nothing is lost and nothing there twice: each kill comes when there is a new line."""
@@ -274,7 +252,7 @@ class BatchResume(BatchTest):
             kept = self.whole_lines()
             num_lines.append(kept.count(b"\n"))
         self.assertGreaterEqual(len({n for n in num_lines if 0 < n < 9}), 2, num_lines)
-        self.assertEqual(self.resumed(manifest, *SLOW), self.whole_run(manifest, *SLOW))
+        self.assertEqual(self.resumed(manifest, *SLOW), self.printed(manifest, *SLOW))
         self.assertTrue(self.whole_lines().startswith(kept))
 
     def test_line_that_was_cut_off(self):
@@ -297,44 +275,39 @@ class BatchResume(BatchTest):
         self.assertEqual(self.results.read_bytes(), text)
         self.assertEqual(result.returncode, 1)  # what it was in the first run
         self.assertNotIn("no files", result.stderr)
-        output = self.folder / "output"
-        result = run_batch(manifest, *FAST, "--results", self.results, "-o", output, "--quiet")
+        result = run_batch(manifest, *FAST, "--results", self.results, "-o", self.output, "--quiet")
         self.assert_refused(1, result, f"3 pairs have a line in {self.results} but no files")
 
     def test_pairs_of_changed_files_are_run_again(self):
-        self.small_pair()
-        pair = {"target": "target.pcd"}
+        source, _ = self.small_pair()
         names = ("source", "broken", "gone")
-        manifest = self.manifest([{"name": n, "source": f"{n}.pcd", **pair} for n in names])
-        good = (self.folder / "source.pcd").read_bytes()
+        manifest = self.manifest([{**PAIR, "name": n, "source": f"{n}.pcd"} for n in names])
+        good = source.read_bytes()
         self.file("broken.pcd", b"rubbish")
         gone = self.file("gone.pcd", good)
         first = self.resumed(manifest, *FAST)
         self.assertEqual(first["broken"]["status"], "error")
         gone.unlink()
         self.file("broken.pcd", good)
-        output = self.folder / "output"
-        result = run_batch(manifest, *FAST, "--results", self.results, "-o", output)
+        result = run_batch(manifest, *FAST, "--results", self.results, "-o", self.output)
         self.assertIn("1 pairs are registered again", result.stderr)
-        again = without_times(results_of(self.results.read_text()))
-        self.assertEqual([path.name for path in output.iterdir()], ["broken"])
+        again = self.written()
+        self.assertEqual(self.names_of_output(), ["broken"])
         self.assertEqual(again["broken"]["mean"], first["source"]["mean"])
         for name in ("source", "gone"):
             self.assertEqual(again[name], first[name])
 
     def test_pairs_that_failed_miss_no_files(self):
         self.small_pair()
-        pairs = [{"name": n, "source": n, "target": "target.pcd"} for n in ("source.pcd", "none")]
-        manifest = self.manifest(pairs)
+        manifest = self.manifest([{**PAIR, "name": n, "source": n} for n in ("source.pcd", "none")])
         self.resumed(manifest, *FAST)
-        words = [manifest, *FAST, "--results", self.results, "-o", self.folder / "output"]
+        words = [manifest, *FAST, "--results", self.results, "-o", self.output]
         self.assertIn("1 pairs have a line", run_batch(*words, "--quiet").stderr)
 
     def test_a_guess_in_words_is_a_file_name(self):
         """In whatever folder the manifest is."""
         self.small_pair()
-        pair = {"name": "a", "source": "source.pcd", "target": "target.pcd"}
-        manifest = self.manifest([{**pair, "guess": "0,0,0,0,0,0"}])
+        manifest = self.manifest([{"name": "a", **PAIR, "guess": "0,0,0,0,0,0"}])
         for name, options in ((manifest, {}), (manifest.name, {"cwd": self.folder})):
             result = call(BATCH, name, *FAST, **options)
             self.assertEqual(result.returncode, 1)
@@ -362,16 +335,14 @@ class BatchResume(BatchTest):
         manifest = self.seeds(2)
         self.resumed(manifest, *FAST)
         text = self.results.read_bytes()
-        other = run_batch(manifest, *FAST, "--sigma", 2, "--results", self.results)
         first = json.loads(text.splitlines()[0])["name"]
-        self.assert_refused(3, other, self.results, f"'{first}'", "other settings")
-        self.assertEqual(self.results.read_bytes(), text)
         self.file("T.txt", "1 0 0 0.01\n0 1 0 0\n0 0 1 0\n0 0 0 1\n")
         pairs = json.loads(manifest.read_text())
-        guessed = self.manifest([{**pair, "guess": "T.txt"} for pair in pairs])
-        other = run_batch(guessed, *FAST, "--results", self.results)
-        self.assert_refused(3, other, self.results, f"'{first}'", "other settings, files")
-        self.assertEqual(self.results.read_bytes(), text)
+        guessed = self.file("guessed.json", json.dumps([{**pair, "guess": "T.txt"} for pair in pairs]))
+        for words in ([manifest, "--sigma", 2], [guessed]):
+            other = run_batch(*words, *FAST, "--results", self.results)
+            self.assert_refused(3, other, self.results, f"'{first}'", "other settings, files")
+            self.assertEqual(self.results.read_bytes(), text)
         self.results.write_text("x,y\n1,2\n")
         other = run_batch(manifest, *FAST, "--results", self.results)
         self.assert_refused(3, other, self.results, "not a result")
@@ -387,7 +358,7 @@ class BatchResume(BatchTest):
         self.assertEqual(process.returncode, 130)
         self.assertIn("pcl_bayesian_icp_batch: interrupted; the pairs under way", errors)
         self.assertIn(len(results_of(self.results.read_text())), range(1, 9))
-        self.assertEqual(self.resumed(manifest, *SLOW), self.whole_run(manifest, *SLOW))
+        self.assertEqual(self.resumed(manifest, *SLOW), self.printed(manifest, *SLOW))
 
 
 def has_mpi():
@@ -403,13 +374,13 @@ class BatchRanks(BatchTest):
 
     def test_two_ranks_share_the_pairs(self):
         manifest = self.seeds(7)
-        alone = without_times(results_of(run_batch(manifest, *FAST).stdout))
+        alone = self.printed(manifest, *FAST)
         options = [manifest, *FAST, "--threads", 1, "--results", self.results]
         result = run_batch(*options, launcher=self.MPIRUN)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("rank 0: 4/4", result.stderr)
         self.assertIn("rank 1: 3/3", result.stderr)
-        self.assertEqual(without_times(results_of(self.results.read_text())), alone)
+        self.assertEqual(self.written(), alone)
         self.assertEqual(self.rank_files(), [])
 
     def test_killed_ranks_lose_nothing(self):
@@ -421,8 +392,9 @@ class BatchRanks(BatchTest):
             deadline = time.monotonic() + 60
             while time.monotonic() < deadline and not (part.exists() and part.stat().st_size):
                 time.sleep(0.02)
-            for rank in self.ranks_of(job.pid):
-                os.kill(rank, signal.SIGKILL)
+            children = pathlib.Path(f"/proc/{job.pid}/task/{job.pid}/children")
+            for rank in children.read_text().split():
+                os.kill(int(rank), signal.SIGKILL)
             job.wait(30)
         self.assertEqual(self.rank_files(), [part.name])
         saved = set(results_of(part.read_text()))
@@ -431,13 +403,7 @@ class BatchRanks(BatchTest):
         result = run_batch(*options)
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertEqual(self.rank_files(), [])
-        alone = without_times(results_of(run_batch(manifest, *SLOW).stdout))
-        self.assertEqual(without_times(results_of(self.results.read_text())), alone)
-
-    @staticmethod
-    def ranks_of(parent):
-        children = pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
-        return [int(child) for child in children]
+        self.assertEqual(self.written(), self.printed(manifest, *SLOW))
 
     def test_standard_output_is_refused(self):
         result = run_batch(self.seeds(1), *FAST, launcher=self.MPIRUN)

@@ -7,6 +7,8 @@ import subprocess
 import tempfile
 import unittest
 
+import numpy as np
+
 import cloud_files
 
 PROGRAMS = os.environ["PCL_BAYESIAN_ICP_PROGRAMS"]
@@ -15,6 +17,9 @@ DATA = pathlib.Path(os.environ["PCL_BAYESIAN_ICP_DATA"])
 # What the tools are built with: a sanitizer needs more address space than can be limited.
 SANITIZER = os.environ.get("PCL_BAYESIAN_ICP_SANITIZER")
 
+# What a run writes into its folder, in order.
+WRITTEN = ["aligned.pcd", "posterior.json", "report.html", "samples.csv"]
+WITHOUT_REPORT = [name for name in WRITTEN if name != "report.html"]
 # The pose that brings the source of small_pair() onto its target.
 SMALL_PAIR_POSE = (0.01, -0.02, 0.015, 0.05, -0.04, 0.08)
 CALIBRATED = ["--preset=calibrated", "--prior-frame=source-centroid"]
@@ -64,11 +69,23 @@ class ToolTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+        self.output = self.folder / "output"
+
+    @classmethod
+    def holder(cls):
+        """One with a folder for what the tests of a class share."""
+        holder = cls()
+        ToolTest.setUp(holder)
+        cls.addClassCleanup(holder.doCleanups)
+        return holder
 
     def file(self, name, content):
         path = self.folder / name
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
         return path
+
+    def pcd(self, name, points, *fields, **writing):
+        return self.file(name, cloud_files.pcd_bytes(points, *fields, **writing))
 
     def start(self, *words, **options):
         """A program that goes with the test at the latest."""
@@ -79,15 +96,11 @@ class ToolTest(unittest.TestCase):
 
     def small_pair(self, **writing):
         """A box and the same box moved, as two PCD files."""
-        target = cloud_files.box_surface(seed=1)
-        matrix = cloud_files.matrix_of(*SMALL_PAIR_POSE)
-        source = [
-            tuple(map(cloud_files.as_float32, cloud_files.inverse_moved(matrix, point)))
-            for point in cloud_files.box_surface(seed=2)
-        ]
+        to_source = np.linalg.inv(cloud_files.matrix_of(*SMALL_PAIR_POSE))
+        source = np.float32(cloud_files.moved(to_source, cloud_files.box_surface(seed=2)))
         return (
-            self.file("source.pcd", cloud_files.pcd_bytes(source, **writing)),
-            self.file("target.pcd", cloud_files.pcd_bytes(target, **writing)),
+            self.pcd("source.pcd", source.tolist(), **writing),
+            self.pcd("target.pcd", cloud_files.box_surface(seed=1), **writing),
         )
 
     def assert_refused(self, exit_code, result, *parts):
@@ -99,6 +112,12 @@ class ToolTest(unittest.TestCase):
         self.assertTrue(lines[0].startswith(f"{self.program}: "), result.stderr)
         for part in parts:
             self.assertIn(str(part), lines[0])
+
+    def assert_each_refused(self, exit_code, command, cases):
+        """As assert_refused(), for all (words, part, ...) that go with the command."""
+        for words, *parts in cases:
+            with self.subTest(words=words):
+                self.assert_refused(exit_code, call(*command, *words), *parts)
 
     def assert_close(self, found, expected, delta):
         """Numbers, or lists of the same shape of these, that differ by \\p delta at most."""
@@ -113,6 +132,19 @@ class ToolTest(unittest.TestCase):
         """A posterior was sampled, whatever is to be thought of it."""
         self.assertIn(result.returncode, (0, 1), result.stderr)
 
+    def assert_rows(self, document, rows):
+        """{"x [m]": texts of mean, deviation, two quantiles, R-hat, ...} of posterior.json."""
+        for coordinate in document["posterior"]["coordinates"]:
+            name, unit = coordinate["name"], coordinate["unit"]
+            keys = ["standard_deviation", "quantile_2.5_percent", "quantile_97.5_percent"]
+            values = [document["posterior"]["mean"][f"{name}_{unit}"], *map(coordinate.get, keys)]
+            numbers = list(map(float, rows[f"{name} [{unit}]"][:5]))
+            self.assert_close(numbers[:4], values, delta=0.6e-6)
+            self.assertAlmostEqual(numbers[4], coordinate["rhat"], delta=0.6e-3)
+
+    def names_of_output(self):
+        return sorted(path.name for path in self.output.iterdir())
+
     def assert_holds_truth(self, document, folder):
         """The true translation is within four standard deviations of the mean."""
         coordinates = document["posterior"]["coordinates"]
@@ -120,11 +152,25 @@ class ToolTest(unittest.TestCase):
             error = abs(coordinate["mean"] - true_value)
             self.assertLess(error, 4 * coordinate["standard_deviation"], coordinate["name"])
 
+    def trusted_run(self, name, *arguments):
+        """The document of a run on a committed pair: nothing to complain of, and the truth."""
+        result = run(*scans(name), *arguments, "--json")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        document = strict_json(result.stdout)
+        self.assertEqual(document["status"]["name"], "ok")
+        self.assert_holds_truth(document, DATA / name)
+        return document
+
     def run_to_files(self, *arguments):
         """Run with -o; (samples.csv as text, posterior.json parsed)."""
-        output = self.folder / "output"
-        result = run(*arguments, "-o", output, *self.writing)
+        result = run(*arguments, "-o", self.output, *self.writing)
         self.assert_ran(result)
         self.assertEqual(result.stdout, "")
-        samples = (output / "samples.csv").read_text()
-        return samples, strict_json((output / "posterior.json").read_text())
+        samples = (self.output / "samples.csv").read_text()
+        return samples, strict_json((self.output / "posterior.json").read_text())
+
+    def run_to_json(self, *arguments):
+        """What a run with --json prints."""
+        result = run(*arguments, "--json")
+        self.assert_ran(result)
+        return strict_json(result.stdout)

@@ -1,17 +1,15 @@
 """Point clouds in PCD and PLY files, written and read without PCL: an outside witness."""
 
 import math
+import pathlib
 import random
 import struct
 
-# A field is (name, struct letter); "f" 32-bit float, "d" 64-bit float, "H" uint16, ...
+import numpy as np
+
+# A field is (name, letter of NumPy's): "f" 32-bit float, "d" 64-bit float, "H" uint16, ...
 XYZ = [("x", "f"), ("y", "f"), ("z", "f")]
-PCD_TYPES = {"f": "F", "d": "F", "b": "I", "h": "I", "i": "I", "B": "U", "H": "U", "I": "U"}
 PLY_TYPES = {"f": "float", "d": "double", "B": "uchar", "i": "int"}
-
-
-def as_float32(number):
-    return struct.unpack("<f", struct.pack("<f", number))[0]
 
 
 def box_surface(num_points=300, seed=1):
@@ -21,8 +19,13 @@ def box_surface(num_points=300, seed=1):
     for i in range(num_points):
         point = [generator.uniform(0, 0.3), generator.uniform(0, 0.2), generator.uniform(0, 0.1)]
         point[i % 3] = 0.0
-        points.append(tuple(as_float32(number) for number in point))
+        points.append(tuple(np.float32(point).tolist()))
     return points
+
+
+def far_box(distance=50, seed=3):
+    """One that has nothing to do with the others."""
+    return [(x + distance, y, z) for x, y, z in box_surface(seed=seed)]
 
 
 def matrix_of(x, y, z, roll, pitch, yaw):
@@ -30,34 +33,39 @@ def matrix_of(x, y, z, roll, pitch, yaw):
     cr, sr = math.cos(roll), math.sin(roll)
     cp, sp = math.cos(pitch), math.sin(pitch)
     cy, sy = math.cos(yaw), math.sin(yaw)
-    return [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, x],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, y],
-        [-sp, cp * sr, cp * cr, z],
-        [0, 0, 0, 1],
-    ]
+    return np.array(
+        [
+            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, x],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, y],
+            [-sp, cp * sr, cp * cr, z],
+            [0, 0, 0, 1],
+        ]
+    )
 
 
-def rotated(matrix, vector):
-    return [sum(row[k] * vector[k] for k in range(3)) for row in matrix[:3]]
+def moved(matrix, points):
+    """A point, or an array with a point in each row."""
+    matrix = np.asarray(matrix)
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
-def moved(matrix, point):
-    return [a + row[3] for a, row in zip(rotated(matrix, point), matrix)]
+def bytes_of(points, fields, order="<"):
+    """An array of the points as they are in a binary file."""
+    layout = ",".join(order + letter for _, letter in fields)
+    return np.array([tuple(point) for point in points], layout)
 
 
-def inverse_moved(matrix, point):
-    shifted = [point[k] - matrix[k][3] for k in range(3)]
-    return [sum(matrix[i][k] * shifted[i] for i in range(3)) for k in range(3)]
+def lines_of(points):
+    return b"".join(" ".join(map(repr, point)).encode() + b"\n" for point in points)
 
 
 def pcd_header(fields, num_points, encoding, height=1, viewpoint="0 0 0 1 0 0 0"):
-    sizes = [struct.calcsize(letter) for _, letter in fields]
+    types = [np.dtype(letter) for _, letter in fields]
     return (
         "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n"
         f"FIELDS {' '.join(name for name, _ in fields)}\n"
-        f"SIZE {' '.join(map(str, sizes))}\n"
-        f"TYPE {' '.join(PCD_TYPES[letter] for _, letter in fields)}\n"
+        f"SIZE {' '.join(str(each.itemsize) for each in types)}\n"
+        f"TYPE {' '.join(each.kind.upper() for each in types)}\n"
         f"COUNT {' '.join('1' for _ in fields)}\n"
         f"WIDTH {num_points // height}\nHEIGHT {height}\nVIEWPOINT {viewpoint}\n"
         f"POINTS {num_points}\nDATA {encoding}\n"
@@ -68,16 +76,11 @@ def pcd_bytes(points, fields=XYZ, encoding="binary", **header):
     """A PCD file; "binary_compressed" stores its bytes as LZF literals."""
     head = pcd_header(fields, len(points), encoding, **header)
     if encoding == "ascii":
-        return head + b"".join(
-            " ".join(repr(value) for value in point).encode() + b"\n" for point in points
-        )
-    layout = "<" + "".join(letter for _, letter in fields)
+        return head + lines_of(points)
+    table = bytes_of(points, fields)
     if encoding == "binary":
-        return head + b"".join(struct.pack(layout, *point) for point in points)
-    body = b"".join(
-        struct.pack(f"<{len(points)}{letter}", *(point[k] for point in points))
-        for k, (_, letter) in enumerate(fields)
-    )
+        return head + table.tobytes()
+    body = b"".join(table[name].tobytes() for name in table.dtype.names)
     literals = b"".join(
         bytes([len(body[i : i + 32]) - 1]) + body[i : i + 32] for i in range(0, len(body), 32)
     )
@@ -90,11 +93,9 @@ def ply_bytes(points, fields=XYZ, encoding="ascii"):
     head += "".join(f"property {PLY_TYPES[letter]} {name}\n" for name, letter in fields)
     head += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
     if encoding == "ascii":
-        lines = [" ".join(repr(value) for value in point) for point in points]
-        return (head + "\n".join(lines) + "\n3 0 1 2\n").encode()
+        return head.encode() + lines_of(points) + b"3 0 1 2\n"
     order = "<" if encoding == "binary_little_endian" else ">"
-    layout = order + "".join(letter for _, letter in fields)
-    body = b"".join(struct.pack(layout, *point) for point in points)
+    body = bytes_of(points, fields, order).tobytes()
     return head.encode() + body + struct.pack(order + "B3i", 3, 0, 1, 2)
 
 
@@ -120,34 +121,30 @@ def lzf_decompressed(data):
     return bytes(out)
 
 
-def numbers(row, *names):
-    """Fields of a row of read_pcd() that are floats of 32 or 64 bits."""
-    return [struct.unpack("<f" if len(row[name]) == 4 else "<d", row[name])[0] for name in names]
-
-
 def read_pcd(path):
-    """(header lines by key, list of {field: bytes} in the order of the points)."""
-    with open(path, "rb") as file:
-        content = file.read()
-    header = {}
-    at = 0
-    while "DATA" not in header:
-        end = content.index(b"\n", at)
-        words = content[at:end].decode().split()
-        header[words[0]] = words[1:]
-        at = end + 1
-    sizes = [int(s) * int(c) for s, c in zip(header["SIZE"], header["COUNT"])]
-    fields = list(zip(header["FIELDS"], sizes))
-    points = [{} for _ in range(int(header["POINTS"][0]))]
-    body = content[at:]
+    """(header lines by key, array of the points by their fields)."""
+    head, _, rest = pathlib.Path(path).read_bytes().partition(b"\nDATA ")
+    encoding, _, body = rest.partition(b"\n")
+    header = {words[0]: words[1:] for words in map(str.split, head.decode().splitlines())}
+    header["DATA"] = [encoding.decode()]
+    types = [f"<{kind.lower()}{size}" for kind, size in zip(header["TYPE"], header["SIZE"])]
+    points = np.zeros(int(header["POINTS"][0]), list(zip(header["FIELDS"], types)))
     if header["DATA"] == ["binary"]:
-        places = [(point, field) for point in points for field in fields]
-    else:
-        compressed_size, _ = struct.unpack_from("<II", body)
-        body = lzf_decompressed(body[8 : 8 + compressed_size])
-        places = [(point, field) for field in fields for point in points]
+        return header, np.frombuffer(body, points.dtype)
+    compressed_size, _ = struct.unpack_from("<II", body)
+    body = lzf_decompressed(body[8 : 8 + compressed_size])
     at = 0
-    for point, (name, size) in places:
-        point[name] = body[at : at + size]
-        at += size
+    for name in points.dtype.names:
+        column = points[name]
+        column[:] = np.frombuffer(body, column.dtype, len(points), at)
+        at += column.nbytes
     return header, points
+
+
+def columns(points, *names):
+    """Fields of read_pcd(), a point in each row."""
+    return np.column_stack([points[name] for name in names]).astype(float)
+
+
+def read_xyz(path):
+    return columns(read_pcd(path)[1], *"xyz")

@@ -1,42 +1,13 @@
 """Configuration files in both layouts, and that a run can be repeated from what it wrote."""
 
-import copy
 import json
 import math
 
 import cloud_files
-from cli_tool import FAST, ToolTest, run, strict_json
+from cli_tool import DATA, FAST, TOOL, ToolTest, run, strict_json
 
-AUTHORS_CONFIG = {
-    "normalize-cloud": False,
-    "initial-guess": {"x": 0.01, "y": 0.0, "z": 0.0, "roll": 0.0, "pitch": 0.0, "yaw": 0.1},
-    "prior": {
-        "mean-x": 0.5,
-        "mean-y": 0.25,
-        "mean-z": 0.125,
-        "mean-roll": 0.1,
-        "mean-pitch": 0.2,
-        "mean-yaw": 0.3,
-        "variance": 0.75,
-    },
-    "method": "preconditioned_sgld",
-    "icp": {
-        "batch-size": 50,
-        "max-matching-distance": 1.0,
-        "max-iterations": 40,
-        "convergence-steps": 5,
-        "translational-convergence": 0.00005,
-        "rotational-convergence": 0.000005,
-        "filter": True,
-    },
-    "fixed": {"step-size": 1.0},
-    "adam": {"step-size": 0.1, "decay-rate-a": 0.9, "decay-rate-b": 0.999},
-    "adadelta": {"decay-rate": 0.96, "preconditioner": 1e-3},
-    "momentum": {"step-size": 1},
-    "rmsprop": {"step-size": 0.01, "decay-rate": 0.9},
-    "preconditioned_sgld": {"step-size": 0.003, "adjust_noise": 3, "decay-rate": 0.95},
-    "preconditioned_sgld2": {"step-size": 0.1, "adjust_noise": 30, "decay-rate": 0.9},
-}
+# The file of the authors, as the fuzzers have it.
+AUTHORS_CONFIG = json.loads((DATA.parent / "test/fuzz/corpus/configuration/authors").read_text())
 
 
 class ConfigTest(ToolTest):
@@ -48,6 +19,11 @@ class ConfigTest(ToolTest):
         path = self.config(content)
         result = run(*self.small_pair(), *FAST, "--config", path)
         self.assert_refused(exit_code, result, f"{path}: ", *reason)
+
+    def refuse_with(self, words, content, reason):
+        """A file and options that do not go together."""
+        result = run(*self.small_pair(), "--config", self.config(content), *words)
+        self.assert_refused(2, result, reason)
 
     def options(self, content, *arguments):
         path = self.config(content)
@@ -76,9 +52,9 @@ class OwnLayout(ConfigTest):
 
     def test_guess_of_a_posterior(self):
         _, document = self.run_to_files(*self.small_pair(), *FAST)
-        file = self.folder / "output" / "posterior.json"
-        result = run(*self.small_pair(), *FAST, "--guess", file, "--json")
-        guess = strict_json(result.stdout)["options"]["registration"]["guess_matrix"]
+        file = self.output / "posterior.json"
+        repeated = self.run_to_json(*self.small_pair(), *FAST, "--guess", file)
+        guess = repeated["options"]["registration"]["guess_matrix"]
         self.assertEqual(guess, document["posterior"]["mean"]["T_target_source"])
         no_posterior = self.file("no.json", "{}")
         result = run(*self.small_pair(), *FAST, "--guess", no_posterior)
@@ -93,26 +69,22 @@ class OwnLayout(ConfigTest):
         self.refuse(3, '{"sgld": {"step_size": 1e999}}', "broken JSON")
         self.refuse(3, "[" * 100000, "broken JSON")
         self.refuse(2, "[]", "is not a JSON object")
-        result = run(*self.small_pair(), "--config", "no_such.json")
-        self.assert_refused(3, result, "no_such.json: no such file")
-        result = run(*self.small_pair(), "--config", self.folder)
-        self.assert_refused(3, result, "is a directory")
+        cases = [(["no_such.json"], "no_such.json: no such file"), ([self.folder], "is a directory")]
+        self.assert_each_refused(3, [TOOL, *self.small_pair(), "--config"], cases)
 
     def test_unknown_keys(self):
         self.refuse(2, {"chain": {}}, "unknown key 'chain'")
         self.refuse(2, {"chains": {"sed": 5}}, "unknown key 'chains.sed'")
 
     def test_keys_of_another_preset(self):
-        belongs = "belongs to preset exact, and the preset is "
-        self.refuse(2, {"exact": {"kernel": "huber"}}, f"exact {belongs}paper")
-        path = self.config({"posterior": {"preset": "exact"}, "exact": {"kernel": "huber"}})
-        result = run(*self.small_pair(), "--config", path, "--preset=calibrated")
-        self.assert_refused(2, result, f"{path}: exact {belongs}calibrated")
-        path = self.config({"posterior": {"measurement_sigma_m": 0.1}})
-        result = run(*self.small_pair(), "--config", path)
-        self.assert_refused(2, result, "posterior.measurement_sigma_m belongs to presets paper and exact")
-        result = run(*self.small_pair(), "--config", self.config(AUTHORS_CONFIG), "--preset=exact")
-        self.assert_refused(2, result, "is for preset paper, and the preset is exact")
+        belongs = "exact belongs to preset exact, and the preset is "
+        content = {"posterior": {"preset": "exact"}, "exact": {"kernel": "huber"}}
+        self.refuse(2, {"exact": content["exact"]}, f"{belongs}paper")
+        self.refuse_with(["--preset=calibrated"], content, f"config.json: {belongs}calibrated")
+        scale = {"posterior": {"measurement_sigma_m": 0.1}}
+        self.refuse_with([], scale, "posterior.measurement_sigma_m belongs to presets paper and exact")
+        reason = "is for preset paper, and the preset is exact"
+        self.refuse_with(["--preset=exact"], AUTHORS_CONFIG, reason)
 
     def test_the_preset_of_the_command_line_comes_before_the_files(self):
         for content in ({"mini_batch": {"batch_size": 9}}, {"posterior": {"preset": "exact"}}):
@@ -140,8 +112,7 @@ class OwnLayout(ConfigTest):
     def test_automatic_frame_is_found_anew(self):
         options = ["--preset=calibrated", "--samples=60", "--json"]
         near, target = self.small_pair()
-        far = [(x + 9, y, z) for x, y, z in cloud_files.box_surface(seed=2)]
-        far = self.file("far.pcd", cloud_files.pcd_bytes(far))
+        far = self.pcd("far.pcd", cloud_files.far_box(9, seed=2))
         first = run(near, target, *options).stdout
         config = self.config(first)
         second = run(far, target, *options, "--guess=-9,0,0,0,0,0", "--config", config).stdout
@@ -150,30 +121,26 @@ class OwnLayout(ConfigTest):
             self.assertEqual(document["prior_frame"], frame)
 
     def test_malformed_values(self):
-        bad = [
-            ("chains", "num_draws", "9"),
-            ("chains", "num_draws", 9.5),
-            ("chains", "num_draws", 1e12),
-            ("chains", "seed", -1),
-            ("chains", "seed", None),
-            ("sgld", "step_size", None),
-            ("sgld", "step_size", [1]),
-            ("prior", "frame", "Origin"),
-            ("prior", "mean_m_rad", [1, 2, 3, 4, 5]),
-            ("prior", "variance_m2_rad2", 1),
-            ("registration", "reciprocal", 1),
-            ("registration", "guess_matrix", [[1, 0, 0, 0]] * 3),
-            ("registration", "guess_matrix", [[1, 0, 0, 0]] * 4),
-        ]
-        for group, key, value in bad:
-            with self.subTest(key=key, value=value):
-                self.refuse(2, {group: {key: value}}, f"{group}.{key}")
+        bad = {
+            "chains.num_draws": ["9", 9.5, 1e12],
+            "chains.seed": [-1, None],
+            "sgld.step_size": [None, [1]],
+            "prior.frame": ["Origin"],
+            "prior.mean_m_rad": [[1, 2, 3, 4, 5]],
+            "prior.variance_m2_rad2": [1],
+            "registration.reciprocal": [1],
+            "registration.guess_matrix": [[[1, 0, 0, 0]] * 3, [[1, 0, 0, 0]] * 4],
+        }
+        for name, values in bad.items():
+            group, key = name.split(".")
+            for value in values:
+                with self.subTest(name=name, value=value):
+                    self.refuse(2, {group: {key: value}}, name)
         self.refuse(2, {"chains": 5}, "chains is '5'")
 
     def test_values_out_of_range(self):
-        path = self.config({"sgld": {"decay_rate": 2}})
-        result = run(*self.small_pair(), "--config", path, "--preset=paper")
-        self.assert_refused(2, result, "--decay-rate: decay_rate is 2")
+        content = {"sgld": {"decay_rate": 2}}
+        self.refuse_with(["--preset=paper"], content, "--decay-rate: decay_rate is 2")
 
     def test_other_schemas(self):
         self.refuse(2, {"schema": "pcl_bayesian_icp/posterior", "schema_version": 2}, "version '2'")
@@ -184,43 +151,32 @@ class OwnLayout(ConfigTest):
 
 class AuthorsLayout(ConfigTest):
     def changed(self, **groups):
-        content = copy.deepcopy(AUTHORS_CONFIG)
+        content = dict(AUTHORS_CONFIG)
         for group, value in groups.items():
-            group = group if group in content else group.replace("_", "-")
-            if isinstance(value, dict):
-                content[group].update(value)
-            else:
-                content[group] = value
+            content[group] = {**content[group], **value} if isinstance(value, dict) else value
         return content
 
     def test_what_it_becomes(self):
         options, result = self.options(AUTHORS_CONFIG)
         self.assertAlmostEqual(options["sgld"]["step_size"], 0.003 / 300, delta=1e-18)
-        self.assertEqual(options["posterior"]["effective_points"], 300)
-        self.assertEqual(options["posterior"]["measurement_sigma_m"], 1)
-        self.assertEqual(options["sgld"]["noise_factor"], 3)
-        self.assertEqual(options["sgld"]["decay_rate"], 0.95)
-        self.assertEqual(options["sgld"]["block_decay_factor"], 1)
-        self.assertEqual(options["chains"]["num_chains"], 1)
-        self.assertEqual(options["chains"]["num_draws"], 40)
-        self.assertEqual(options["chains"]["num_burn_in"], 0)
-        self.assertEqual(options["mini_batch"]["batch_size"], 50)
-        self.assertEqual(options["mini_batch"]["sampling"], "shuffled-epochs")
-        self.assertEqual(options["prior"]["mean_m_rad"], [0.5, 0.25, 0.125, 0.1, 0.2, 0.3])
-        self.assertEqual(options["prior"]["variance_m2_rad2"], [0.75] * 6)
-        self.assertEqual(options["registration"]["max_distance_m"], 1)
-        self.assertIs(options["registration"]["one_to_one"], True)
+        mean = [0.5, 0.25, 0.125, 0.1, 0.2, 0.3]
+        for group, expected in {
+            "posterior": {"effective_points": 300, "measurement_sigma_m": 1},
+            "sgld": {"noise_factor": 3, "decay_rate": 0.95, "block_decay_factor": 1},
+            "chains": {"num_chains": 1, "num_draws": 40, "num_burn_in": 0},
+            "mini_batch": {"batch_size": 50, "sampling": "shuffled-epochs"},
+            "prior": {"mean_m_rad": mean, "variance_m2_rad2": [0.75] * 6},
+            "registration": {"max_distance_m": 1, "one_to_one": True},
+        }.items():
+            self.assertEqual({**options[group], **expected}, options[group])
         guess = cloud_files.matrix_of(0.01, 0, 0, 0, 0, 0.1)
         self.assert_close(options["registration"]["guess_matrix"], guess, delta=1e-15)
         self.assertIn("note: icp.convergence-steps, ", result.stderr)
 
     def test_finite_source_points_count(self):
-        nan = math.nan
-        points = cloud_files.box_surface(100) + [(nan, nan, nan)] * 50
-        source = self.file("nan.pcd", cloud_files.pcd_bytes(points))
-        config = self.config(AUTHORS_CONFIG)
-        result = run(source, self.small_pair()[1], "--config", config, "--json")
-        options = strict_json(result.stdout)["options"]
+        source = self.pcd("nan.pcd", cloud_files.box_surface(100) + [(math.nan,) * 3] * 50)
+        pair = [source, self.small_pair()[1]]
+        options = self.run_to_json(*pair, "--config", self.config(AUTHORS_CONFIG))["options"]
         self.assertEqual(options["posterior"]["effective_points"], 100)
         self.assertAlmostEqual(options["sgld"]["step_size"], 0.003 / 100, delta=1e-18)
 
@@ -258,9 +214,8 @@ class AuthorsLayout(ConfigTest):
         self.refuse(2, self.changed(prior=5), "prior is '5'")
         self.refuse(2, dict(AUTHORS_CONFIG, optimiser={}), "unknown key 'optimiser'")
         for group, key in (("icp", "max-iterations"), ("prior", "mean-yaw")):
-            content = copy.deepcopy(AUTHORS_CONFIG)
-            del content[group][key]
-            self.refuse(2, content, f"'{group}.{key}' is missing")
+            others = {k: v for k, v in AUTHORS_CONFIG[group].items() if k != key}
+            self.refuse(2, {**AUTHORS_CONFIG, group: others}, f"'{group}.{key}' is missing")
         result = run("a", "b", "--config", self.config(self.changed(prior={"variance": -1})))
         self.assert_refused(2, result, "prior.variance[x] is -1")
 

@@ -1,30 +1,43 @@
-"""--export: each format is read back and compared with the draws of the same run, moved
-through the coordinates of the software it is for."""
+"""--export: each format is read back and compared with posterior.json of the same run, in the
+coordinates of the software it is for."""
 
 import csv
-import shutil
 
 import numpy as np
 import yaml
 from scipy.spatial.transform import Rotation
 
 import cloud_files
-import robot_formats as formats
-from cli_tool import FAST, ToolTest, run, scans, strict_json
+from cli_tool import FAST, TOOL, WITHOUT_REPORT, WRITTEN, ToolTest, run, scans, strict_json
+from trajectories import read_g2o_edge
 
 GOOD = [*scans("mug"), "--preset=exact", "--sigma=0.005", "--effective-points=300"]
 GOOD += ["--prior-frame=source-centroid"]
 TIME = "1700000000.123456789"
 OPTIONS = ["--timestamp", TIME, "--target-frame=map/0", "--source-frame=scan_1", "--vertices=3,8"]
-# What there is without an export.
-WRITTEN = ["aligned.pcd", "posterior.json", "report.html", "samples.csv"]
 FILES = ["pose.csv", "pose.g2o", "pose_gtsam.txt", "pose_ros.yaml", "pose_tum.txt"]
 FILES += ["pose_tum_covariance.txt"]
 # Rounding: inverses of matrices of condition 1e6 and sums over hundreds of draws.
 ROUNDING = 1e-8
+NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
+UNITS = ["m"] * 3 + ["rad"] * 3
 
 
-class ExportTest(ToolTest):
+class ExportFormats(ToolTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.exported = cls.holder().output
+        cls.result = run(*GOOD, "--export=ros,g2o,gtsam,tum,csv", *OPTIONS, "-o", cls.exported)
+        posterior = strict_json((cls.exported / "posterior.json").read_text())["posterior"]
+        cls.mean = np.array(list(posterior["mean"].values())[:6])
+        covariances = (np.array(each["matrix"]) for each in posterior["covariances"])
+        cls.of_parameters, cls.of_ros, _, cls.of_twist = covariances
+
+    def setUp(self):
+        super().setUp()
+        self.output = self.exported
+
     def assert_same_covariance(self, found, expected):
         deviations = np.sqrt(np.diag(expected))
         difference = (np.array(found) - expected) / np.outer(deviations, deviations)
@@ -37,37 +50,18 @@ class ExportTest(ToolTest):
         self.assertLess(np.abs(product - np.eye(6)).max(), 1e-6)
 
     def assert_same_rotation(self, quaternion, pose):
-        difference = Rotation.from_quat(quaternion).inv() * formats.rotation_of(pose)
+        rotation = Rotation.from_euler("xyz", pose[3:])  # Rz(yaw) Ry(pitch) Rx(roll)
+        difference = Rotation.from_quat(quaternion).inv() * rotation
         self.assertLess(difference.magnitude(), 1e-12)
         self.assertGreaterEqual(quaternion[3], 0)
 
-
-class ExportFormats(ExportTest):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        holder = ToolTest("assert_ran")
-        holder.setUp()
-        cls.addClassCleanup(holder.doCleanups)
-        cls.output = holder.folder / "output"
-        cls.result = run(*GOOD, "--export=ros,g2o,gtsam,tum,csv", *OPTIONS, "-o", cls.output)
-        document = strict_json((cls.output / "posterior.json").read_text())
-        cls.mean = np.array(list(document["posterior"]["mean"].values())[:6])
-        table = np.loadtxt(cls.output / "samples.csv", delimiter=",", skiprows=1)
-        cls.draws = table[:, 2:]
-
     def text(self, name):
-        return (self.output / name).read_text()
-
-    def moment(self, error):
-        errors = error(self.mean, self.draws)
-        return errors.T @ errors / (len(errors) - 1)
+        return (self.exported / name).read_text()
 
     def test_all_files_are_there(self):
         self.assertEqual((self.result.returncode, self.result.stderr), (0, ""))
         self.assertIn("Posterior mean", self.result.stdout)
-        names = sorted(path.name for path in self.output.iterdir())
-        self.assertEqual(names, sorted([*WRITTEN, *FILES]))
+        self.assertEqual(self.names_of_output(), sorted([*WRITTEN, *FILES]))
 
     def test_ros(self):
         message = yaml.safe_load(self.text("pose_ros.yaml"))
@@ -79,17 +73,17 @@ class ExportFormats(ExportTest):
         self.assert_same_rotation(list(pose["orientation"].values()), self.mean)
         numbers = message["pose"]["covariance"]
         self.assertTrue(all(isinstance(number, float) for number in numbers), numbers)
-        covariance = np.reshape(numbers, (6, 6))
-        self.assert_same_covariance(covariance, self.moment(formats.ros_error))
+        self.assert_same_covariance(np.reshape(numbers, (6, 6)), self.of_ros)
 
     def test_g2o(self):
         lines = self.text("pose.g2o").splitlines()
         self.assertEqual(len(lines), 1)
-        i, j, position, quaternion, information = formats.read_g2o_edge(lines[0])
+        i, j, position, quaternion, information = read_g2o_edge(lines[0])
         self.assertEqual((i, j), (3, 8))
         self.assert_close(position, self.mean[:3], delta=1e-12)
         self.assert_same_rotation(quaternion, self.mean)
-        self.assert_inverse(information, self.moment(formats.g2o_error))
+        half_angles = np.diag([1.0] * 3 + [0.5] * 3)
+        self.assert_inverse(information, half_angles @ self.of_twist @ half_angles)
 
     def test_gtsam(self):
         lines = self.text("pose_gtsam.txt").splitlines()
@@ -97,7 +91,8 @@ class ExportFormats(ExportTest):
         self.assertEqual([len(row) for row in rows], [4] * 4 + [6] * 12)
         self.assert_close(rows[:4], cloud_files.matrix_of(*self.mean), delta=1e-12)
         self.assertEqual(rows[3], [0, 0, 0, 1])
-        self.assert_same_covariance(rows[4:10], self.moment(formats.gtsam_error))
+        rotation_first = [3, 4, 5, 0, 1, 2]
+        self.assert_same_covariance(rows[4:10], self.of_twist[np.ix_(rotation_first, rotation_first)])
         self.assert_inverse(np.array(rows[10:]), np.array(rows[4:10]))
 
     def test_tum(self):
@@ -108,19 +103,16 @@ class ExportFormats(ExportTest):
         self.assert_same_rotation(numbers[4:], self.mean)
         words = self.text("pose_tum_covariance.txt").split()
         self.assertEqual((len(words), words[0]), (37, TIME))
-        covariance = np.array(words[1:], dtype=float).reshape(6, 6)
-        self.assert_same_covariance(covariance, self.moment(formats.ros_error))
+        self.assert_same_covariance(np.array(words[1:], float).reshape(6, 6), self.of_ros)
 
     def read_csv(self, text):
         """The row, and its covariance."""
         (row,) = csv.DictReader(text.splitlines())
-        names = ["x", "y", "z", "roll", "pitch", "yaw"]
-        units = ["m"] * 3 + ["rad"] * 3
         covariance = np.zeros((6, 6))
         for i in range(6):
             for k in range(i, 6):
-                unit = units[i] + "2" if units[i] == units[k] else "m_rad"
-                number = float(row[f"cov_{names[i]}_{names[k]}_{unit}"])
+                unit = UNITS[i] + "2" if UNITS[i] == UNITS[k] else "m_rad"
+                number = float(row[f"cov_{NAMES[i]}_{NAMES[k]}_{unit}"])
                 covariance[i, k] = covariance[k, i] = number
         return row, covariance
 
@@ -129,11 +121,9 @@ class ExportFormats(ExportTest):
         given = {"timestamp_s": TIME, "target_frame": "map/0", "source_frame": "scan_1"}
         self.assertEqual({key: row[key] for key in given}, given)
         self.assertEqual(row["status"], "ok")
-        names = ["x", "y", "z", "roll", "pitch", "yaw"]
-        units = ["m"] * 3 + ["rad"] * 3
-        found = [float(row[f"{name}_{unit}"]) for name, unit in zip(names, units)]
+        found = [float(row[f"{name}_{unit}"]) for name, unit in zip(NAMES, UNITS)]
         self.assertEqual(found, list(self.mean))
-        self.assert_same_covariance(covariance, self.moment(formats.parameter_error))
+        self.assert_same_covariance(covariance, self.of_parameters)
         self.assertEqual(len(row), 4 + 6 + 21)
 
     def test_the_prior_and_the_measurement_without_it_are_the_posterior(self):
@@ -168,19 +158,17 @@ class ExportFormats(ExportTest):
             self.assertEqual(result.stdout, self.text(file))
 
 
-class ExportRefusals(ExportTest):
+class ExportRefusals(ToolTest):
     def test_posterior_that_has_not_mixed(self):
         pair = self.small_pair()
         result = run(*pair, *FAST, "--export=g2o")
         self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.assertIn("--export g2o: the status is not_mixed, neither ok nor doubtful", result.stderr)
-        output = self.folder / "output"
-        result = run(*pair, *FAST, "--export=g2o,ros", "-o", output, "--quiet")
+        result = run(*pair, *FAST, "--export=g2o,ros", "-o", self.output, "--quiet")
         self.assertEqual(result.returncode, 1)
         self.assertIn("--export g2o: not written: ", result.stderr)
         self.assertIn("--export ros: not written: ", result.stderr)
-        names = sorted(path.name for path in output.iterdir())
-        self.assertEqual(names, WRITTEN)
+        self.assertEqual(self.names_of_output(), WRITTEN)
         result = run(*pair, *FAST, "--export=g2o", "--export-unreliable")
         self.assertEqual(result.returncode, 1)
         self.assertTrue(result.stdout.startswith("EDGE_SE3:QUAT 0 1 "), result.stdout)
@@ -188,13 +176,12 @@ class ExportRefusals(ExportTest):
     def test_covariance_of_too_few_draws(self):
         few = ["--samples=4", "--preset=paper", "--chains=1", "--step-size=1e-6"]
         few += ["--export-unreliable"]
-        output = self.folder / "output"
-        result = run(*self.small_pair(), *few, "--export=g2o,gtsam,ros", "-o", output, "--quiet")
+        words = ["--export=g2o,gtsam,ros", "-o", self.output, "--quiet"]
+        result = run(*self.small_pair(), *few, *words)
         self.assertEqual(result.returncode, 1)
         self.assertIn("--export g2o: not written: the covariance is singular", result.stderr)
         self.assertIn("--export gtsam: not written: the covariance is singular", result.stderr)
-        self.assertFalse((output / "pose.g2o").exists())
-        self.assertTrue((output / "pose_ros.yaml").exists())
+        self.assertEqual(self.names_of_output(), sorted([*WRITTEN, "pose_ros.yaml"]))
         result = run(*self.small_pair(), *few[1:], "--samples=1", "--export=ros")
         self.assertEqual((result.returncode, result.stdout), (1, ""))
         self.assertIn("--export ros: the covariance is not finite", result.stderr)
@@ -220,24 +207,20 @@ class ExportRefusals(ExportTest):
             (["--export=tum", f"--timestamp={time}"], f"--timestamp: '{time}'")
             for time in ("-1", "1.2.3", "1e3", "nan", "2147483648", ".5", "1.1234567891")
         ]
-        for options, reason in bad:
-            with self.subTest(options=options):
-                self.assert_refused(2, run(*pair, *FAST, *options), reason)
+        self.assert_each_refused(2, [TOOL, *pair, *FAST], bad)
 
     def test_no_export_of_an_older_result_stays(self):
-        output = self.folder / "output"
-        for formats, names in (("ros,g2o", {"pose_ros.yaml", "pose.g2o"}), ("csv", {"pose.csv"})):
-            options = [f"--export={formats}", "--export-unreliable", "-o", output]
-            self.assert_ran(run(*self.small_pair(), *FAST, *options))
-            self.assertEqual({path.name for path in output.glob("pose[._]*")}, names)
-        self.assert_ran(run(*self.small_pair(), *FAST, "-o", output))
-        self.assertEqual(list(output.glob("pose[._]*")), [])
+        for formats, files in (("ros,g2o", ["pose_ros.yaml", "pose.g2o"]), ("csv", ["pose.csv"])):
+            options = [f"--export={formats}", "--export-unreliable"]
+            self.run_to_files(*self.small_pair(), *FAST, *options)
+            self.assertEqual(self.names_of_output(), sorted([*WITHOUT_REPORT, *files]))
+        self.run_to_files(*self.small_pair(), *FAST)
+        self.assertEqual(self.names_of_output(), WITHOUT_REPORT)
 
     def test_files_appear_together_or_not_at_all(self):
-        output = self.folder / "output"
-        (output / "pose.g2o").mkdir(parents=True)
-        arguments = [*self.small_pair(), *FAST, "--export=ros,g2o", "--export-unreliable"]
-        result = run(*arguments, "-o", output)
-        self.assert_refused(3, result, output / "pose.g2o", "is not a regular file")
-        self.assertEqual([path.name for path in output.iterdir()], ["pose.g2o"])
-        shutil.rmtree(output)
+        obstacle = self.output / "pose.g2o"
+        obstacle.mkdir(parents=True)
+        words = [*FAST, "--export=ros,g2o", "--export-unreliable", "-o", self.output]
+        result = run(*self.small_pair(), *words)
+        self.assert_refused(3, result, obstacle, "is not a regular file")
+        self.assertEqual(self.names_of_output(), ["pose.g2o"])

@@ -1,7 +1,6 @@
 """--normalize-cloud. A power of two loses no digits, so a normalised run of clouds four
 times as large has exactly the draws of the plain run, four times as far apart."""
 
-import copy
 import json
 
 import numpy as np
@@ -24,10 +23,7 @@ class Normalize(ToolTest):
         target = [*cloud_files.box_surface(seed=1), (1.0, 0.0, 0.0)]
         source = [(x + 0.03125, y, z) for x, y, z in cloud_files.box_surface(seed=2)]
         return [
-            self.file(
-                f"{name}_{factor}.pcd",
-                cloud_files.pcd_bytes([tuple(factor * c for c in point) for point in points]),
-            )
+            self.pcd(f"{name}_{factor}.pcd", np.multiply(points, factor))
             for name, points in (("source", source), ("target", target))
         ]
 
@@ -66,19 +62,17 @@ class Normalize(ToolTest):
         self.assertIs(posteriors[3]["options"]["registration"]["normalize_cloud"], True)
 
     def test_points_that_are_not_finite_do_not_count(self):
-        nan, inf = float("nan"), float("inf")
-        points = [*cloud_files.box_surface(seed=2), (nan, 1.0, 1.0), (inf, -inf, 0.0)]
-        source = self.file("odd.pcd", cloud_files.pcd_bytes(points))
-        clean = self.file("clean.pcd", cloud_files.pcd_bytes(points[:-2]))
+        points = [*cloud_files.box_surface(seed=2), (np.nan, 1.0, 1.0), (np.inf, -np.inf, 0.0)]
+        source = self.pcd("odd.pcd", points)
+        clean = self.pcd("clean.pcd", points[:-2])
         target = self.pair(1.0)[1]
         runs = [self.run_to_files(c, target, *FAST, "--normalize-cloud") for c in (source, clean)]
         self.assertEqual(runs[0][0], runs[1][0])
 
     def configs(self):
-        plain = copy.deepcopy(AUTHORS_CONFIG)
-        plain["initial-guess"]["x"] = 0.0625
-        normalised = copy.deepcopy(plain)
-        normalised["normalize-cloud"] = True
+        guess = {**AUTHORS_CONFIG["initial-guess"], "x": 0.0625}
+        plain = {**AUTHORS_CONFIG, "initial-guess": guess}
+        normalised = {**plain, "normalize-cloud": True}
         return [
             self.file(f"{name}.json", json.dumps(content))
             for name, content in (("plain", plain), ("normalised", normalised))

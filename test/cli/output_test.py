@@ -2,36 +2,35 @@
 
 import math
 import os
+import pty
 import re
+import select
 import shutil
+import signal
 import subprocess
-import unittest
+import time
 
 import numpy as np
 
 import cloud_files
-import robot_formats
-from cli_tool import DATA, FAST, TOOL, ToolTest, run, scans, strict_json
+from cli_tool import DATA, FAST, TOOL, WRITTEN, ToolTest, run, scans, strict_json
+from faults import ENDLESS
 
 NAMES = ["x", "y", "z", "roll", "pitch", "yaw"]
-
-
-def second_moments(errors):
-    return (errors**2).sum(axis=0) / (len(errors) - 1)
+UNITS = ["m"] * 3 + ["rad"] * 3
 
 
 class Files(ToolTest):
     def test_samples_csv(self):
         options = ["--preset=paper", "--samples=61", "--chains=2", "--step-size=1e-6"]
         samples, document = self.run_to_files(*self.small_pair(), *options)
-        lines = samples.splitlines()
-        self.assertEqual(lines[0], "chain,draw,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad")
-        indices = [tuple(line.split(",")[:2]) for line in lines[1:]]
+        header, *lines = samples.splitlines()
+        self.assertEqual(header, "chain,draw,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad")
+        indices = [tuple(line.split(",")[:2]) for line in lines]
         expected = [("0", str(i)) for i in range(31)] + [("1", str(i)) for i in range(30)]
         self.assertEqual(indices, expected)
-        for line in lines[1:]:
+        for line in lines:
             for text in line.split(",")[2:]:
-                self.assertEqual(float(text), float(format(float(text), ".17g")))
                 self.assertEqual(text, format(float(text), ".17g"))
         counts = [chain["draws"] for chain in document["posterior"]["chains"]]
         self.assertEqual(counts, [31, 30])
@@ -43,29 +42,17 @@ class Files(ToolTest):
         mean = draws.mean(axis=0)
         # The circular mean of the angles.
         mean[3:] = np.arctan2(np.sin(draws).mean(axis=0), np.cos(draws).mean(axis=0))[3:]
-        errors = robot_formats.parameter_error(mean, draws)
         coordinates = posterior["coordinates"]
-        units = ["m"] * 3 + ["rad"] * 3
-        self.assertEqual([c["name"] for c in coordinates], NAMES)
-        self.assertEqual([c["unit"] for c in coordinates], units)
-        expected = {
+        self.assertEqual([(c["name"], c["unit"]) for c in coordinates], list(zip(NAMES, UNITS)))
+        for key, values in {
             "mean": mean,
-            "median": mean + np.median(errors, axis=0),
-            "standard_deviation": np.sqrt(second_moments(errors)),
-        }
-        for key, values in expected.items():
+            "median": np.median(draws, axis=0),
+            "standard_deviation": np.sqrt(((draws - mean) ** 2).sum(axis=0) / (len(draws) - 1)),
+        }.items():
             self.assert_close([c[key] for c in coordinates], values, delta=1e-12)
-        keys = [f"{name}_{unit}" for name, unit in zip(NAMES, units)]
-        pose = np.array([posterior["mean"][key] for key in keys])
-        covariance = posterior["covariances"][0]
-        self.assertEqual(covariance["order"], NAMES)
-        # The covariance is about the mean pose.
-        variances = second_moments(robot_formats.parameter_error(pose, draws))
-        self.assert_close(np.diag(covariance["matrix"]), variances, delta=1e-12)
-        twists = np.hstack(robot_formats.right_twist(pose, draws))
-        self.assert_close(twists.mean(axis=0), np.zeros(6), delta=1e-11)
-        matrix = cloud_files.matrix_of(*pose)
+        matrix = cloud_files.matrix_of(*list(posterior["mean"].values())[:6])
         self.assert_close(posterior["mean"]["T_target_source"], matrix, delta=1e-12)
+        self.assertEqual(posterior["covariances"][0]["order"], NAMES)
 
     def test_posterior_json_describes_itself(self):
         _, document = self.run_to_files(*self.small_pair(), *FAST)
@@ -82,37 +69,36 @@ class Files(ToolTest):
             ["in the source frame", "T = T_mean exp(xi)"],
         )
         for covariance, words in zip(document["posterior"]["covariances"], meanings):
-            self.assertEqual(covariance["units"], ["m"] * 3 + ["rad"] * 3)
+            self.assertEqual(covariance["units"], UNITS)
             for word in words:
                 self.assertIn(word, covariance["meaning"])
             matrix = covariance["matrix"]
             self.assert_close(matrix, list(zip(*matrix)), delta=1e-15)
 
     def test_files_replace_older_ones_and_leave_nothing_else(self):
-        output = self.folder / "deep" / "output"
+        self.output = self.folder / "deep" / "output"
         for seed in ("1", "2"):
-            self.assert_ran(run(*self.small_pair(), *FAST, "-o", output, "--seed", seed))
-        names = sorted(path.name for path in output.iterdir())
-        self.assertEqual(names, ["aligned.pcd", "posterior.json", "report.html", "samples.csv"])
-        document = strict_json((output / "posterior.json").read_text())
+            self.assert_ran(run(*self.small_pair(), *FAST, "-o", self.output, "--seed", seed))
+        self.assertEqual(self.names_of_output(), WRITTEN)
+        document = strict_json((self.output / "posterior.json").read_text())
         self.assertEqual(document["options"]["chains"]["seed"], 2)
         new_file = self.file("new", "")
-        for name in names:
-            self.assertEqual((output / name).stat().st_mode, new_file.stat().st_mode)
+        for path in self.output.iterdir():
+            self.assertEqual(path.stat().st_mode, new_file.stat().st_mode)
 
     def test_links_are_followed_and_what_is_no_file_is_refused(self):
-        output = self.folder / "output"
-        output.mkdir()
+        self.output.mkdir()
         linked = self.file("elsewhere.csv", "old")
-        (output / "samples.csv").symlink_to(linked)
+        samples = self.output / "samples.csv"
+        samples.symlink_to(linked)
         self.run_to_files(*self.small_pair(), *FAST)
-        self.assertTrue((output / "samples.csv").is_symlink())
+        self.assertTrue(samples.is_symlink())
         self.assertGreater(len(linked.read_text()), 100)
-        (output / "samples.csv").unlink()
-        os.mkfifo(output / "samples.csv")
-        result = run(*self.small_pair(), *FAST, "-o", output)
-        self.assert_refused(3, result, output / "samples.csv", "is not a regular file")
-        self.assertTrue((output / "samples.csv").is_fifo())
+        samples.unlink()
+        os.mkfifo(samples)
+        result = run(*self.small_pair(), *FAST, "-o", self.output)
+        self.assert_refused(3, result, samples, "is not a regular file")
+        self.assertTrue(samples.is_fifo())
 
     def test_names_that_are_not_utf8(self):
         source, target = self.small_pair()
@@ -133,26 +119,25 @@ class Files(ToolTest):
         self.assertFalse((self.folder / "posterior.json").exists())
 
     def test_no_draws_no_files(self):
-        output = self.folder / "output"
-        options = ["--preset=paper", "--step-size=10", "--samples=400", "-o", output]
+        options = ["--preset=paper", "--step-size=10", "--samples=400", "-o", self.output]
         result = run(*self.small_pair(), *options)
         self.assertEqual(result.returncode, 1)
         self.assertIn("no files but posterior.json are written", result.stderr)
         self.assertIn("Status: diverged: 4 of 4 chains", result.stdout)
-        self.assertEqual([path.name for path in output.iterdir()], ["posterior.json"])
+        self.assertEqual(self.names_of_output(), ["posterior.json"])
 
     def test_failure_replaces_an_older_result(self):
-        output = self.folder / "output"
-        exports = ["--export=csv,tum", "--export-unreliable"]
-        self.assert_ran(run(*self.small_pair(), *FAST, *exports, "-o", output))
-        self.assertGreater(len(list(output.iterdir())), 4)
-        other = self.file("other.txt", "mine").rename(output / "other.txt")
-        result = run(*self.small_pair(), "--guess=9,9,9,0,0,0", "-d1", "--json", "-o", output)
+        self.run_to_files(*self.small_pair(), *FAST, "--export=csv,tum", "--export-unreliable")
+        self.assertGreater(len(self.names_of_output()), 4)
+        (self.output / "other.txt").write_text("mine")
+        words = ["--guess=9,9,9,0,0,0", "-d1", "--json", "-o", self.output]
+        result = run(*self.small_pair(), *words)
         self.assertEqual(result.returncode, 1)
-        written = (output / "posterior.json").read_text()
-        self.assertEqual(strict_json(written), strict_json(result.stdout))
-        self.assertEqual(strict_json(written)["status"]["name"], "too_few_correspondences")
-        self.assertEqual(sorted(output.iterdir()), [other, output / "posterior.json"])
+        self.assertIn("too few correspondences", result.stderr)
+        written = strict_json((self.output / "posterior.json").read_text())
+        self.assertEqual(written, strict_json(result.stdout))
+        self.assertEqual(written["status"]["name"], "too_few_correspondences")
+        self.assertEqual(self.names_of_output(), ["other.txt", "posterior.json"])
 
 
 class AlignedCloud(ToolTest):
@@ -160,16 +145,16 @@ class AlignedCloud(ToolTest):
 
     def test_viewpoint_is_the_targets(self):
         source, _ = self.small_pair()
-        content = cloud_files.pcd_bytes(cloud_files.box_surface(), viewpoint="1 2 3 0 1 0 0")
-        self.run_to_files(source, self.file("seen.pcd", content), *FAST)
-        header, _ = cloud_files.read_pcd(self.folder / "output" / "aligned.pcd")
+        seen = self.pcd("seen.pcd", cloud_files.box_surface(), viewpoint="1 2 3 0 1 0 0")
+        self.run_to_files(source, seen, *FAST)
+        header, _ = cloud_files.read_pcd(self.output / "aligned.pcd")
         self.assertEqual(list(map(float, header["VIEWPOINT"])), [1, 2, 3, 0, 1, 0, 0])
 
     def test_mean_in_place_of_icp(self):
         pair = self.small_pair()
-        for option, key in (([], "icp"), (["--mean"], "posterior")):
-            _, document = self.run_to_files(*pair, *FAST, *option)
-            expected = document["icp"] if key == "icp" else document["posterior"]["mean"]
+        for options in ([], ["--mean"]):
+            document = self.run_to_json(*pair, *FAST, *options)
+            expected = document["posterior"]["mean"] if options else document["icp"]
             final = document["final_transformation"]["T_target_source"]
             self.assertEqual(final, expected["T_target_source"])
 
@@ -179,14 +164,10 @@ class FinalTransformation(ToolTest):
         """final_transformation, and the rms distance [m] of what it and the mean move."""
         _, document = self.run_to_files(*scans("mug"), *options)
         final = document["final_transformation"]
-        difference = np.subtract(
-            final["T_target_source"], document["posterior"]["mean"]["T_target_source"]
-        )
-        _, rows = cloud_files.read_pcd(DATA / "mug" / "source.pcd")
-        points = np.array([cloud_files.numbers(row, *"xyz") for row in rows])
-        points = points[np.isfinite(points).all(axis=1)]
-        moved = points @ difference[:3, :3].T + difference[:3, 3]
-        return final, math.sqrt((moved**2).sum(axis=1).mean())
+        mean = document["posterior"]["mean"]["T_target_source"]
+        difference = np.subtract(final["T_target_source"], mean)
+        moved = cloud_files.moved(difference, cloud_files.read_xyz(DATA / "mug" / "source.pcd"))
+        return final, math.sqrt(np.nanmean((moved**2).sum(axis=1)))
 
     def test_says_where_it_is_in_the_posterior(self):
         wide = ["--preset=exact", "--sigma=0.005", "--effective-points=300"]
@@ -207,16 +188,16 @@ class FinalTransformation(ToolTest):
 class Printed(ToolTest):
     def test_a_result_of_icp_that_the_posterior_excludes_is_told(self):
         # Without pairs within 0.1 mm, ICP stays at the guess.
-        pair = [DATA / "mug" / f"{name}.pcd" for name in ("source", "target")]
+        pair = scans("mug")
         words = "ICP did not converge; the posterior excludes it; it moves the points"
         result = run(*pair, "-d", "0.0001")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         printed = " ".join(result.stdout.split())
         self.assertIn(words, printed)
-        final = strict_json(run(*pair, "-d", "0.0001", "--json").stdout)["final_transformation"]
+        final = self.run_to_json(*pair, "-d", "0.0001")["final_transformation"]
         millimetres = float(re.search(r"moves the points ([\d.e+]+) mm", printed)[1])
         self.assertAlmostEqual(millimetres / final["distance_from_mean_m"], 1e3, delta=5.0)
-        files = ["-d", "0.0001", "-o", self.folder / "output", "--no-report"]
+        files = ["-d", "0.0001", "-o", self.output, "--no-report"]
         for option in ("--json", "--quiet"):
             result = run(*pair, *files, option)
             self.assertEqual(result.returncode, 0)
@@ -232,21 +213,12 @@ class Printed(ToolTest):
     def test_table_has_units_status_and_matrices(self):
         pair = self.small_pair()
         text = run(*pair, *FAST).stdout
-        document = strict_json(run(*pair, *FAST, "--json").stdout)
-        for coordinate in document["posterior"]["coordinates"]:
-            label = f"{coordinate['name']} [{coordinate['unit']}]"
-            row = next(line for line in text.splitlines() if line.startswith(label))
-            numbers = row[len(label) :].split()
-            mean = document["posterior"]["mean"][f"{coordinate['name']}_{coordinate['unit']}"]
-            keys = ["standard_deviation", "quantile_2.5_percent", "quantile_97.5_percent"]
-            for number, value in zip(numbers, [mean, *map(coordinate.get, keys)]):
-                self.assertAlmostEqual(float(number), value, delta=0.6e-6)
-            self.assertAlmostEqual(float(numbers[4]), coordinate["rhat"], delta=0.6e-3)
-            if coordinate["unit"] == "rad":
-                label = f"{coordinate['name']} [deg]"
-                row = next(line for line in text.splitlines() if line.startswith(label))
-                number = float(row[len(label) :].split()[0])
-                self.assertAlmostEqual(number, math.degrees(mean), delta=0.6e-4)
+        document = self.run_to_json(*pair, *FAST)
+        rows = re.findall(r"^(\w+ \[(?:m|rad)\])(.*)", text, re.MULTILINE)
+        self.assert_rows(document, {label: numbers.split() for label, numbers in rows})
+        for name, mean in list(document["posterior"]["mean"].items())[3:6]:
+            row = re.search(rf"^{name[:-4]} \[deg\] +(\S+)", text, re.MULTILINE)
+            self.assertAlmostEqual(float(row[1]), math.degrees(mean), delta=0.6e-4)
         self.assertIn("R-hat  bulk ESS  tail ESS", text)
         self.assertIn("Status: not mixed", text)
         self.assertIn("ICP:    converged", text)
@@ -264,20 +236,50 @@ class Printed(ToolTest):
         self.assertEqual(result.stdout, "")
         self.assertRegex(result.stderr, r"^pcl_bayesian_icp: not mixed: .*\n$")
         self.assertEqual(result.returncode, 1)
-        result = run(*pair, *FAST, "--json")
-        self.assertEqual(strict_json(result.stdout)["status"]["name"], "not_mixed")
+        self.assertEqual(self.run_to_json(*pair, *FAST)["status"]["name"], "not_mixed")
 
     def test_matrix_is_that_of_pcl_transform_point_cloud(self):
         # Its option -matrix takes the rows of the matrix, with commas between the numbers.
         source, target = self.small_pair()
-        output = self.folder / "output"
-        text = run(source, target, *FAST, "-o", output).stdout
+        text = run(source, target, *FAST, "-o", self.output).stdout
         option, numbers = text.splitlines()[-1].split()
         self.assertEqual(option, "-matrix")
         matrix = np.array(numbers.split(","), float).reshape(4, 4)
-        _, source_rows = cloud_files.read_pcd(source)
-        _, moved_rows = cloud_files.read_pcd(output / "aligned.pcd")
-        points, moved = (
-            np.array([cloud_files.numbers(row, *"xyz") for row in rows]) for rows in (source_rows, moved_rows)
-        )
-        self.assert_close(points @ matrix[:3, :3].T + matrix[:3, 3], moved, delta=1e-6)
+        expected = cloud_files.moved(matrix, cloud_files.read_xyz(source))
+        self.assert_close(cloud_files.read_xyz(self.output / "aligned.pcd"), expected, delta=1e-6)
+
+
+class Progress(ToolTest):
+    def standard_error_of(self, seconds, *options, until=None):
+        """What a terminal shows within so many seconds, or until it shows this pattern."""
+        try:
+            controller, terminal = pty.openpty()
+        except OSError as error:
+            self.skipTest(f"no terminal to be had here: {error}")
+        command = [TOOL, *self.small_pair(), *ENDLESS, *options]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=terminal) as process:
+            os.close(terminal)
+            shown = b""
+            end = time.monotonic() + seconds
+            while time.monotonic() < end and not (until and re.search(until, shown)):
+                if select.select([controller], [], [], 0.1)[0]:
+                    shown += os.read(controller, 4096)
+            process.send_signal(signal.SIGINT)
+            try:
+                while chunk := os.read(controller, 4096):
+                    shown += chunk
+            except OSError:  # the other end is closed
+                pass
+            process.wait(timeout=30)
+        os.close(controller)
+        return shown.decode()
+
+    def test_bar_on_a_terminal_after_two_seconds(self):
+        bar = rb"\rsampling \[#*\.*\] +\d+ %"
+        shown = self.standard_error_of(50.0, until=bar)
+        self.assertRegex(shown.encode(), bar)
+        self.assertTrue(shown.rstrip().endswith("\x1b[K"), shown)
+
+    def test_no_bar_before_or_when_quiet(self):
+        self.assertNotIn("sampling", self.standard_error_of(1.0))
+        self.assertNotIn("sampling", self.standard_error_of(3.0, "--quiet"))

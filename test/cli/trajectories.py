@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from cli_tool import ToolTest, call
 from faults import SIMULATE
-from robot_formats import read_g2o_edge
 
 # Where the camera of a short trajectory stands, world frame [m].
 FOUR_EYES = ["0,-1.2,0.7", "0.06,-1.19,0.72", "0.12,-1.17,0.71", "0.18,-1.14,0.7"]
@@ -49,6 +48,16 @@ def quadratic(error, matrix):
 def rows_of_file(path):
     """The numbers in each line."""
     return [list(map(float, line.split())) for line in path.read_text().splitlines()]
+
+
+def read_g2o_edge(line):
+    """(i, j, position, quaternion x y z w, 6x6 information)."""
+    words = line.split()
+    assert words[0] == "EDGE_SE3:QUAT" and len(words) == 3 + 7 + 21, line
+    numbers = np.array(words[3:], dtype=float)
+    upper = np.zeros((6, 6))
+    upper[np.triu_indices(6)] = numbers[7:]
+    return int(words[1]), int(words[2]), numbers[:3], numbers[3:7], upper + np.triu(upper, 1).T
 
 
 def read_graph(path):

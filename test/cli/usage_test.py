@@ -3,7 +3,10 @@
 import re
 
 import cloud_files
-from cli_tool import FAST, SMALL_PAIR_POSE, ToolTest, run, scans, strict_json
+from cli_tool import FAST, SMALL_PAIR_POSE, TOOL, ToolTest, run, scans
+
+# They are looked at last.
+PAIR = ["a.pcd", "b.pcd"]
 
 
 class Usage(ToolTest):
@@ -20,143 +23,102 @@ class Usage(ToolTest):
 
     def test_help_has_the_default_of_every_kind_of_value(self):
         text = " ".join(run("--help").stdout.split())
-        for name, default in (
-            ("samples", "2000"),
-            ("step-size", "1e-04"),
-            ("prior-variance", "0.125"),
-            ("max-distance", "none"),
-            ("preset", "calibrated"),
-            ("steps", "automatic"),
-            ("initial-spread", "automatic"),
-        ):
-            self.assertRegex(
-                text, rf"--{name}[ \]][^(]*(\([^)d]*\)[^(]*)*\(default {re.escape(default)}\)"
-            )
+        for word in """samples=2000 step-size=1e-04 prior-variance=0.125 max-distance=none
+            preset=calibrated steps=automatic initial-spread=automatic""".split():
+            name, default = word.split("=")
+            pattern = rf"--{name}[ \]][^(]*(\([^)d]*\)[^(]*)*\(default {re.escape(default)}\)"
+            self.assertRegex(text, pattern)
 
     def test_two_clouds_are_needed(self):
         for clouds in ([], ["a.pcd"]):
             self.assert_refused(2, run(*clouds), "expected a source and a target cloud")
-        self.assert_refused(2, run("a.pcd", "b.pcd", "c.pcd"), "third file: 'c.pcd'")
+        self.assert_refused(2, run(*PAIR, "c.pcd"), "third file: 'c.pcd'")
         self.assert_refused(3, run("", "b.pcd"), "empty file name: no such file")
 
     def test_unknown_and_incomplete_options(self):
-        self.assert_refused(2, run("a.pcd", "b.pcd", "--sample", "9"), "'--sample'")
-        self.assert_refused(2, run("a.pcd", "b.pcd", "-x"), "'-x'")
-        self.assert_refused(2, run("a.pcd", "b.pcd", "--seed"), "--seed")
-        self.assert_refused(2, run("a.pcd", "b.pcd", "--seed=1", "--seed=2"), "--seed")
-        self.assert_refused(2, run("a.pcd", "b.pcd", "-o", ""), "output")
+        cases = [
+            (["--sample", "9"], "'--sample'"),
+            (["-x"], "'-x'"),
+            (["--seed"], "--seed"),
+            (["--seed=1", "--seed=2"], "--seed"),
+            (["-o", ""], "output"),
+            (["--quiet", "--json"], "--json", "--quiet"),
+        ]
+        self.assert_each_refused(2, [TOOL, *PAIR], cases)
 
     def test_malformed_values_name_option_and_value(self):
-        bad = [
-            ("samples", "many"),
-            ("samples", "1.5"),
-            ("samples", "99999999999"),
-            ("seed", "-1"),
-            ("seed", "18446744073709551616"),
-            ("max-distance", "0,1"),
-            ("max-distance", "1m"),
-            ("step-size", ""),
-            ("guess", "1,2,3,4,5"),
-            ("guess", "1,2,3,4,5,"),
-            ("guess", "1,2,3,4,5,6,7"),
-            ("prior-mean", "1"),
-            ("prior-variance", "1,2"),
-            ("initial-spread", "0,0,0,0,0,a"),
-            ("preset", "best"),
-            ("prior-frame", "centroid"),
-            ("batch-sampling", "all"),
-        ]
-        for name, value in bad:
-            with self.subTest(option=name, value=value):
-                preset = [] if name == "preset" else ["--preset=paper"]
-                result = run("a.pcd", "b.pcd", *preset, f"--{name}={value}")
-                self.assert_refused(2, result, name, value)
+        self.assert_refused(2, run(*PAIR, "--preset=best"), "preset", "best")
+        for word in """samples=many samples=1.5 samples=99999999999 seed=-1
+            seed=18446744073709551616 max-distance=0,1 max-distance=1m step-size=
+            guess=1,2,3,4,5 guess=1,2,3,4,5, guess=1,2,3,4,5,6,7 prior-mean=1 prior-variance=1,2
+            initial-spread=0,0,0,0,0,a prior-frame=centroid batch-sampling=all""".split():
+            with self.subTest(word=word):
+                result = run(*PAIR, "--preset=paper", f"--{word}")
+                self.assert_refused(2, result, *word.split("="))
 
     def test_values_out_of_range(self):
-        of_paper = [
-            ("samples", "0", "num_draws is 0"),
-            ("samples", "3", "at least the number of chains (one draw a chain)"),
-            ("chains", "0", "num_chains is 0"),
-            ("burn-in", "-1", "num_burn_in is -1"),
-            ("thinning", "0", "thinning is 0"),
-            ("batch-size", "0", "batch_size is 0"),
-            ("step-size", "nan", "step_size is nan"),
-            ("decay-rate", "1", "decay_rate is 1"),
-            ("lambda-rms", "0", "lambda_rms is 0"),
-            ("noise-factor", "-1", "noise_factor is -1"),
-            ("block-decay-factor", "0", "block_decay_factor is 0"),
-            ("block-decay-interval", "0", "block_decay_interval is 0"),
-            ("block-decay-start", "2", "block_decay_start is 2"),
-            ("effective-points", "0", "effective_points is 0"),
-            ("sigma", "0", "measurement_sigma is 0"),
-            ("prior-mean", "inf,0,0,0,0,0", "prior.mean is inf"),
-            ("prior-variance", "1,1,1,1,0,1", "prior.variance[pitch] is 0"),
-            ("initial-spread", "-1", "initial_spread is -1"),
-            ("threads", "-1", "num_threads is -1"),
-            ("max-distance", "0", "is 0"),
-            ("max-distance", "nan", "is nan"),
-            ("iterations", "0", "is 0"),
-            ("guess", "nan,0,0,0,0,0", "finite"),
+        """Named as on the command line and as in the library, where that mostly has the same name."""
+        alike = {
+            "paper": """thinning=0 batch-size=0 step-size=nan decay-rate=1 lambda-rms=0
+                noise-factor=-1 block-decay-factor=0 block-decay-interval=0 block-decay-start=2
+                effective-points=0 initial-spread=-1""",
+            "exact": "kernel-width=0 max-source-points=0 max-step-size=2",
+        }
+        cases = [(preset, word, None) for preset, words in alike.items() for word in words.split()]
+        cases += [
+            ("paper", "samples=0", "num_draws is 0"),
+            ("paper", "samples=3", "at least the number of chains (one draw a chain)"),
+            ("paper", "chains=0", "num_chains is 0"),
+            ("paper", "burn-in=-1", "num_burn_in is -1"),
+            ("paper", "sigma=0", "measurement_sigma is 0"),
+            ("paper", "prior-mean=inf,0,0,0,0,0", "prior.mean is inf"),
+            ("paper", "prior-variance=1,1,1,1,0,1", "prior.variance[pitch] is 0"),
+            ("paper", "threads=-1", "num_threads is -1"),
+            ("paper", "max-distance=0", "is 0"),
+            ("paper", "max-distance=nan", "is nan"),
+            ("paper", "iterations=0", "is 0"),
+            ("paper", "guess=nan,0,0,0,0,0", "finite"),
+            ("calibrated", "prior-variance=inf", "prior.variance[x] is inf, but must be finite"),
+            ("calibrated", "calibrated-points=29", "max_source_points is 29, but must be at least 30"),
+            ("calibrated", "mode-points=0", "num_mode_points is 0, but must be at least 30"),
         ]
-        of_exact = [
-            ("kernel-width", "0", "kernel_width is 0"),
-            ("max-source-points", "0", "max_source_points is 0"),
-            ("max-step-size", "2", "max_step_size is 2"),
-        ]
-        of_calibrated = [
-            ("prior-variance", "inf", "prior.variance[x] is inf, but must be finite"),
-            ("calibrated-points", "29", "max_source_points is 29, but must be at least 30"),
-            ("mode-points", "0", "num_mode_points is 0, but must be at least 30"),
-        ]
-        of_presets = {"paper": of_paper, "exact": of_exact, "calibrated": of_calibrated}
-        for preset, bad in of_presets.items():
-            for name, value, complaint in bad:
-                with self.subTest(preset=preset, option=name, value=value):
-                    result = run("a.pcd", "b.pcd", f"--preset={preset}", f"--{name}", value)
-                    self.assert_refused(2, result, f"--{name}: ", complaint)
+        for preset, word, complaint in cases:
+            name, value = word.split("=")
+            with self.subTest(preset=preset, word=word):
+                complaint = complaint or f"{name.replace('-', '_')} is {value}"
+                result = run(*PAIR, f"--preset={preset}", f"--{name}", value)
+                self.assert_refused(2, result, f"--{name}: ", complaint)
 
     def test_values_that_exclude_each_other(self):
-        for words, *reason in (
-            ("--steps=stein-newton --particles=7", "--particles: num_particles is 7"),
-            ("--steps=stein-newton --batch-size=9", "--steps: steps is stein-newton"),
-            ("--steps=metropolis --batch-size=9", "--steps: steps is metropolis"),
-            ("--residual=point-to-plane --one-to-one", "--residual: ", "--one-to-one"),
-            ("--residual=distribution-to-distribution --reciprocal", "--residual: ", "--reciprocal"),
-        ):
-            result = run("a.pcd", "b.pcd", "--preset=exact", *words.split())
-            self.assert_refused(2, result, *reason)
-
-    def test_quiet_and_json_exclude_each_other(self):
-        self.assert_refused(2, run("a.pcd", "b.pcd", "--quiet", "--json"), "--json", "--quiet")
+        cases = [
+            (["--steps=stein-newton", "--particles=7"], "--particles: num_particles is 7"),
+            (["--steps=stein-newton", "--batch-size=9"], "--steps: steps is stein-newton"),
+            (["--steps=metropolis", "--batch-size=9"], "--steps: steps is metropolis"),
+            (["--residual=point-to-plane", "--one-to-one"], "--residual: ", "--one-to-one"),
+            (["--residual=distribution-to-distribution", "--reciprocal"], "--residual: ", "--reciprocal"),
+        ]
+        self.assert_each_refused(2, [TOOL, *PAIR, "--preset=exact"], cases)
 
 
 class Values(ToolTest):
     """Options arrive where they should: seen in the options that are reported."""
 
     def options(self, *arguments):
-        result = run(*self.small_pair(), "--json", *FAST, *arguments)
-        self.assert_ran(result)
-        return strict_json(result.stdout)["options"]
+        return self.run_to_json(*self.small_pair(), *FAST, *arguments)["options"]
 
     def test_icp_uses_its_correspondences(self):
         ends = set()
         for words in ([], ["--reciprocal"], ["--one-to-one"]):
-            result = run(*scans("table"), "--json", *FAST, *words)
-            ends.add(str(strict_json(result.stdout)["icp"]["T_target_source"]))
+            icp = self.run_to_json(*scans("table"), *FAST, *words)["icp"]
+            ends.add(str(icp["T_target_source"]))
         self.assertEqual(len(ends), 3)
 
     def test_dashes_and_separators(self):
-        for words in (
-            ["--max-distance", "0.5"],
-            ["--max-distance=0.5"],
-            ["-max-distance", "0.5"],
-            ["-max-distance=0.5"],
-            ["-d", "0.5"],
-            ["-d0.5"],
-            ["-d", "+.5"],
-        ):
+        for words in """--max-distance 0.5; --max-distance=0.5; -max-distance 0.5;
+            -max-distance=0.5; -d 0.5; -d0.5; -d +.5""".split(";"):
             with self.subTest(words=words):
-                self.assertEqual(self.options(*words)["registration"]["max_distance_m"], 0.5)
+                options = self.options(*words.split())
+                self.assertEqual(options["registration"]["max_distance_m"], 0.5)
 
     def test_negative_numbers_and_lists(self):
         mean = [-0.1, 0, 0.2, 0, 0, -0.3]
@@ -170,10 +132,9 @@ class Values(ToolTest):
     def test_guess_as_pose_and_as_file(self):
         matrix = cloud_files.matrix_of(*SMALL_PAIR_POSE)
         text = "\n".join(" ".join(map(repr, map(float, row))) for row in matrix)
-        as_file = self.options("--guess", self.file("guess.txt", text))
-        as_pose = self.options("--guess", ",".join(map(str, SMALL_PAIR_POSE)))
-        for options in (as_file, as_pose):
-            self.assert_close(options["registration"]["guess_matrix"], matrix, delta=1e-15)
+        for guess in (self.file("guess.txt", text), ",".join(map(str, SMALL_PAIR_POSE))):
+            found = self.options("--guess", guess)["registration"]["guess_matrix"]
+            self.assert_close(found, matrix, delta=1e-15)
 
     def test_one_number_for_all_and_no_prior(self):
         prior = self.options("--prior-variance", "2")["prior"]
@@ -235,16 +196,13 @@ class Values(ToolTest):
             # No pair is filtered where normals are needed.
             flags = ["use_mean"] if preset == "exact" else ["reciprocal", "one_to_one", "use_mean"]
             words += [f"--{name.replace('use_', '').replace('_', '-')}" for name in flags]
-            result = run(*self.small_pair(), "--json", *words)
-            self.assert_ran(result)
-            options = strict_json(result.stdout)["options"]
+            options = self.run_to_json(*self.small_pair(), *words)["options"]
             for group, key, value in given.values():
                 self.assertEqual(options[group][key], value)
             for key in flags:
                 self.assertIs(options["registration"][key], True)
             groups = {group for group, _, _ in given.values()}
             self.assertEqual(set(options), groups)
-
 
     def test_options_that_would_have_no_effect_are_refused(self):
         stein = "--steps=stein-newton"
@@ -258,16 +216,17 @@ class Values(ToolTest):
             (["--max-step-size=0.5", stein], "with Stein steps"),
             (["--max-step-size=0.5", "--steps=metropolis"], "with Metropolis steps"),
         ):
-            result = run("a.pcd", "b.pcd", "--preset=exact", *words)
+            result = run(*PAIR, "--preset=exact", *words)
             self.assert_refused(2, result, f"{words[0].split('=')[0]}: has no effect {reason}")
 
     def test_options_of_other_presets_are_refused(self):
         for preset, own in self.OF_PRESETS.items():
             for owner, options in self.OF_PRESETS.items():
                 for name in options.keys() - own.keys():
-                    result = run("a.pcd", "b.pcd", f"--preset={preset}", f"--{name}=0.5")
-                    self.assert_refused(2, result, f"--{name} belongs to preset", owner)
-                    self.assert_refused(2, result, f", and the preset is {preset}")
+                    result = run(*PAIR, f"--preset={preset}", f"--{name}=0.5")
+                    belongs = f"--{name} belongs to preset"
+                    self.assert_refused(2, result, belongs, owner, f", and the preset is {preset}")
+
 
 class GuessFiles(ToolTest):
     def refuse(self, content, *reason):

@@ -127,7 +127,7 @@ class NodeTest(unittest.TestCase):
         command = [simulator, "--scene", "room", "-o", scans]
         subprocess.run(command, check=True, stdout=subprocess.PIPE)
         cls.map_points, cls.points = (
-            b"".join(p["x"] + p["y"] + p["z"] for p in cloud_files.read_pcd(scans / name)[1])
+            cloud_files.read_xyz(scans / name).astype("<f4").tobytes()
             for name in ("target.pcd", "source.pcd")
         )
         # The robot has turned by 0.1 rad.
