@@ -7,27 +7,23 @@ import math
 import os
 import shutil
 import signal
-import tempfile
-import pathlib
 import unittest
 
 import numpy as np
 import PIL.Image
 
-import x_server
 from cli_tool import CALIBRATED, DATA, FAST, ToolTest, run, scans
-from cloud_files import box_surface, pcd_bytes
-from faults import VIEWER, call
+from cloud_files import box_surface
+from faults import VIEWER, call, start_x_server
 
 WIDTH, HEIGHT = 480, 360
+SMALL = (300, 200)
 BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
 
 def environment(display):
-    result = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-    if display is not None:
-        result["DISPLAY"] = display
-    return result
+    others = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+    return others if display is None else {**others, "DISPLAY": display}
 
 
 def view(*arguments, display=None):
@@ -72,8 +68,8 @@ class Picture:
 class ViewerTest(ToolTest):
     program = "pcl_bayesian_icp_viewer"
 
-    def refuse(self, exit_code, *arguments, parts=(), display=None):
-        self.assert_refused(exit_code, view(*arguments, display=display), *parts)
+    def refuse(self, exit_code, *arguments, parts=()):
+        self.assert_refused(exit_code, view(*arguments), *parts)
 
 
 class ScreenTest(ViewerTest):
@@ -81,12 +77,10 @@ class ScreenTest(ViewerTest):
 
     @classmethod
     def setUpClass(cls):
-        cls.display = x_server.start(cls)
+        cls.display = start_x_server(cls)
         if cls.display is None:
             raise unittest.SkipTest("Xvfb is not here (see scripts/bootstrap)")
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.results = pathlib.Path(folder.name)
+        cls.results = cls.holder().folder
         for name in ("can", "mug"):
             result = run(*scans(name), *CALIBRATED, "-o", cls.results / name, "--quiet")
             assert result.returncode == 0, result.stderr
@@ -228,9 +222,7 @@ class Pictures(ScreenTest):
         self.assertEqual(Picture(self.path).image.width, 300)
 
     def test_clouds_that_a_posterior_names_may_have_moved(self):
-        saved = self.results / "mug" / "posterior.json"
-        text = saved.read_text().replace(str(DATA / "mug"), "/nowhere")
-        (self.results / "moved").mkdir()
+        shutil.copytree(self.results / "mug", self.results / "moved")
         moved = self.results / "moved" / "posterior.json"
         moved.write_text(text)
         shutil.copy(self.results / "mug" / "samples.csv", moved.parent)
@@ -253,12 +245,9 @@ class Pictures(ScreenTest):
         saved = shutil.copy(self.results / "mug" / "posterior.json", mixed)
         result = self.draw(saved, *arguments, size=(WIDTH, HEIGHT))
         self.assertEqual(result.returncode, 1)
-        return result
+        return result.stderr
 
     def test_draws_of_another_run_are_told_and_drawn(self):
-        other = self.folder / "other"
-        words = [*CALIBRATED, "--seed", "2", "-o", other, "--quiet", "--no-report"]
-        self.assert_ran(run(*scans("mug"), *words))
         green = ["--show", "target", "-fc", "1,1,1", "-fc", "0,1,0"]
         result = self.view_mixed((other / "samples.csv").read_text(), *green)
         self.assertIn("samples.csv has another mean or other deviations", result.stderr)
@@ -266,23 +255,19 @@ class Pictures(ScreenTest):
         warned = picture.rows_with(WHITE)
         # The text is below the target, however many lines it has.
         self.assertGreater(min(warned), max(picture.rows_with((0, 255, 0))))
-        for path in self.folder.iterdir():
-            (shutil.rmtree if path.is_dir() else os.remove)(path)
-        self.assertGreater(len(warned), len(self.saved("mug", *green).rows_with(WHITE)))
+        self.assertGreater(len(warned), len(usual))
 
     def test_files_that_do_not_belong_together_are_told(self):
-        saved = self.results / "mug" / "posterior.json"
-        lines = (saved.parent / "samples.csv").read_text().splitlines(keepends=True)
-        result = self.view_mixed("".join(lines[:100]), *scans("can"))
+        samples = (self.results / "mug" / "samples.csv").read_text()
+        errors = self.view_mixed("\n".join(samples.splitlines()[:100]), *scans("can"))
         for part in ("the source has ", "the target has ", "samples.csv has 99 in place of the"):
-            self.assertIn(part, result.stderr)
+            self.assertIn(part, errors)
 
-    def saved_result(self, points, *options):
-        """posterior.json of a cloud registered to itself."""
-        cloud = self.file("cloud.pcd", pcd_bytes(points))
-        result = run(cloud, cloud, *options, "-o", self.folder / "result", "--no-report")
-        self.assertIn(result.returncode, (0, 1), result.stderr)
-        return self.folder / "result" / "posterior.json"
+    def draw_result(self, points, *options):
+        """As draw(), of a cloud registered to itself."""
+        cloud = self.pcd("cloud.pcd", points)
+        self.assert_ran(run(cloud, cloud, *options, "-o", self.output, "--no-report"))
+        return self.draw(self.output / "posterior.json", size=SMALL)
 
     def test_points_that_are_not_finite_count(self):
         exact = ["--preset=exact", "--sigma=0.01"]
@@ -339,35 +324,25 @@ class ViewerUsage(ViewerTest):
         self.assertRegex(view("--version").stdout, r"^pcl_bayesian_icp_viewer \d+\.\d+\.\d+\n$")
 
     def test_bad_values(self):
-        for words, *parts in (
+        named = """-bc 1,2,256; -ps 65; -opaque 1.1; -ax -1; -multiview 2; --draws 0; --magnify 0;
+            --reference middle; --size 800; --size 299x200; --size 300x199; --preset best;
+            --nonsense"""
+        cases = [(words.split(), words.split()[0]) for words in named.split(";")]
+        cases += [
             (["-bc", "1,2"], "-bc", "'1,2'"),
-            (["-bc", "1,2,256"], "-bc"),
             (["-fc", "red"], "-fc", "'red'"),
             (["-ps", "0"], "-ps", "'0'"),
-            (["-ps", "65"], "-ps"),
             (["-ps", "1", "-ps", "1", "-ps", "1", "-ps", "1"], "-ps", "three"),
-            (["-opaque", "1.1"], "-opaque"),
-            (["-ax", "-1"], "-ax"),
-            (["-multiview", "2"], "-multiview"),
             (["--show", "target,nothing"], "--show", "'nothing'"),
             (["--show", "target,target"], "--show", "'target'"),
             (["--show", "target", "-multiview", "1"], "--show", "-multiview"),
-            (["--draws", "0"], "--draws"),
-            (["--magnify", "0"], "--magnify"),
-            (["--reference", "middle"], "--reference"),
-            (["--size", "800"], "--size"),
             (["--size", "10x10"], "--size", "300x200"),
-            (["--size", "299x200"], "--size"),
-            (["--size", "300x199"], "--size"),
             (["--size", "599x400", "-multiview", "1"], "--size", "600x400"),
             (["--size", "600x399", "-multiview", "1"], "--size", "600x400"),
             (["--screenshot="], "--screenshot"),
             (["--screenshot", "picture.jpg"], "--screenshot", "'picture.jpg' does not end in .png"),
-            (["--preset", "best"], "--preset"),
-            (["--nonsense"], "nonsense"),
-        ):
-            with self.subTest(words=words):
-                self.refuse(2, "a.pcd", "b.pcd", *words, parts=parts)
+        ]
+        self.assert_each_refused(2, [VIEWER, "a.pcd", "b.pcd"], cases)
 
     def test_files_are_counted(self):
         for files in ([], ["a.pcd"], ["a.pcd", "b.pcd", "c.pcd"], ["p.json", "a.pcd"]):
@@ -389,5 +364,5 @@ class ViewerUsage(ViewerTest):
     def test_without_a_display(self):
         self.refuse(1, *scans("mug"), parts=["no X display", "xvfb-run"])
         words = ["--screenshot", self.folder / "picture.png"]
-        self.refuse(1, *scans("mug"), *words, parts=["xvfb-run"], display=":98765")
+        self.assert_refused(1, view(*scans("mug"), *words, display=":98765"), "xvfb-run")
         self.assertEqual(list(self.folder.iterdir()), [])
