@@ -5,7 +5,7 @@ import re
 import cloud_files
 from cli_tool import FAST, SMALL_PAIR_POSE, TOOL, ToolTest, run, scans
 
-# They are looked at last.
+# They need not be there: options are looked at first.
 PAIR = ["a.pcd", "b.pcd"]
 
 
@@ -57,7 +57,7 @@ class Usage(ToolTest):
                 self.assert_refused(2, result, *word.split("="))
 
     def test_values_out_of_range(self):
-        """Named as on the command line and as in the library, where that mostly has the same name."""
+        """Each has its name on the command line, and that of the library: mostly the same."""
         alike = {
             "paper": """thinning=0 batch-size=0 step-size=nan decay-rate=1 lambda-rms=0
                 noise-factor=-1 block-decay-factor=0 block-decay-interval=0 block-decay-start=2
