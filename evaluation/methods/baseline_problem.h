@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "baselines/closed_form_covariance.h"
+#include "baselines/covariances.h"
 #include "methods/pcl_baselines.h"
 #include "study/coverage_case.h"
 

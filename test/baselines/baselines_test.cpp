@@ -1,11 +1,13 @@
 // The baselines' covariances: derivatives, known values, re-simulation.
-#include "baselines/closed_form_covariance.h"
+#include "baselines/covariances.h"
 #include "geometry/twist.h"
 #include "support/test_support.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+
+#include <numeric>
 
 namespace bayesian_icp {
 namespace {
@@ -257,6 +259,8 @@ TEST(ClosedForm, KnowsNothingOfSlidingOnAPlane)
   matches.moved.row(2).setZero();
   matches.target = matches.moved;
   matches.normals = Vector3d::UnitZ().replicate(1, 50);
+  matches.target_indices.resize(50);
+  std::iota(matches.target_indices.begin(), matches.target_indices.end(), 0u);
   const auto i =
       closedFormInformation(closedFormDerivatives(matches, Vector3d::Zero()), 0.01);
   ASSERT_TRUE(i.information.allFinite());
