@@ -76,7 +76,6 @@ BaselineProblem::match(const Isometry3d& T_target_source) const
   MatchedPoints matches;
   matches.moved = T_target_source * source;
   matches.target.resize(3, source.cols());
-  matches.target_indices.resize(hints_.size());
   for (std::size_t i = 0; i < hints_.size(); ++i) {
     const auto column = static_cast<Index>(i);
     const Vector3d query = matches.moved.col(column) - origin_;
