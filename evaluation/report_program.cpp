@@ -5,7 +5,7 @@
 #include "io/program.h"
 #include "plot/child_program.h"
 #include "samplers/score.h"
-#include "sbc/rank_samplers.h"
+#include "sbc/ranks.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,5 @@
 #include "commands.h"
-#include "sbc/rank_samplers.h"
-#include "sbc/rank_statistics.h"
+#include "sbc/ranks.h"
 #include "study/named.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"

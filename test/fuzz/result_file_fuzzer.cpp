@@ -7,7 +7,7 @@
 #include "fuzz_input.h"
 #include "paper/paper_runs.h"
 #include "samplers/score.h"
-#include "sbc/rank_statistics.h"
+#include "sbc/ranks.h"
 
 #include <sstream>
 #include <stdexcept>

@@ -1,15 +1,17 @@
 /** \file
  * \brief Simulation-based calibration: ranks of true poses among draws of their
- * posteriors, uniform if the sampler is right (Talts et al. 2018); and the CSV file
- * that keeps them.
+ * posteriors, uniform if the sampler is right (Talts et al. 2018); the samplers, and
+ * the CSV file that keeps their ranks.
  */
 #pragma once
 
 #include "study/run_file.h"
+#include "study/text_table.h"
 
 #include <bayesian_icp/prior.h>
 
-#include <array>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -28,9 +30,6 @@ constexpr std::size_t min_ranked_runs = 5 * num_rank_bins;
 /** \brief Rank of each coordinate, 0 ... num_ranked_draws. */
 using Ranks = Eigen::Matrix<int, 6, 1>;
 
-/** \brief Runs in each bin. */
-using RankHistogram = std::array<int, num_rank_bins>;
-
 /** \brief Rank of the truth among num_ranked_draws of the draws, evenly chosen so that
  * they are nearly independent. Coordinates are those of Prior::deviation(), angles
  * wrapped.
@@ -38,13 +37,10 @@ using RankHistogram = std::array<int, num_rank_bins>;
 Ranks
 ranksOf(const Vector6d& true_pose, const PoseMatrix& draws, const Prior& prior);
 
-/** \brief How often coordinate \p k has the ranks of each bin. */
-RankHistogram
-rankHistogram(const std::vector<Ranks>& runs, int k);
-
-/** \brief Sum over the bins of (count - expected)^2 / expected; of at least one run. */
+/** \brief Chi-square statistic of the ranks that coordinate \p k has: the sum over the
+ * bins of (count - expected)^2 / expected; of at least one run. */
 double
-chiSquareOf(const RankHistogram& histogram);
+chiSquareOf(const std::vector<Ranks>& runs, int k);
 
 /** \brief One run of one sampler. */
 struct RankRun {
@@ -75,5 +71,39 @@ struct RankRun {
 };
 
 using RankFile = RunFile<RankRun>;
+
+/** \brief A sampler and the model that it is given. */
+struct RankSampler {
+  std::string name;
+  /** Whether the data are drawn from the very likelihood, so that ranks have to be
+   * uniform. */
+  bool is_well_specified;
+  /** One run: true pose, data, draws, ranks; nothing if the draws are no good. Uses one
+   * thread, is called by several at once, and depends on the seed only. */
+  std::function<std::optional<Ranks>(std::uint64_t seed)> run;
+};
+
+/** \brief All of them:
+ *
+ * - exact-langevin, exact-metropolis: preset `exact` on FarPointsModel.
+ * - calibrated: sampleCalibrated() on LinearScoreModel, with a free yaw in every other
+ *   run.
+ * - calibrated-scans: preset `calibrated` on simulated scans of the tuned scenes, same
+ *   view; not a well-specified model. */
+std::vector<RankSampler>
+rankSamplers();
+
+/** \brief What the ranks of some runs say. */
+struct RankVerdict {
+  /** A line for each sampler: runs, chi-square statistic of each coordinate, verdict.
+   */
+  TextTable table;
+  /** Whether every well-specified sampler has uniform ranks: all runs good and, of at
+   * least min_ranked_runs, every statistic below max_rank_chi_square. */
+  bool are_uniform = true;
+};
+
+RankVerdict
+verdictOf(const std::vector<RankRun>& runs);
 
 } // namespace bayesian_icp::evaluate
