@@ -1,7 +1,9 @@
 #include "study/parallel_tasks.h"
 
 #include "io/clocks.h"
-#include "threads/first_exception.h"
+#include "threads/for_each_piece.h"
+
+#include <mutex>
 
 namespace bayesian_icp::evaluate {
 
@@ -14,23 +16,15 @@ runTasks(
 {
   const double begin = io::wallSeconds();
   std::size_t num_done = 0;
-  FirstException failure;
-#pragma omp parallel for schedule(dynamic) num_threads(num_threads)
-  for (std::size_t i = 0; i < size; ++i)
-    // No exception may leave a parallel region or a critical section.
-    failure.guard([&] {
-      run(i);
-#pragma omp critical(study_tasks)
-      failure.guard([&] {
-        ++num_done;
-        const double seconds_each =
-            (io::wallSeconds() - begin) / static_cast<double>(num_done);
-        if (report)
-          report({num_done, size, seconds_each * static_cast<double>(size - num_done)},
-                 i);
-      });
-    });
-  failure.rethrow();
+  std::mutex mutex;
+  forEachPiece(size, num_threads, [&](std::size_t i) {
+    run(i);
+    const std::lock_guard<std::mutex> lock(mutex);
+    ++num_done;
+    const double seconds_each =
+        (io::wallSeconds() - begin) / static_cast<double>(num_done);
+    report({num_done, size, seconds_each * static_cast<double>(size - num_done)}, i);
+  });
 }
 
 } // namespace bayesian_icp::evaluate

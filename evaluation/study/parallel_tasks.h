@@ -17,7 +17,7 @@ struct StudyProgress {
 
 /** \brief Do tasks that do not depend on each other, each in one thread.
  * \param[in] run does one; called by several threads at once
- * \param[in] report told of each that is done, by one thread at a time; may be empty
+ * \param[in] report told of each that is done, by one thread at a time
  * \throws what \p run and \p report throw first; tasks that had not begun then are left
  *         out */
 void
@@ -25,6 +25,6 @@ runTasks(std::size_t size,
          int num_threads,
          const std::function<void(std::size_t index)>& run,
          const std::function<void(const StudyProgress& progress, std::size_t index)>&
-             report = nullptr);
+             report);
 
 } // namespace bayesian_icp::evaluate

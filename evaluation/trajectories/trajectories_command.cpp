@@ -11,6 +11,7 @@
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
 #include "study/text_table.h"
+#include "threads/for_each_piece.h"
 #include "trajectories/drives.h"
 #include "trajectories/trajectory_run.h"
 
@@ -93,7 +94,7 @@ std::vector<std::uint64_t>
 hashesOf(const Recording& recording, int num_threads)
 {
   std::vector<std::uint64_t> hashes(recording.poses.size());
-  runTasks(hashes.size(), num_threads, [&](std::size_t scan) {
+  forEachPiece(hashes.size(), num_threads, [&](std::size_t scan) {
     InputHash hash;
     hash.addMatrix(recording.read(scan));
     hashes[scan] = hash.value();
