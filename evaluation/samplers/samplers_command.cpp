@@ -3,7 +3,6 @@
 #include "io/folders.h"
 #include "io/numbers.h"
 #include "register/choices.h"
-#include "samplers/gold_cache.h"
 #include "samplers/sampler_problem.h"
 #include "samplers/score.h"
 #include "study/option_values.h"
