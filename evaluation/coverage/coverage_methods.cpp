@@ -1,12 +1,19 @@
 #include "coverage/coverage_methods.h"
 
 #include "algebra/decompositions.h"
+#include "calibrated/calibrated_report.h"
+#include "calibrated/flat_clouds.h"
+#include "calibrated/surface/surface_model.h"
 #include "geometry/twist.h"
 #include "io/clocks.h"
 #include "io/command_line.h"
 #include "io/numbers.h"
+#include "methods/published_covariances.h"
 #include "register/choices.h"
+#include "register/report_text.h"
+#include "study/text_table.h"
 
+#include <algorithm>
 #include <new>
 
 namespace bayesian_icp::evaluate {
@@ -48,7 +55,177 @@ runPaperPreset(const CoverageCase& problem)
   return result;
 }
 
+std::string
+numberNote(const char* name, double value)
+{
+  return format(";%s=%.3g", name, value);
+}
+
+long
+numPriorOnly(const DataReport& report)
+{
+  return std::count_if(
+      report.directions.begin(), report.directions.end(), [](const auto& direction) {
+        return direction.observability == Observability::PriorOnly;
+      });
+}
+
+/** The raised flags, how many directions the data say nothing about, and the
+ * numbers that the flags are made of. */
+std::string
+notesOf(const DataReport& report)
+{
+  std::string notes;
+  for (const app::DataFlag& flag : app::data_flags)
+    if (report.flags.*flag.is_raised)
+      notes += std::string("flag:") + flag.key + ';';
+  return notes + "prior_only=" + std::to_string(numPriorOnly(report)) +
+         numberNote("basin_distance", report.basin_distance) +
+         numberNote("active", report.active_fraction) +
+         numberNote("active_of_target", report.active_fraction_of_target) +
+         numberNote("other_cost_ratio", report.other_cost_ratio) +
+         numberNote("patches", report.effective_patches) +
+         numberNote("residual_scale", report.residual_scale) +
+         numberNote("correlation", report.correlation_factor) +
+         numberNote("prior_probability", report.prior_probability);
+}
+
+/** A case, ready to be estimated. */
+struct Registration {
+  explicit Registration(const CoverageCase& problem)
+  : source(
+        prepareSurface(problem.source, 1, numDoublings(problem.source, problem.target)))
+  , target(
+        prepareSurface(problem.target, 1, numDoublings(problem.target, problem.source)))
+  , prior(priorOf(problem))
+  , scorer(scorerOf(problem.source,
+                    source,
+                    problem.target,
+                    target,
+                    CalibratedOptions().max_source_points,
+                    problem.seed,
+                    1,
+                    reachOf(problem.source, source.columns, prior)))
+  {}
+
+  CalibratedEstimate
+  estimate() const
+  {
+    const HeldPrior held = heldInPlane(prior, source.model, target.model);
+    CalibratedEstimate result = estimateCalibrated(scorer, held);
+    if (held.plane)
+      setPrior(prior, result);
+    return result;
+  }
+
+  PreparedSurface source, target;
+  Prior prior;
+  SurfaceScorer scorer;
+};
+
+/** The calibrated Gaussian; notes are its flags and the number of directions held by
+ * the prior only. */
+MethodResult
+runCalibrated(const CoverageCase& problem)
+{
+  const Registration registration(problem);
+  const CalibratedEstimate estimate = registration.estimate();
+  MethodResult result = resultOf(estimate);
+  result.notes = notesOf(dataReportOf(estimate, registration.scorer.noise()));
+  result.num_queries = registration.scorer.numQueries();
+  return result;
+}
+
+using Baseline = std::function<MethodResult(const BaselineProblem&)>;
+
+MethodResult
+naive(const BaselineProblem& problem)
+{
+  const IcpFit fit = fitNaively(problem);
+  const GaussNewton sums = gaussNewton(fit.matches, problem.centreAt(fit.pose));
+  return problem.combineWithPrior(
+      fit.pose, {sums.hessian / fit.variance, sums.gradient / fit.variance});
+}
+
+MethodResult
+closedForm(const BaselineProblem& problem)
+{
+  const IcpFit fit = fitPlanes(problem);
+  const auto derivatives =
+      closedFormDerivatives(fit.matches, problem.centreAt(fit.pose));
+  return problem.combineWithPrior(fit.pose,
+                                  closedFormInformation(derivatives, fit.pointSigma()));
+}
+
+MethodResult
+sandwich(const BaselineProblem& problem)
+{
+  const IcpFit fit = fitNaively(problem);
+  const double noise =
+      SurfaceModel(problem.coverage_case.target, SurfaceModelOptions(), 1)
+          .medianSigma();
+  return problem.combineWithPrior(fit.pose, pointToPointSandwich(problem, fit, noise));
+}
+
+MethodResult
+gicpWithHessian(const BaselineProblem& problem)
+{
+  const GicpFit gicp = fitPclGicp(problem.ofPcl());
+  MethodResult result;
+  if (gicp.moved.cols() == 0) {
+    result.notes = "too few points";
+    return result;
+  }
+  GaussianInformation information;
+  information.information = generalizedIcpHessian(
+      gicp.moved, gicp.covariances, problem.centreAt(gicp.fit.pose));
+  result = problem.combineWithPrior(gicp.fit.pose, information);
+  result.num_queries = -1;
+  if (!gicp.fit.has_converged)
+    result.notes = "not converged";
+  return result;
+}
+
+/** A registration that says nothing about its error. */
+Baseline
+poseOnly(PclFit (*fit)(const PclProblem&))
+{
+  return [fit](const BaselineProblem& problem) {
+    const PclFit found = fit(problem.ofPcl());
+    MethodResult result;
+    result.is_valid = result.is_pose_only = true;
+    result.mean = found.pose;
+    result.notes = found.has_converged ? "pose only" : "pose only;not converged";
+    return result;
+  };
+}
+
+/** \p baseline for clouds that are not empty. */
+CoverageMethod
+method(const std::string& name, const Baseline& baseline)
+{
+  return {name, [baseline](const CoverageCase& coverage_case) {
+            if (coverage_case.source.cols() == 0 || coverage_case.target.cols() == 0) {
+              MethodResult refused;
+              refused.notes = "empty cloud";
+              return refused;
+            }
+            return baseline(BaselineProblem(coverage_case));
+          }};
+}
+
 } // namespace
+
+std::vector<CoverageMethod>
+baselineMethods()
+{
+  return {method("naive", naive),
+          method("closed-form", closedForm),
+          method("point-to-point-sandwich", sandwich),
+          method("gicp-hessian", gicpWithHessian),
+          method("gicp", poseOnly(fitPclGicpAsIs)),
+          method("icp", poseOnly(fitPclIcp))};
+}
 
 std::vector<CoverageMethod>
 coverageMethods()
@@ -132,6 +309,41 @@ Prior
 priorOf(const CoverageCase& problem)
 {
   return {problem.prior_mean, problem.prior_sd.cwiseAbs2(), centroidOf(problem)};
+}
+
+MethodResult
+resultOf(const CalibratedEstimate& estimate)
+{
+  MethodResult result;
+  result.is_valid = true;
+  result.mean = movedBy(estimate.mean, estimate.centre, estimate.mode);
+  result.covariance = estimate.covariance;
+  result.centre = estimate.centre;
+  result.shape = {estimate.degrees_of_freedom,
+                  static_cast<int>((estimate.keep.array() > 0.0).count())};
+  return result;
+}
+
+CalibratedEstimate
+calibratedEstimateOf(const CoverageCase& problem)
+{
+  return Registration(problem).estimate();
+}
+
+MethodResult
+runCalibratedDraws(const CoverageCase& problem)
+{
+  Options options;
+  options.preset = Preset::Calibrated;
+  const PosteriorEstimate estimate = presetEstimate(problem, options);
+  MethodResult result = resultOf(problem, estimate);
+  const DataReport& report = estimate.summary.data;
+  if (report.is_available) {
+    result.shape = {report.degrees_of_freedom,
+                    static_cast<int>(6 - numPriorOnly(report))};
+    result.notes += (result.notes.empty() ? "" : ";") + notesOf(report);
+  }
+  return result;
 }
 
 } // namespace bayesian_icp::evaluate

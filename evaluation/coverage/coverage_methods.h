@@ -74,16 +74,10 @@ priorOf(const CoverageCase& problem);
 std::vector<CoverageMethod>
 baselineMethods();
 
-/** \brief The estimate behind both methods below, with as many source points as the
- * preset takes.
- */
+/** \brief The estimate behind both methods `calibrated`, with as many source points as
+ * the preset takes. */
 CalibratedEstimate
 calibratedEstimateOf(const CoverageCase& problem);
-
-/** \brief The calibrated Gaussian; notes are its flags and the number of directions
- * held by the prior only. */
-MethodResult
-runCalibrated(const CoverageCase& problem);
 
 /** \brief An estimate's posterior as a result, without notes and queries. */
 MethodResult
