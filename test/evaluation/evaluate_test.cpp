@@ -1,17 +1,92 @@
 // The evaluation app's own pieces: distances against closed forms, scores of good and
-// bad draws.
+// bad draws, and the gold standard, Metropolis runs on densities whose moments are
+// known.
 #include "evaluation/csv_rows.h"
-#include "evaluation/evaluate_test_support.h"
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
+#include "support/test_support.h"
+
+#include <bayesian_icp/diagnostics.h>
 
 #include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
 
 #include <cmath>
 #include <sstream>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;
+
+namespace {
+
+/** A correlated Gaussian whose standard deviations differ by 1000. */
+Moments
+exampleGaussian()
+{
+  Moments gaussian;
+  gaussian.mean << 0.1, -0.2, 0.3, 0.5, -1.0, 2.0;
+  Matrix6d factor = Matrix6d::Identity();
+  factor(5, 0) = 0.9;
+  factor(3, 1) = -0.7;
+  Vector6d scale;
+  scale << 0.001, 0.01, 0.1, 1.0, 0.02, 0.5;
+  factor = scale.asDiagonal() * factor;
+  gaussian.covariance = factor * factor.transpose();
+  return gaussian;
+}
+
+PoseMatrix
+gaussianDraws(const Moments& gaussian, Eigen::Index num_draws, std::uint64_t seed)
+{
+  const Matrix6d factor = gaussian.covariance.llt().matrixL();
+  Random random(seed, 0);
+  PoseMatrix draws(num_draws, 6);
+  for (Eigen::Index i = 0; i < num_draws; ++i)
+    draws.row(i) = (gaussian.mean + factor * random.normal6()).transpose();
+  return draws;
+}
+
+EnergyFunction
+energyOf(const Moments& gaussian)
+{
+  const Eigen::LLT<Matrix6d> llt(gaussian.covariance);
+  return [=](const Vector6d& x) {
+    return 0.5 * llt.matrixL().solve(x - gaussian.mean).squaredNorm();
+  };
+}
+
+/** Mean and variance of each coordinate within five Monte Carlo standard errors. */
+void
+expectMoments(const std::vector<PoseMatrix>& chains, const Moments& truth)
+{
+  for (int k = 0; k < 6; ++k) {
+    Eigen::MatrixXd values(chains[0].rows(), static_cast<Eigen::Index>(chains.size()));
+    for (std::size_t i = 0; i < chains.size(); ++i)
+      values.col(static_cast<Eigen::Index>(i)) = chains[i].col(k);
+    const Eigen::MatrixXd squares = (values.array() - truth.mean[k]).square();
+    EXPECT_NEAR(values.mean(), truth.mean[k], 5.0 * mcseMean(values)) << k;
+    EXPECT_NEAR(squares.mean(), truth.covariance(k, k), 5.0 * mcseMean(squares)) << k;
+    // The errors above are not so wide that anything passes.
+    EXPECT_LT(mcseMean(values), 0.1 * std::sqrt(truth.covariance(k, k))) << k;
+  }
+}
+
+GoldTarget
+goldTarget(const EnergyFunction& energy, double spread)
+{
+  GoldTarget target;
+  target.make_energy = [energy]() { return energy; };
+  target.start_spread = Vector6d::Constant(spread);
+  target.draw_start = [spread](Random& random) -> Vector6d {
+    return spread * random.normal6();
+  };
+  return target;
+}
+
+const auto no_report = [](const std::string&) {};
+
+} // namespace
 
 TEST(DrawStatistics, KlOfGaussiansIsTheClosedForm)
 {
@@ -135,4 +210,109 @@ TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)
   std::ostringstream both;
   samplerTable(runs).print(both);
   expectIn(both.str(), ", gold standard other\n  paper 1e-05     1  0.3000");
+}
+
+TEST(MetropolisRuns, WalkAndMalaReachTheMomentsOfAGaussian)
+{
+  const Moments gaussian = exampleGaussian();
+  const EnergyFunction energy = energyOf(gaussian);
+  const Eigen::LLT<Matrix6d> llt(gaussian.covariance);
+  const Matrix6d factor = llt.matrixL();
+  const GradientFunction with_gradient = [&](const Vector6d& x, Vector6d& gradient) {
+    gradient = llt.solve(x - gaussian.mean);
+    return energy(x);
+  };
+  std::vector<PoseMatrix> walks, malas;
+  for (std::uint64_t stream = 0; stream < 4; ++stream) {
+    Random random(5, stream);
+    const Vector6d start = gaussian.mean + factor * random.normal6();
+    walks.push_back(runRandomWalk(start, energy, factor, 20000, random));
+    malas.push_back(runMala(start, with_gradient, factor, 0.8, 10000, random));
+  }
+  expectMoments(walks, gaussian);
+  expectMoments(malas, gaussian);
+}
+
+TEST(GoldStandard, ConvergesToAGaussianFromFarAway)
+{
+  const Moments gaussian = exampleGaussian();
+  const GoldStandard gold =
+      sampleGold(goldTarget(energyOf(gaussian), 5.0), GoldOptions(), no_report);
+  EXPECT_TRUE(gold.has_converged);
+  expectMoments(gold.chains, gaussian);
+  EXPECT_LT(gaussianKl(gaussian, momentsOf(pooled(gold.chains))), 0.01);
+}
+
+TEST(GoldStandard, WeighsTwoModes)
+{
+  // One third of the mass at x = -3, two thirds at x = 3.
+  const EnergyFunction energy = [](const Vector6d& x) {
+    const double rest = 0.5 * x.tail<5>().squaredNorm();
+    const double left = -0.5 * std::pow(x[0] + 3.0, 2);
+    const double right = -0.5 * std::pow(x[0] - 3.0, 2);
+    return rest - std::log(std::exp(left) / 3.0 + 2.0 * std::exp(right) / 3.0);
+  };
+  const GoldStandard gold =
+      sampleGold(goldTarget(energy, 4.0), GoldOptions(), no_report);
+  EXPECT_TRUE(gold.has_converged);
+  Moments truth;
+  truth.mean[0] = 1.0;
+  truth.covariance = Matrix6d::Identity();
+  truth.covariance(0, 0) = 9.0;
+  expectMoments(gold.chains, truth);
+}
+
+TEST(GoldStandard, SaysWhenItHasNotConverged)
+{
+  GoldOptions options;
+  options.steps_per_round = 100;
+  options.max_seconds = 1e-9; // ends after the first round
+  const GoldStandard gold =
+      sampleGold(goldTarget(energyOf(exampleGaussian()), 5.0), options, no_report);
+  EXPECT_FALSE(gold.has_converged);
+  EXPECT_LT(gold.bulk_ess, options.min_ess);
+}
+
+// The energy jumps where nearest points change: Metropolis steps follow it, and Stein
+// particles, whose gradients do not see the jumps, are too narrow besides.
+TEST(GoldStandard, OfDistributionsIsWhatMetropolisStepsDraw)
+{
+  Random random(6, 0);
+  const auto surface = [&](Eigen::Index num_points) {
+    Eigen::Matrix3Xd points = test::randomPoints(random, num_points);
+    for (auto point : points.colwise())
+      point[2] = 0.1 * std::sin(9.0 * point[0]) * std::cos(8.0 * point[1]) +
+                 0.003 * random.normal();
+    return points;
+  };
+  const Scene scene{"waves", surface(150), KdTree(surface(2000).cast<float>())};
+  const Problem problem(scene, {0.01, 100.0}, Residual::DistributionToDistribution);
+  const GoldStandard gold = sampleGold(problem.goldTarget(), GoldOptions(), no_report);
+  EXPECT_TRUE(gold.has_converged);
+  PoseMatrix draws = pooled(gold.chains);
+  for (Eigen::Index i = 0; i < draws.rows(); ++i)
+    draws.row(i) = problem.energy().toTheta(draws.row(i).transpose()).transpose();
+  const auto scoreOfSteps = [&](ExactSteps steps) {
+    return scoreOf(runExact(problem, 1, 1, steps), draws);
+  };
+  const Score metropolis = scoreOfSteps(ExactSteps::Metropolis);
+  EXPECT_EQ(metropolis.status, "ok");
+  EXPECT_LT(metropolis.kl, 0.06);
+  const Score stein = scoreOfSteps(ExactSteps::SteinNewton);
+  EXPECT_EQ(stein.status, "not_mixed");
+  EXPECT_GT(stein.kl, 0.2);
+}
+
+TEST(GoldStandard, DoesNotDependOnTheNumberOfThreads)
+{
+  GoldOptions options;
+  options.steps_per_round = 200;
+  options.max_kl = 1.0;
+  options.max_rhat = 2.0;
+  options.min_ess = 10.0;
+  const GoldTarget target = goldTarget(energyOf(exampleGaussian()), 5.0);
+  const GoldStandard one = sampleGold(target, options, no_report);
+  options.num_threads = 2;
+  const GoldStandard two = sampleGold(target, options, no_report);
+  EXPECT_EQ(pooled(one.chains), pooled(two.chains));
 }
