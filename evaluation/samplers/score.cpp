@@ -152,10 +152,11 @@ scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
   score.kl = gaussianKl(p, q);
   const auto compared = io::evenlySpaced(reference.rows(), num_compared_draws);
   for (int k = 0; k < 6; ++k) {
-    const Eigen::VectorXd a = reference(compared, k), b = draws.col(k);
+    const SampleDistance distance =
+        distanceBetween(reference(compared, k), draws.col(k));
     score.coordinate_kl[k] = gaussianKl(p, q, k);
-    score.wasserstein[k] = wasserstein1(a, b) / std::sqrt(p.covariance(k, k));
-    score.kolmogorov_smirnov[k] = kolmogorovSmirnov(a, b);
+    score.wasserstein[k] = distance.wasserstein / std::sqrt(p.covariance(k, k));
+    score.kolmogorov_smirnov[k] = distance.kolmogorov_smirnov;
   }
   return score;
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 namespace bayesian_icp::evaluate {
@@ -22,31 +21,6 @@ double
 logDeterminant(const Eigen::LLT<Matrix6d>& llt)
 {
   return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
-}
-
-/** Call \p visit with each interval between neighbouring values of either sample, and
- * the difference of the distribution functions on it. */
-void
-forEachStep(Eigen::VectorXd a,
-            Eigen::VectorXd b,
-            const std::function<void(double width, double difference)>& visit)
-{
-  std::sort(a.begin(), a.end());
-  std::sort(b.begin(), b.end());
-  Eigen::Index i = 0, j = 0;
-  while (i < a.size() || j < b.size()) {
-    const double value = std::min(i < a.size() ? a[i] : infinity, //
-                                  j < b.size() ? b[j] : infinity);
-    while (i < a.size() && a[i] <= value)
-      ++i;
-    while (j < b.size() && b[j] <= value)
-      ++j;
-    const double next = std::min(i < a.size() ? a[i] : infinity, //
-                                 j < b.size() ? b[j] : infinity);
-    visit(next == infinity ? 0.0 : next - value,
-          std::abs(static_cast<double>(i) / static_cast<double>(a.size()) -
-                   static_cast<double>(j) / static_cast<double>(b.size())));
-  }
 }
 
 } // namespace
@@ -107,23 +81,30 @@ gaussianKl(const Moments& p, const Moments& q, int k)
   return 0.5 * (p_var / q_var + shift * shift / q_var - 1.0 + std::log(q_var / p_var));
 }
 
-double
-wasserstein1(const Eigen::VectorXd& a, const Eigen::VectorXd& b)
+SampleDistance
+distanceBetween(Eigen::VectorXd a, Eigen::VectorXd b)
 {
-  double area = 0.0;
-  forEachStep(
-      a, b, [&area](double width, double difference) { area += width * difference; });
-  return area;
-}
-
-double
-kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b)
-{
-  double largest = 0.0;
-  forEachStep(a, b, [&largest](double, double difference) {
-    largest = std::max(largest, difference);
-  });
-  return largest;
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  SampleDistance distance;
+  double value = -infinity;
+  for (Eigen::Index i = 0, j = 0;;) {
+    const double next = std::min(i < a.size() ? a[i] : infinity, //
+                                 j < b.size() ? b[j] : infinity);
+    const double difference =
+        std::abs(static_cast<double>(i) / static_cast<double>(a.size()) -
+                 static_cast<double>(j) / static_cast<double>(b.size()));
+    distance.kolmogorov_smirnov = std::max(distance.kolmogorov_smirnov, difference);
+    if (next == infinity)
+      return distance;
+    if (i + j > 0)
+      distance.wasserstein += (next - value) * difference;
+    value = next;
+    while (i < a.size() && a[i] <= value)
+      ++i;
+    while (j < b.size() && b[j] <= value)
+      ++j;
+  }
 }
 
 double

@@ -36,14 +36,17 @@ gaussianKl(const Moments& p, const Moments& q);
 double
 gaussianKl(const Moments& p, const Moments& q, int k);
 
-/** \brief Area between two empirical distribution functions: Wasserstein-1 distance, in
- * the unit of the values. */
-double
-wasserstein1(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+/** \brief How far apart two empirical distribution functions are. */
+struct SampleDistance {
+  /** Area between them: Wasserstein-1 distance, in the unit of the values. */
+  double wasserstein = 0.0;
+  /** Largest difference, in [0, 1]. */
+  double kolmogorov_smirnov = 0.0;
+};
 
-/** \brief Largest difference of two empirical distribution functions, in [0, 1]. */
-double
-kolmogorovSmirnov(const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+/** \param[in] a, b samples, finite, in any order */
+SampleDistance
+distanceBetween(Eigen::VectorXd a, Eigen::VectorXd b);
 
 /** \brief Energy score E|X - y| - E|X - X'| / 2 of draws X, mean over the outcomes y
  * (one per row, at least one); smaller is better. E|X - X'| is that of 400 of the

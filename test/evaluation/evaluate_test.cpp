@@ -128,18 +128,22 @@ TEST(DrawStatistics, KlToADegenerateGaussianIsInfinite)
 
 TEST(DrawStatistics, DistancesOfDistributionFunctionsAreTheClosedForms)
 {
+  const auto expectDistance = [](const Eigen::VectorXd& a,
+                                 const Eigen::VectorXd& b,
+                                 double wasserstein,
+                                 double kolmogorov_smirnov) {
+    const SampleDistance distance = distanceBetween(a, b);
+    EXPECT_NEAR(distance.wasserstein, wasserstein, 1e-12);
+    EXPECT_NEAR(distance.kolmogorov_smirnov, kolmogorov_smirnov, 1e-12);
+  };
   const Eigen::VectorXd a = Eigen::VectorXd::LinSpaced(5, 0.0, 4.0);
-  const Eigen::VectorXd shifted = a.array() + 0.25;
-  EXPECT_NEAR(wasserstein1(a, shifted), 0.25, 1e-12);
-  EXPECT_NEAR(kolmogorovSmirnov(a, shifted), 0.2, 1e-12);
-  EXPECT_NEAR(wasserstein1(a, a), 0.0, 1e-12);
-  EXPECT_NEAR(kolmogorovSmirnov(a, a), 0.0, 1e-12);
+  expectDistance(a, a.array() + 0.25, 0.25, 0.2);
+  expectDistance(a, a, 0.0, 0.0);
   // A point at 0 against half at 0, half at 1; of different sizes and unsorted.
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(3);
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   const Eigen::Vector4d halves(1.0, 0.0, 1.0, 0.0);
-  EXPECT_NEAR(wasserstein1(zero, halves), 0.5, 1e-12);
-  EXPECT_NEAR(kolmogorovSmirnov(zero, halves), 0.5, 1e-12);
-  EXPECT_NEAR(wasserstein1(halves, zero), 0.5, 1e-12);
+  expectDistance(zero, halves, 0.5, 0.5);
+  expectDistance(halves, zero, 0.5, 0.5);
 }
 
 TEST(DrawStatistics, AnglesAreUnwrappedAboutTheCentre)
