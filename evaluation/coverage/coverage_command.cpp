@@ -187,44 +187,40 @@ using Names = std::vector<std::string>;
 
 constexpr std::size_t num_quick_scenes = 2;
 
-/** Scenes that are seen under the same conditions. */
-struct SceneSet {
-  /** Stands for all of them on the command line, unless it is empty. */
+/** A scene, and the cases that there are of it. */
+struct OfferedScene {
   std::string name;
-  Names scenes;
+  /** Stands for all scenes that have it on the command line, unless it is empty. */
+  std::string set;
   Names conditions;
   /** Those that have to be asked for. */
   Names rare_conditions;
-  /** Whether they are run where none are asked for. */
-  bool is_default;
+  /** Of its cases, in each of its conditions. */
+  std::vector<std::uint64_t> seeds;
 };
 
 /** What is there to choose from, and how it is made. */
 struct Offer {
-  std::vector<SceneSet> sets;
-  /** The seeds of a scene's cases, in each of its conditions. */
-  std::function<std::vector<std::uint64_t>(const std::string& scene)> seeds;
+  std::vector<OfferedScene> scenes;
   CoverageCaseMaker make_case;
 };
 
-/** Those asked for, whatever the scene. */
-auto
-seedsOf(const CoverageOptions& options)
-{
-  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(options.num_seeds));
-  std::iota(seeds.begin(), seeds.end(), options.first_seed);
-  return [seeds](const std::string&) { return seeds; };
-}
+/** Has to be asked for. */
+constexpr char lidar_set[] = "lidar";
 
 Offer
-simulatedOffer(const CoverageOptions& options)
+simulatedOffer(const std::vector<std::uint64_t>& seeds)
 {
   Offer offer;
-  offer.seeds = seedsOf(options);
-  offer.sets = {
-      {"tuned", tunedScenes(), coverage_conditions, further_conditions, true},
-      {"new", newScenes(), coverage_conditions, further_conditions, true},
-      {"lidar", lidar_scenes, lidar_conditions, further_lidar_conditions, false}};
+  for (const std::string& name : tunedScenes())
+    offer.scenes.push_back(
+        {name, "tuned", coverage_conditions, further_conditions, seeds});
+  for (const std::string& name : newScenes())
+    offer.scenes.push_back(
+        {name, "new", coverage_conditions, further_conditions, seeds});
+  for (const std::string& name : lidar_scenes)
+    offer.scenes.push_back(
+        {name, lidar_set, lidar_conditions, further_lidar_conditions, seeds});
   offer.make_case = [](const CoverageCaseName& name) {
     return makeCoverageCase(name.scene, name.condition, name.seed);
   };
@@ -232,12 +228,12 @@ simulatedOffer(const CoverageOptions& options)
 }
 
 Offer
-realOffer(const CoverageOptions& options)
+realOffer(const std::string& folder, const std::vector<std::uint64_t>& seeds)
 {
-  const auto pairs = std::make_shared<const RealPairs>(options.real_folder);
+  const auto pairs = std::make_shared<const RealPairs>(folder);
   Offer offer;
-  offer.sets = {{"", pairs->names(), {real_pair}, {}, true}};
-  offer.seeds = seedsOf(options);
+  for (const std::string& name : pairs->names())
+    offer.scenes.push_back({name, "", {real_pair}, {}, seeds});
   offer.make_case = [pairs](const CoverageCaseName& name) {
     return pairs->makeCase(name.scene, name.seed);
   };
@@ -246,14 +242,13 @@ realOffer(const CoverageOptions& options)
 
 /** Of recordings: the seed of a case is the number of its pair. */
 Offer
-sequenceOffer(const CoverageOptions& options)
+sequenceOffer(const std::string& folder, const SequenceOptions& options)
 {
-  const auto pairs =
-      std::make_shared<const SequencePairs>(options.real_folder, options.sequences);
+  const auto pairs = std::make_shared<const SequencePairs>(folder, options);
   Offer offer;
   for (const std::string& name : pairs->names())
-    offer.sets.push_back({"", {name}, {pairs->condition(name)}, {}, true});
-  offer.seeds = [pairs](const std::string& scene) { return pairs->pairs(scene); };
+    offer.scenes.push_back(
+        {name, "", {pairs->condition(name)}, {}, pairs->pairs(name)});
   offer.make_case = [pairs](const CoverageCaseName& name) {
     return pairs->makeCase(name.scene, name.seed);
   };
@@ -263,9 +258,12 @@ sequenceOffer(const CoverageOptions& options)
 Offer
 offerOf(const CoverageOptions& options)
 {
-  if (options.real_folder.empty())
-    return simulatedOffer(options);
-  return options.has_sequences ? sequenceOffer(options) : realOffer(options);
+  if (options.has_sequences)
+    return sequenceOffer(options.real_folder, options.sequences);
+  std::vector<std::uint64_t> seeds(static_cast<std::size_t>(options.num_seeds));
+  std::iota(seeds.begin(), seeds.end(), options.first_seed);
+  return options.real_folder.empty() ? simulatedOffer(seeds)
+                                     : realOffer(options.real_folder, seeds);
 }
 
 bool
@@ -274,62 +272,48 @@ contains(const Names& names, const std::string& name)
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/** Append those of \p more that \p names does not have yet. */
-void
-addMissing(Names& names, const Names& more)
-{
-  for (const std::string& name : more)
-    if (!contains(names, name))
-      names.push_back(name);
-}
-
-/** The scenes asked for, the name of a set replaced by its scenes; without any, those
- * of the default sets, or the first few. */
-Names
+/** The scenes asked for by their names or those of their sets; without any, those that
+ * need not be asked for, or the first few. */
+std::vector<OfferedScene>
 scenesOf(const CoverageOptions& options, const Offer& offer)
 {
-  Names known, usual, asked;
-  for (const SceneSet& set : offer.sets) {
-    addMissing(known, set.scenes);
-    if (set.is_default)
-      addMissing(usual, set.scenes);
+  std::vector<OfferedScene> chosen;
+  for (const std::string& asked : options.scenes) {
+    bool is_known = false;
+    for (const OfferedScene& scene : offer.scenes) {
+      if (scene.name != asked && scene.set != asked)
+        continue;
+      is_known = true;
+      if (findNamed(chosen, scene.name) == nullptr)
+        chosen.push_back(scene);
+    }
+    if (!is_known)
+      io::readOption("scenes", [&] { requireKnown({asked}, namesOf(offer.scenes)); });
   }
-  for (const std::string& name : options.scenes) {
-    const auto set =
-        std::find_if(offer.sets.begin(), offer.sets.end(), [&name](const SceneSet& s) {
-          return s.name == name && !name.empty();
-        });
-    addMissing(asked, set == offer.sets.end() ? Names{name} : set->scenes);
-  }
-  io::readOption("scenes", [&] { requireKnown(asked, known); });
-  if (!asked.empty())
-    return asked;
-  if (options.is_quick)
-    usual.resize(std::min(usual.size(), num_quick_scenes));
-  return usual;
+  if (!options.scenes.empty())
+    return chosen;
+  for (const OfferedScene& scene : offer.scenes)
+    if (scene.set != lidar_set &&
+        !(options.is_quick && chosen.size() == num_quick_scenes))
+      chosen.push_back(scene);
+  return chosen;
 }
 
 /** The conditions asked for that \p scene is seen under; without any, all of them, or
  * the first.
  * \throws io::UsageError if there is none */
 Names
-conditionsOf(const CoverageOptions& options,
-             const Offer& offer,
-             const std::string& scene)
+conditionsOf(const CoverageOptions& options, const OfferedScene& scene)
 {
-  const auto set =
-      std::find_if(offer.sets.begin(), offer.sets.end(), [&scene](const SceneSet& s) {
-        return contains(s.scenes, scene);
-      });
   if (options.conditions.empty())
-    return options.is_quick ? Names{set->conditions.front()} : set->conditions;
-  Names known = set->conditions, chosen;
-  addMissing(known, set->rare_conditions);
+    return options.is_quick ? Names{scene.conditions.front()} : scene.conditions;
+  Names known = scene.conditions, chosen;
+  known.insert(known.end(), scene.rare_conditions.begin(), scene.rare_conditions.end());
   for (const std::string& name : options.conditions)
     if (contains(known, name))
       chosen.push_back(name);
   if (chosen.empty())
-    throw io::UsageError("--conditions: " + io::inQuotes(scene) + " has only " +
+    throw io::UsageError("--conditions: " + io::inQuotes(scene.name) + " has only " +
                          boost::algorithm::join(known, " "));
   return chosen;
 }
@@ -360,22 +344,23 @@ CoverageStudy
 studyOf(const CoverageOptions& options)
 {
   const Offer offer = offerOf(options);
-  const Names scenes = scenesOf(options, offer);
+  const std::vector<OfferedScene> scenes = scenesOf(options, offer);
   Names known_conditions;
-  for (const SceneSet& set : offer.sets) {
-    addMissing(known_conditions, set.conditions);
-    addMissing(known_conditions, set.rare_conditions);
-  }
+  for (const OfferedScene& scene : offer.scenes)
+    for (const Names& names : {scene.conditions, scene.rare_conditions})
+      for (const std::string& name : names)
+        if (!contains(known_conditions, name))
+          known_conditions.push_back(name);
   io::readOption("conditions",
                  [&] { requireKnown(options.conditions, known_conditions); });
   CoverageStudy study;
   study.make_case = offer.make_case;
   study.num_threads = options.num_threads;
   study.methods = methodsOf(options);
-  for (const std::string& scene : scenes)
-    for (const std::string& condition : conditionsOf(options, offer, scene))
-      for (const std::uint64_t seed : offer.seeds(scene)) {
-        CoverageCaseName name{scene, condition, seed};
+  for (const OfferedScene& scene : scenes)
+    for (const std::string& condition : conditionsOf(options, scene))
+      for (const std::uint64_t seed : scene.seeds) {
+        CoverageCaseName name{scene.name, condition, seed};
         if (!options.real_folder.empty())
           name.inputs = study.make_case(name).key();
         study.cases.push_back(name);
