@@ -238,8 +238,6 @@ runtimeRunOf(const PaperProblem& problem, const PaperRunName& name)
   return {name, io::wallSeconds() - begin, made.seconds, made.status};
 }
 
-} // namespace
-
 void
 distributionExperiment(const PaperStudy& study)
 {
@@ -271,18 +269,6 @@ distributionExperiment(const PaperStudy& study)
   }
   writeBaselines(study.options.output_folder, pairs);
   runs.finish();
-}
-
-void
-samplesExperiment(const PaperStudy& study)
-{
-  runCurves(study, samples_plan);
-}
-
-void
-burnInExperiment(const PaperStudy& study)
-{
-  runCurves(study, burn_in_plan);
 }
 
 void
@@ -339,6 +325,48 @@ accuracyExperiment(const PaperStudy& study)
     }
   }
   runs.finish(num_starts);
+}
+
+} // namespace
+
+std::vector<NamedExperiment>
+paperExperiments()
+{
+  return {
+      {"distribution",
+       "the paper's Table I: divergence of every method from Monte Carlo ICP",
+       R"(KL(baseline || method) of every method, next to the paper's. The baseline is the
+results of Monte Carlo ICP. Also marginal densities, pictures of the clouds, and
+scores against the true pose.)",
+       {},
+       distributionExperiment},
+      {"samples",
+       "the same divergence as a function of the number of draws",
+       "KL(baseline || draws) for 100 to 6000 draws. The default pairs are bowl "
+       "and can.",
+       {},
+       [](const PaperStudy& study) { runCurves(study, samples_plan); }},
+      {"burn-in",
+       "the same divergence as a function of the length of burn-in",
+       "KL(baseline || 2000 draws) after a burn-in of 0 to 4000 draws. The default "
+       "pairs\n"
+       "are bowl and can.",
+       {},
+       [](const PaperStudy& study) { runCurves(study, burn_in_plan); }},
+      {"runtime",
+       "seconds per 1000 draws, for 1, 2 and 4 threads",
+       R"(Wall time and processor time per 1000 draws of the presets paper, exact and
+calibrated for 1, 2 and 4 threads, next to the paper's. Each pair is timed --repeats
+times. Run nothing else in the meantime.)",
+       {"threads", "baseline-runs", "start-translation", "start-rotation"},
+       runtimeExperiment},
+      {"accuracy",
+       "errors of posterior means, SGD-ICP and ICP from random starts",
+       R"(Translation and rotation error of Bayesian ICP's mean (presets paper, exact and
+calibrated), SGD-ICP and ICP to completion, from 50 starts within ±1 m, ±0.3 rad (5
+with --quick).)",
+       {"repeats", "baseline-runs", "start-translation", "start-rotation"},
+       accuracyExperiment}};
 }
 
 } // namespace bayesian_icp::evaluate

@@ -15,19 +15,6 @@ namespace po = boost::program_options;
 
 namespace {
 
-using Experiment = std::function<void(const PaperStudy&)>;
-
-struct NamedExperiment {
-  /** Of the sub-command. */
-  std::string name;
-  /** What it does: one line, and more for --help. */
-  std::string summary;
-  std::string details;
-  /** Options that it has no use for. */
-  std::vector<std::string> unused;
-  Experiment run;
-};
-
 constexpr char help_of_all[] = R"(
 
 The output folder gets a CSV file with one row for each run, and the data of the
@@ -38,43 +25,6 @@ Delete results of another build of the methods by hand.
 Exit codes: 0 success, 2 usage, 3 a file cannot be read or written, a pair was
 skipped, or there is no report.
 )";
-
-/** In the order of the report. */
-const std::vector<NamedExperiment> experiments = {
-    {"distribution",
-     "the paper's Table I: divergence of every method from Monte Carlo ICP",
-     R"(KL(baseline || method) of every method, next to the paper's. The baseline is the
-results of Monte Carlo ICP. Also marginal densities, pictures of the clouds, and
-scores against the true pose.)",
-     {},
-     distributionExperiment},
-    {"samples",
-     "the same divergence as a function of the number of draws",
-     "KL(baseline || draws) for 100 to 6000 draws. The default pairs are bowl "
-     "and can.",
-     {},
-     samplesExperiment},
-    {"burn-in",
-     "the same divergence as a function of the length of burn-in",
-     "KL(baseline || 2000 draws) after a burn-in of 0 to 4000 draws. The default "
-     "pairs\n"
-     "are bowl and can.",
-     {},
-     burnInExperiment},
-    {"runtime",
-     "seconds per 1000 draws, for 1, 2 and 4 threads",
-     R"(Wall time and processor time per 1000 draws of the presets paper, exact and
-calibrated for 1, 2 and 4 threads, next to the paper's. Each pair is timed --repeats
-times. Run nothing else in the meantime.)",
-     {"threads", "baseline-runs", "start-translation", "start-rotation"},
-     runtimeExperiment},
-    {"accuracy",
-     "errors of posterior means, SGD-ICP and ICP from random starts",
-     R"(Translation and rotation error of Bayesian ICP's mean (presets paper, exact and
-calibrated), SGD-ICP and ICP to completion, from 50 starts within ±1 m, ±0.3 rad (5
-with --quick).)",
-     {"repeats", "baseline-runs", "start-translation", "start-rotation"},
-     accuracyExperiment}};
 
 /** What --quick has in place of the defaults. */
 constexpr int num_quick_points = 500;
@@ -149,7 +99,7 @@ readPaperOptions(int argc,
 int
 runExperiments(const std::string& summary,
                const std::vector<std::string>& unused,
-               const Experiment& run,
+               const std::function<void(const PaperStudy&)>& run,
                int argc,
                const char* const* argv)
 {
@@ -209,17 +159,17 @@ paperCommands()
 {
   std::string summary =
       "Runs all experiments of the paper into one folder, and makes a report:";
-  for (const NamedExperiment& experiment : experiments)
+  for (const NamedExperiment& experiment : paperExperiments())
     summary += "\n  " + experiment.name + ": " + experiment.summary;
   const auto runAll = [](const PaperStudy& study) {
-    for (const NamedExperiment& experiment : experiments) {
+    for (const NamedExperiment& experiment : paperExperiments()) {
       study.report("experiment " + experiment.name);
       experiment.run(study);
     }
   };
   const auto runner = [](const std::string& help,
                          const std::vector<std::string>& unused,
-                         const Experiment& run) {
+                         const std::function<void(const PaperStudy&)>& run) {
     return [=](int argc, const char* const* argv) {
       return runExperiments(help, unused, run, argc, argv);
     };
@@ -228,7 +178,7 @@ paperCommands()
       {"paper",
        "the paper's whole evaluation: all experiments below, and a report",
        runner(summary, {}, runAll)}};
-  for (const auto& [name, line, details, unused, run] : experiments)
+  for (const auto& [name, line, details, unused, run] : paperExperiments())
     commands.push_back({name, line, runner(details, unused, run)});
   return commands;
 }

@@ -86,27 +86,22 @@ recordExperiment(const PaperStudy& study,
                  const std::vector<PairKey>& pairs,
                  int num_starts = 0);
 
-/** All that follow run what is not yet in the experiment's files in the output folder,
- * and print medians of all of it; they throw io::FileError. */
+/** \brief An experiment of the paper. */
+struct NamedExperiment {
+  /** Of the sub-command. */
+  std::string name;
+  /** What it does: one line, and more for --help. */
+  std::string summary;
+  std::string details;
+  /** Options that it has no use for. */
+  std::vector<std::string> unused;
+  /** Runs what is not yet in the experiment's files in the output folder, and prints
+   * medians of all of it; throws io::FileError. */
+  std::function<void(const PaperStudy&)> run;
+};
 
-/** \brief Table I with everything around it. */
-void
-distributionExperiment(const PaperStudy& study);
-
-/** \brief KL against the number of draws. */
-void
-samplesExperiment(const PaperStudy& study);
-
-/** \brief KL against the length of burn-in. */
-void
-burnInExperiment(const PaperStudy& study);
-
-/** \brief Seconds per 1000 draws for 1, 2, 4 threads. */
-void
-runtimeExperiment(const PaperStudy& study);
-
-/** \brief Errors of posterior means, SGD-ICP and ICP from random starts. */
-void
-accuracyExperiment(const PaperStudy& study);
+/** \brief All of them, in the order of the report. */
+std::vector<NamedExperiment>
+paperExperiments();
 
 } // namespace bayesian_icp::evaluate
