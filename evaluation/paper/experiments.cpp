@@ -3,7 +3,6 @@
 #include "paper/paper_experiment.h"
 #include "paper/paper_methods.h"
 #include "paper/paper_runs.h"
-#include "paper/picture_data.h"
 #include "study/text_table.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 /** \file
  * \brief The paper's baseline distribution: results of Monte Carlo ICP, ICP from random
- * starts, kept on disk run by run.
+ * starts, kept on disk run by run; and CSV files of what pictures of distributions
+ * show.
  */
 #pragma once
 
@@ -82,5 +83,20 @@ struct ComparedPair {
   /** A hash of all that the baseline depends on, as 16 hexadecimal digits. */
   std::string key;
 };
+
+/** \brief Write baseline.csv: number of points and runs, share of the main basin and
+ * spread of each pair's baseline.
+ * \throws io::FileError */
+void
+writeBaselines(const std::string& folder, const std::vector<ComparedPair>& pairs);
+
+/** \brief Write draws_PAIR.csv, the draws of the baseline and of a run of each method
+ * that is shown (Bayesian ICP, calibrated, exact, Online-ICP; those without draws are
+ * left out) with angles unwrapped about the baseline's mean; and points_PAIR.csv, at
+ * most 500 points each of the target and of the source as it came, moved by the mean of
+ * each of the first two methods, and where it belongs.
+ * \throws io::FileError */
+void
+writePictureData(const ComparedPair& compared, const PaperStudyOptions& options);
 
 } // namespace bayesian_icp::evaluate

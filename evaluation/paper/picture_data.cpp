@@ -1,9 +1,8 @@
-#include "paper/picture_data.h"
-
 #include "geometry/twist.h"
 #include "io/coordinates.h"
 #include "io/output_folder.h"
 #include "io/picture_numbers.h"
+#include "paper/paper_baseline.h"
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
 #include "study/run_file.h"
