@@ -1,5 +1,6 @@
 #include "samplers/sampler_runs.h"
 
+#include "algebra/decompositions.h"
 #include "io/clocks.h"
 #include "study/draw_statistics.h"
 
