@@ -1,5 +1,7 @@
 #include "class/torture_cases.h"
 
+#include "support/test_support.h"
+
 #include <bayesian_icp/random.h>
 
 #include <cmath>
@@ -14,6 +16,85 @@ using Eigen::Vector3d;
 
 constexpr double pi = 3.14159265358979323846;
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/** Standard deviation of the points' height [m]. */
+constexpr double usual_noise = 0.003;
+
+constexpr Eigen::Index num_source_points = 1000;
+constexpr Eigen::Index num_target_points = 4000;
+
+/** The part of the surface that a scan sees [m]. */
+struct Region {
+  double left, right, front, back;
+};
+constexpr Region whole = {-0.5, 0.5, -0.3, 0.3};
+constexpr Region inner = {-0.4, 0.4, -0.24, 0.24};
+
+/** Waves that do not repeat themselves, and a bump: no motion and no mirror maps the
+ * surface to itself. */
+double
+height(double x, double y)
+{
+  const double bump = std::exp(-(std::pow(x - 0.2, 2) + std::pow(y - 0.1, 2)) / 0.005);
+  return 0.06 * std::sin(9.0 * x + 4.0 * x * x + 0.7) *
+             std::cos(8.0 * y + 3.0 * y * y + 0.3) +
+         0.08 * x * y + 0.08 * bump;
+}
+
+/** Points of the surface with noise of the height [m]. */
+Matrix3Xd
+scan(std::uint64_t seed, Eigen::Index num_points, const Region& region, double noise)
+{
+  Random random(seed, 0);
+  Matrix3Xd points(3, num_points);
+  for (Eigen::Index i = 0; i < num_points; ++i) {
+    const double x = region.left + (region.right - region.left) * random.uniform();
+    const double y = region.front + (region.back - region.front) * random.uniform();
+    points.col(i) << x, y, height(x, y) + noise * random.normal();
+  }
+  return points;
+}
+
+/** The surface scanned twice, a small motion apart. */
+TorturePair
+usualPair(double noise = usual_noise)
+{
+  TorturePair pair;
+  pair.truth << 0.01, -0.02, 0.015, 0.02, -0.03, 0.025;
+  pair.source = scan(1, num_source_points, inner, noise);
+  pair.target = moved(pair.truth, scan(2, num_target_points, whole, noise));
+  return pair;
+}
+
+/** As usualPair(), in a frame whose origin is \p distance off in x and y [m]. */
+TorturePair
+farPair(double distance)
+{
+  TorturePair pair = usualPair();
+  Eigen::Matrix4d shift = Eigen::Matrix4d::Identity();
+  shift.topRightCorner<3, 1>() << distance, -distance, 0.0;
+  for (Matrix3Xd* cloud : {&pair.source, &pair.target})
+    cloud->colwise() += shift.topRightCorner<3, 1>();
+  pair.truth = poseOf(shift * matrixOf(pair.truth) * shift.inverse());
+  return pair;
+}
+
+/** As usualPair(), with height (two dimensions left), or height and width (one),
+ * replaced by noise [m]. */
+TorturePair
+flattenedPair(int num_dimensions, double noise)
+{
+  TorturePair pair = usualPair();
+  pair.num_free_axes = num_dimensions;
+  Matrix3Xd target = scan(2, num_target_points, whole, 0.0);
+  Random random(3, 0);
+  for (Matrix3Xd* cloud : {&pair.source, &target})
+    for (Eigen::Index i = 0; i < cloud->cols(); ++i)
+      for (int k = num_dimensions; k < 3; ++k)
+        (*cloud)(k, i) = noise * random.normal();
+  pair.target = moved(pair.truth, target);
+  return pair;
+}
 
 using Make = std::function<TorturePair(Options&)>;
 
@@ -54,6 +135,13 @@ refused(Status status, const char* reason)
   return {Verdict::Refused, {{status, reason}}};
 }
 
+/** The same of all presets. */
+std::array<Expectation, 3>
+everywhere(const Expectation& expected)
+{
+  return {expected, expected, expected};
+}
+
 const Expectation no_such_option = {Verdict::NoSuchOption, {}};
 
 const Expectation not_mixed = warned(Status::NotMixed, "did not mix");
@@ -81,8 +169,23 @@ scaled(double scale)
     options.paper.scale.measurement_sigma *= scale;
     options.exact.scale.measurement_sigma *= scale;
     options.prior.variance.head<3>() *= scale * scale;
-    return scaledPair(scale);
+    TorturePair pair = usualPair();
+    pair.source *= scale;
+    pair.target *= scale;
+    pair.truth.head<3>() *= scale;
+    pair.noise *= scale;
+    return pair;
   };
+}
+
+/** Clouds that do not belong together. */
+Make
+unrelated(const std::function<void(TorturePair&)>& change)
+{
+  return spoilt([change](TorturePair& pair) {
+    change(pair);
+    pair.has_truth = false;
+  });
 }
 
 void
@@ -138,19 +241,13 @@ casesOfShape()
   return {
       {"SourceEqual",
        "all source points equal",
-       spoilt([](TorturePair& pair) {
-         makeEqual(pair.source);
-         pair.has_truth = false;
-       }),
+       unrelated([](TorturePair& pair) { makeEqual(pair.source); }),
        {refused(Status::TooFewCorrespondences, "finite covariance"),
         warned(Status::SeveralModes, "a plane or a line"),
         not_mixed_or_diverged}},
       {"TargetEqual",
        "all target points equal",
-       spoilt([](TorturePair& pair) {
-         makeEqual(pair.target);
-         pair.has_truth = false;
-       }),
+       unrelated([](TorturePair& pair) { makeEqual(pair.target); }),
        {refused(Status::TooFewCorrespondences, "no surface"),
         warned(Status::Doubtful, "m from the target"),
         not_mixed_or_diverged}},
@@ -186,10 +283,7 @@ casesOfShape()
         not_mixed_or_diverged}},
       {"Mirrored",
        "the source is mirrored",
-       spoilt([](TorturePair& pair) {
-         pair.source.row(0) *= -1.0;
-         pair.has_truth = false;
-       }),
+       unrelated([](TorturePair& pair) { pair.source.row(0) *= -1.0; }),
        // R-hat is near its bound.
        {Expectation{Verdict::Warned,
                     {{Status::Doubtful, "patches of surface"},
@@ -198,12 +292,11 @@ casesOfShape()
         not_mixed_or_diverged}},
       {"Random",
        "two clouds of random points",
-       spoilt([](TorturePair& pair) {
+       unrelated([](TorturePair& pair) {
          Random random(4, 0);
          for (Matrix3Xd* cloud : {&pair.source, &pair.target})
-           for (Eigen::Index i = 0; i < cloud->size(); ++i)
-             cloud->data()[i] = random.uniform() - 0.5;
-         pair.has_truth = false;
+           for (double& coordinate : cloud->reshaped())
+             coordinate = random.uniform() - 0.5;
        }),
        {warned(Status::Doubtful, "hold none"),
         warned(Status::Doubtful, "m from the target"),
@@ -214,22 +307,17 @@ casesOfShape()
 std::vector<TortureCase>
 casesOfOverlap()
 {
-  const Make apart = spoilt([](TorturePair& pair) {
-    pair.source.row(0).array() += 100.0;
-    pair.has_truth = false;
-  });
+  const Make apart =
+      unrelated([](TorturePair& pair) { pair.source.row(0).array() += 100.0; });
   return {
       {"OnePoint",
        "the clouds share one point, a corner",
-       [](Options&) {
-         TorturePair pair;
-         pair.truth = smallMotion();
+       spoilt([](TorturePair& pair) {
          pair.source = scan(1, num_source_points, {0.0, 0.5, 0.0, 0.3}, usual_noise);
          pair.target =
              moved(pair.truth,
                    scan(2, num_target_points, {-0.5, 0.0, -0.3, 0.0}, usual_noise));
-         return pair;
-       },
+       }),
        {warned(Status::Doubtful, "surfaces disagree"),
         warned(Status::Doubtful, "m from the target"),
         not_mixed}},
@@ -285,7 +373,11 @@ std::vector<TortureCase>
 casesOfPose()
 {
   const auto turned = [](const Vector6d& truth, const Vector6d& guess) {
-    return [truth, guess](Options&) { return turnedPair(truth, guess); };
+    return spoilt([truth, guess](TorturePair& pair) {
+      pair.guess = guess;
+      pair.truth = truth;
+      pair.target = moved(truth, scan(2, num_target_points, whole, usual_noise));
+    });
   };
   return {
       {"YawPlusPi",
@@ -340,9 +432,7 @@ casesOfOptions()
       {"PriorZero",
        "prior variances of 0",
        variance(0.0),
-       {refused(Status::InvalidOptions, "must be positive"),
-        refused(Status::InvalidOptions, "must be positive"),
-        refused(Status::InvalidOptions, "must be positive")}},
+       everywhere(refused(Status::InvalidOptions, "must be positive"))},
       {"PriorInfinite",
        "prior variances of infinity",
        variance(infinity),
@@ -375,15 +465,13 @@ casesOfOptions()
       {"NoDraws",
        "zero draws",
        with([](Options& options) { options.chains.num_draws = 0; }),
-       {refused(Status::InvalidOptions, "num_draws is 0"),
-        refused(Status::InvalidOptions, "num_draws is 0"),
-        refused(Status::InvalidOptions, "num_draws is 0")}},
+       everywhere(refused(Status::InvalidOptions, "num_draws is 0"))},
       {"OneDraw",
        "one draw of one chain",
        with([](Options& options) {
          options.chains.num_draws = options.chains.num_chains = 1;
        }),
-       {too_short, too_short, too_short}},
+       everywhere(too_short)},
       {"ThreePoints",
        "a source of three points",
        spoilt([](TorturePair& pair) { pair.source = pair.source.leftCols(3).eval(); }),
@@ -401,9 +489,7 @@ casesOfOptions()
       {"GuessInfinite",
        "a guess that is infinite",
        spoilt([](TorturePair& pair) { pair.guess[0] = infinity; }),
-       {refused(Status::InvalidInput, "not finite"),
-        refused(Status::InvalidInput, "not finite"),
-        refused(Status::InvalidInput, "not finite")}},
+       everywhere(refused(Status::InvalidInput, "not finite"))},
   };
 }
 

@@ -4,9 +4,8 @@
  */
 #pragma once
 
-#include "class/torture_clouds.h"
-
 #include <bayesian_icp/options.h>
+#include <bayesian_icp/pose.h>
 #include <bayesian_icp/summary.h>
 
 #include <array>
@@ -15,6 +14,21 @@
 #include <vector>
 
 namespace bayesian_icp::test {
+
+/** Two clouds [m] and the pose between them. */
+struct TorturePair {
+  Eigen::Matrix3Xd source;
+  Eigen::Matrix3Xd target;
+  Vector6d guess = Vector6d::Zero();
+  Vector6d truth = Vector6d::Zero();
+  /** Whether there is a pose that is right: not where the clouds do not belong
+   * together. */
+  bool has_truth = true;
+  /** Noise of a usual scan of this size [m]. */
+  double noise = 0.003;
+  /** Along so many of the source's first axes nothing holds it. */
+  int num_free_axes = 0;
+};
 
 /** What a registration has to end in. */
 enum class Verdict {
