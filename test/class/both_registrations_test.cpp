@@ -165,24 +165,6 @@ protected:
     align(icp);
     expectResult(icp);
   }
-
-  /** align() into the source itself has to say the same as into another cloud.
-   *
-   * \param[in] indices of the source, null for all points */
-  void
-  expectSameInPlace(const IndicesPtr& indices)
-  {
-    Registration apart, in_place;
-    if (indices)
-      for (Registration* icp : {&apart, &in_place})
-        icp->setIndices(indices);
-    align(apart);
-    in_place.setInputSource(scans.source);
-    in_place.setInputTarget(scans.target);
-    in_place.align(*scans.source);
-    expectSameResult(in_place, apart);
-    expectSamePoints(*scans.source, output);
-  }
 };
 
 using Registrations = ::testing::Types<CalibratedIcp, PaperIcp, SgdIcp>;
@@ -228,14 +210,21 @@ TYPED_TEST(BothRegistrations, AnOverrideMayChangeWhatIsComputed)
   EXPECT_NE(derived.getFinalTransformation(), plain.getFinalTransformation());
 }
 
-TYPED_TEST(BothRegistrations, AlignIntoTheSourceGivesTheSameResult)
+TYPED_TEST(BothRegistrations, AlignIntoTheSourceGivesTheSameResultAndKeepsOtherPoints)
 {
-  this->expectSameInPlace(IndicesPtr());
-}
-
-TYPED_TEST(BothRegistrations, AlignIntoTheSourceKeepsPointsThatAreNotSelected)
-{
-  this->expectSameInPlace(everyNth(100, 700, 2));
+  for (const IndicesPtr& indices : {IndicesPtr(), everyNth(100, 700, 2)}) {
+    Scans<PointXYZ> scans;
+    TypeParam apart, in_place;
+    if (indices)
+      for (TypeParam* icp : {&apart, &in_place})
+        icp->setIndices(indices);
+    this->align(apart);
+    in_place.setInputSource(scans.source);
+    in_place.setInputTarget(scans.target);
+    in_place.align(*scans.source);
+    expectSameResult(in_place, apart);
+    expectSamePoints(*scans.source, this->output);
+  }
 }
 
 TYPED_TEST(BothRegistrations, ATargetThatChangedInPlaceIsSearchedAsItIsNow)
@@ -396,28 +385,41 @@ TYPED_TEST(BothRegistrations, ARefusedCloudIsAnInvalidInputUntilAnotherIsSet)
   expectResult(icp);
 }
 
-TYPED_TEST(BothRegistrations, AFirstCloudThatIsRefusedIsAnInvalidInput)
+TYPED_TEST(BothRegistrations, AMissingOrRefusedFirstCloudIsAnInvalidInput)
 {
-  TypeParam icp;
-  icp.setInputSource(Cloud::Ptr(new Cloud));
-  icp.setInputTarget(Cloud::Ptr());
-  icp.align(this->output);
-  EXPECT_FALSE(icp.hasConverged());
-  expectInvalidInput(icp);
-}
-
-TYPED_TEST(BothRegistrations, AMissingCloudIsAnInvalidInput)
-{
-  for (const bool has_source : {false, true}) {
-    TypeParam icp;
-    if (has_source)
-      icp.setInputSource(this->scans.source);
-    else
-      icp.setInputTarget(this->scans.target);
+  TypeParam icps[4]; // the last one has no cloud at all
+  icps[0].setInputSource(this->scans.source);
+  icps[1].setInputTarget(this->scans.target);
+  icps[2].setInputSource(Cloud::Ptr(new Cloud));
+  icps[2].setInputTarget(Cloud::Ptr());
+  for (TypeParam& icp : icps) {
     icp.align(this->output);
     EXPECT_FALSE(icp.hasConverged());
     expectInvalidInput(icp);
   }
+}
+
+TYPED_TEST(BothRegistrations, TargetPointsThatAreNotSelectedAreNotSearched)
+{
+  TypeParam plain, with_indices, with_tree;
+  this->align(plain);
+  const IndicesPtr selected =
+      everyNth(0, static_cast<index_t>(this->scans.target->size()));
+  // Ready to be matched, were it not for the indices.
+  *this->scans.target += *this->scans.source;
+  const auto estimation = pcl::make_shared<Estimation>();
+  estimation->setIndicesTarget(selected);
+  with_indices.setCorrespondenceEstimation(estimation);
+  this->align(with_indices);
+  expectSameResult(with_indices, plain);
+  const auto ready_tree = pcl::make_shared<Tree>();
+  ready_tree->setInputCloud(this->scans.target, selected);
+  with_tree.setSearchMethodTarget(ready_tree, true);
+  this->align(with_tree);
+  expectSameResult(with_tree, plain);
+  TypeParam all_points;
+  this->align(all_points);
+  EXPECT_NE(all_points.getFinalTransformation(), plain.getFinalTransformation());
 }
 
 TYPED_TEST(BothRegistrations, ExceptionsOfTheSearchTreePassThrough)

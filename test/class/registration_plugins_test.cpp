@@ -71,21 +71,9 @@ TEST_F(PluginTest, AChainThatRunsAwayDoesNotReachThePlugins)
   EXPECT_NE(icp.getSummary().status, bayesian_icp::Status::Ok);
 }
 
-/** The default estimation, counting the points it is asked about. */
-struct CountingEstimation : Estimation {
-  void
-  determineCorrespondences(Correspondences& correspondences,
-                           double max_distance) override
-  {
-    num_points += input_->size();
-    Estimation::determineCorrespondences(correspondences, max_distance);
-  }
-  std::size_t num_points = 0;
-};
-
 TEST_F(PluginTest, OwnEstimationIsAskedByIcpAndByEveryStep)
 {
-  const pcl::shared_ptr<CountingEstimation> estimation(new CountingEstimation);
+  const auto estimation = pcl::make_shared<CountingEstimation>();
   icp.setCorrespondenceEstimation(estimation);
   align(icp);
   struct Exposed : Icp {

@@ -16,43 +16,37 @@ namespace {
 
 using Seeded = bayesian_icp_detail::SeededKdTree<PointXYZ>;
 
-struct Answer {
-  int number;
-  Indices indices;
-  std::vector<float> squared_distances;
-};
+/** Number, indices and squared distances of the points that a query finds. */
+using Answer = std::tuple<int, Indices, std::vector<float>>;
 
-bool
-operator==(const Answer& a, const Answer& b)
+/** \param[in] search fills in indices and squared distances, and returns their number
+ */
+template <typename Search>
+std::vector<Answer>
+answersTo(const Cloud& queries, const Search& search)
 {
-  return (a.number == b.number && a.indices == b.indices &&
-          a.squared_distances == b.squared_distances);
+  std::vector<Answer> answers;
+  for (const auto& query : queries) {
+    auto& [number, indices, squared_distances] = answers.emplace_back();
+    number = search(query, indices, squared_distances);
+  }
+  return (answers);
 }
 
 std::vector<Answer>
 nearestTo(const Tree& tree, const Cloud& queries, int k)
 {
-  std::vector<Answer> answers;
-  for (const auto& query : queries) {
-    Answer answer;
-    answer.number =
-        tree.nearestKSearch(query, k, answer.indices, answer.squared_distances);
-    answers.push_back(answer);
-  }
-  return (answers);
+  return (answersTo(queries, [&](const auto& query, auto& indices, auto& distances) {
+    return (tree.nearestKSearch(query, k, indices, distances));
+  }));
 }
 
 std::vector<Answer>
 withinRadius(const Tree& tree, const Cloud& queries)
 {
-  std::vector<Answer> answers;
-  for (const auto& query : queries) {
-    Answer answer;
-    answer.number =
-        tree.radiusSearch(query, 0.1, answer.indices, answer.squared_distances);
-    answers.push_back(answer);
-  }
-  return (answers);
+  return (answersTo(queries, [&](const auto& query, auto& indices, auto& distances) {
+    return (tree.radiusSearch(query, 0.1, indices, distances));
+  }));
 }
 
 /** Does the same with PCL's tree and with ours, and asks both. */
@@ -80,17 +74,14 @@ protected:
                    target = bumpySurface<PointXYZ>(2);
 };
 
-TEST_F(SeededKdTreeTest, AnswersAsPcls)
+TEST_F(SeededKdTreeTest, AnswersAsPclsAlsoWhereSeveralPointsAreAsNear)
 {
-  expectPclsAnswersAfter([this](Tree& tree) { tree.setInputCloud(target); });
-}
-
-TEST_F(SeededKdTreeTest, AnswersAsPclsWhereSeveralPointsAreAsNear)
-{
+  const auto give = [this](Tree& tree) { tree.setInputCloud(target); };
+  expectPclsAnswersAfter(give);
   for (auto* cloud : {source.get(), target.get()})
     for (auto& point : *cloud)
       point.getVector3fMap() = (16.0f * point.getVector3fMap().array()).round() / 16.0f;
-  expectPclsAnswersAfter([this](Tree& tree) { tree.setInputCloud(target); });
+  expectPclsAnswersAfter(give);
 }
 
 TEST_F(SeededKdTreeTest, AnswersAsPclsWithoutPoints)
@@ -183,29 +174,20 @@ TEST_F(SeededKdTreeTest, KeepsEpsilonAsPcls)
 
 TEST_F(SeededKdTreeTest, HasThePointsAsTheyWereWhenTheyWereGiven)
 {
-  const auto change = [](Cloud& cloud) {
-    for (auto& point : cloud)
-      point.x += 0.1f;
-  };
-  const auto expectSame = [&](int num_times_given) {
-    Answer answers[2][3];
-    for (Tree* tree : {static_cast<Tree*>(new Tree), static_cast<Tree*>(new Seeded)}) {
-      const Tree::Ptr owner(tree);
+  for (const int num_times_given : {1, 2}) {
+    const auto answersOf = [&](Tree&& tree) {
       const Cloud::Ptr cloud(new Cloud(*target));
       for (int i = 0; i < num_times_given; ++i) {
-        tree->setInputCloud(cloud);
-        change(*cloud);
+        tree.setInputCloud(cloud);
+        for (auto& point : *cloud)
+          point.x += 0.1f;
       }
-      auto* answer = answers[dynamic_cast<Seeded*>(tree) ? 1 : 0];
-      answer[0] = nearestTo(*tree, *source, 1)[0];
-      answer[1] = nearestTo(*tree, *source, 7)[0];
-      answer[2] = withinRadius(*tree, *source)[0];
-    }
-    for (int i = 0; i < 3; ++i)
-      EXPECT_EQ(answers[1][i], answers[0][i]) << i;
-  };
-  expectSame(1);
-  expectSame(2);
+      return (std::vector<Answer>{nearestTo(tree, *source, 1)[0],
+                                  nearestTo(tree, *source, 7)[0],
+                                  withinRadius(tree, *source)[0]});
+    };
+    EXPECT_EQ(answersOf(Seeded()), answersOf(Tree()));
+  }
 }
 
 TEST_F(SeededKdTreeTest, IsNotBuiltAgainForTheSamePoints)

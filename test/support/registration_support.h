@@ -146,6 +146,21 @@ struct TenfoldHeights : PointRepresentation<PointXYZ> {
   }
 };
 
+/** The default estimation, counting how often it is asked, and about how many points.
+ */
+struct CountingEstimation : Estimation {
+  void
+  determineCorrespondences(Correspondences& pairs, double max_distance) override
+  {
+    ++num_calls;
+    num_points += input_->size();
+    Estimation::determineCorrespondences(pairs, max_distance);
+  }
+
+  int num_calls = 0;
+  std::size_t num_points = 0;
+};
+
 /** Every \p step-th point from \p first to the one before \p end. */
 inline IndicesPtr
 everyNth(index_t first, index_t end, index_t step = 1)
