@@ -75,15 +75,12 @@ ofDraws(const ChainSet& set, const Function& f)
   return values;
 }
 
-/** One component of the whitened twist from the expected mean. */
-MatrixXd
-whitenedComponent(const ChainSet& set, const CalibratedEstimate& e, int k)
+/** The twist of a pose from the expected mean, in standard deviations. */
+Vector6d
+whitened(const CalibratedEstimate& e, const Eigen::Isometry3d& pose)
 {
-  const auto L = e.covariance.llt();
-  return ofDraws(set, [&](const Vector6d& pose) {
-    const Vector6d xi = twistBetween(e.mode, isometryOf(pose), e.centre);
-    return Vector6d(L.matrixL().solve(Vector6d(xi - e.mean)))[k];
-  });
+  const Vector6d error = twistBetween(e.mode, pose, e.centre) - e.mean;
+  return e.covariance.llt().matrixL().solve(error);
 }
 
 ChainSet
@@ -134,7 +131,9 @@ expectTheCalibratedGaussian(const ChainSet& set, const CalibratedEstimate& estim
   double least_ess = 1e9;
   Random random(5, 0);
   for (int k = 0; k < 6; ++k) {
-    const MatrixXd values = whitenedComponent(set, estimate, k);
+    const MatrixXd values = ofDraws(set, [&](const Vector6d& pose) {
+      return whitened(estimate, isometryOf(pose))[k];
+    });
     EXPECT_LT(rhat(values), max_rhat) << k;
     EXPECT_NEAR(values.mean(), 0.0, 4.5 * mcseMean(values)) << k;
     least_ess = std::min(least_ess, bulkEss(values));
@@ -166,10 +165,9 @@ TEST(CalibratedDraws, OfLinearScoresAreTheCalibratedGaussian)
 MatrixXd
 squaredDistances(const ChainSet& set, const CalibratedEstimate& e)
 {
-  MatrixXd sum = whitenedComponent(set, e, 0).cwiseAbs2();
-  for (int k = 1; k < 6; ++k)
-    sum += whitenedComponent(set, e, k).cwiseAbs2();
-  return sum;
+  return ofDraws(set, [&](const Vector6d& pose) {
+    return whitened(e, isometryOf(pose)).squaredNorm();
+  });
 }
 
 TEST(CalibratedDraws, AreStudentsWithTheDegreesOfFreedomOfTheEstimate)
@@ -280,21 +278,6 @@ TEST(CalibratedDraws, AgreeWithTheProductFormHoweverWideThePriorOfAFreeYawIs)
       EXPECT_LT(largestDifference(a, b), criticalDifference(a, b, 6)) << k;
     }
   }
-}
-
-/** The yaw's prior in closed form: a von Mises density. */
-TEST(CalibratedDraws, AFreeYawHasItsPrior)
-{
-  StandIn::Options options;
-  options.is_yaw_free = true;
-  options.prior_yaw = 1.0;
-  const StandIn problem(options);
-  // A free yaw moves nothing else: the moved centroid stays, and the tilt is small.
-  const MatrixXd cosines = ofDraws(sample(problem), [&](const Vector6d& pose) {
-    return std::cos(pose[5] - problem.prior.mean()[5]);
-  });
-  const double expected = std::cyl_bessel_i(1.0, 1.0) / std::cyl_bessel_i(0.0, 1.0);
-  EXPECT_NEAR(cosines.mean(), expected, 4.5 * mcseMean(cosines));
 }
 
 TEST(ProductCoordinates, GradientOfThePriorIsThatOfItsEnergy)
@@ -411,10 +394,8 @@ TEST(CalibratedDraws, AreGuardedAgainstScoresThatRunAway)
 {
   const StandIn problem(StandIn::Options{});
   const CalibratedEstimate& e = problem.estimate;
-  const auto L = e.covariance.llt();
   const auto radius = [&](const Eigen::Isometry3d& pose) {
-    const Vector6d xi = twistBetween(e.mode, pose, e.centre);
-    return Vector6d(L.matrixL().solve(Vector6d(xi - e.mean))).norm();
+    return whitened(e, pose).norm();
   };
   enum Fault { Outward, NotANumber, NoPatch };
   const BatchScore linear = problem.score();

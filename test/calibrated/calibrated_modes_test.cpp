@@ -204,6 +204,27 @@ squaredErrorOf(const CalibratedEstimate& e, const Eigen::Isometry3d& truth)
                             e.covariance);
 }
 
+/** An estimate that was started off the truth, and stays there.
+ * \param[in] slip by which the start is off [m] */
+CalibratedEstimate
+estimateAfterSlip(const test::Problem& problem,
+                  const Clouds& clouds,
+                  const Eigen::Vector3d& slip)
+{
+  const Eigen::Isometry3d slipped = Eigen::Translation3d(slip) * clouds.truth;
+  const CalibratedEstimate estimate = problem.estimate({}, &slipped);
+  EXPECT_GT(squaredErrorOf(estimate, clouds.truth), 1000.0);
+  return estimate;
+}
+
+/** Expects that the truth is within the heaviest mode. */
+void
+expectFound(const std::vector<CalibratedMode>& modes, const Clouds& clouds)
+{
+  ASSERT_FALSE(modes.empty());
+  EXPECT_LT(squaredErrorOf(modes.front().estimate, clouds.truth), test::chi_square_999);
+}
+
 /** A fit whose points have these residuals; the last \p num_unseen have no patch. */
 RobustFit
 fitWith(double residual, Eigen::Index num_unseen)
@@ -343,8 +364,7 @@ TEST(CalibratedModes, AHandleOutweighsAFreeYaw)
         findModes(problem.scorer, problem.prior, first, options);
     num_modes = std::max(num_modes, modes.size());
     EXPECT_GT(modes.front().estimate.keep.minCoeff(), 0.0);
-    EXPECT_LT(squaredErrorOf(modes.front().estimate, clouds.truth),
-              test::chi_square_999);
+    expectFound(modes, clouds);
   }
   EXPECT_GT(num_modes, 1u);
 }
@@ -357,10 +377,7 @@ TEST(CalibratedModes, AFirstEstimateThatWentAstrayHidesNone)
   CalibratedEstimate astray = problem.estimate();
   astray.mode.translation().x() += 0.3;
   astray.keep.setZero();
-  const std::vector<CalibratedMode> modes =
-      findModes(problem.scorer, problem.prior, astray);
-  ASSERT_FALSE(modes.empty());
-  EXPECT_LT(squaredErrorOf(modes.front().estimate, clouds.truth), test::chi_square_999);
+  expectFound(findModes(problem.scorer, problem.prior, astray), clouds);
 }
 
 TEST(CalibratedModes, AFirstEstimateThatFitsBadlyHidesNoBetterOne)
@@ -389,14 +406,9 @@ TEST(CalibratedModes, AHopFindsABoxWhoseBoardsLieOnTheirOtherFaces)
   const test::Problem problem = problemOf(clouds, 0.06);
   for (const Eigen::Vector3d& slip :
        {Eigen::Vector3d(-0.01, 0.0, 0.0), Eigen::Vector3d(-0.01, -0.01, 0.0)}) {
-    const Eigen::Isometry3d slipped = Eigen::Translation3d(slip) * clouds.truth;
-    const CalibratedEstimate first = problem.estimate({}, &slipped);
-    ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
+    const CalibratedEstimate first = estimateAfterSlip(problem, clouds, slip);
     ASSERT_FALSE(mayHaveSeveralModes(problem.scorer, problem.prior, first));
-    const std::vector<CalibratedMode> modes =
-        findModes(problem.scorer, problem.prior, first);
-    EXPECT_LT(squaredErrorOf(modes.front().estimate, clouds.truth),
-              test::chi_square_999);
+    expectFound(findModes(problem.scorer, problem.prior, first), clouds);
   }
 }
 
@@ -410,13 +422,11 @@ TEST(CalibratedModes, AScanLeadsWhereItsModelIsTheSource)
   test::Problem problem = problemOf(clouds, 0.06);
   const SurfaceModel of_source(clouds.source);
   problem.scorer.addTargetPoints(clouds.target.leftCols(2000), of_source);
-  const Eigen::Isometry3d slipped =
-      Eigen::Translation3d(0.01, 0.01, 0.0) * clouds.truth;
-  const CalibratedEstimate first = problem.estimate({}, &slipped);
-  ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
   const std::vector<CalibratedMode> modes =
-      findModes(problem.scorer, problem.prior, first);
-  EXPECT_LT(squaredErrorOf(modes.front().estimate, clouds.truth), test::chi_square_999);
+      findModes(problem.scorer,
+                problem.prior,
+                estimateAfterSlip(problem, clouds, {0.01, 0.01, 0.0}));
+  expectFound(modes, clouds);
   EXPECT_EQ(significantModes(modes).size(), 1u);
 }
 
@@ -424,15 +434,11 @@ TEST(CalibratedModes, AHopFindsStairsThatSlippedByAStep)
 {
   const Clouds clouds = cloudsOf(onStairs, 0.3);
   const test::Problem problem(clouds.source, clouds.target, Vector6d::Constant(0.6));
-  const Eigen::Isometry3d slipped =
-      Eigen::Translation3d(step_run, 0.0, step_rise) * clouds.truth;
-  const CalibratedEstimate first = problem.estimate({}, &slipped);
-  ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
+  const CalibratedEstimate first =
+      estimateAfterSlip(problem, clouds, {step_run, 0.0, step_rise});
   ModeSearchOptions only_hops;
   only_hops.num_starts = 0;
-  const std::vector<CalibratedMode> modes =
-      findModes(problem.scorer, problem.prior, first, only_hops);
-  EXPECT_LT(squaredErrorOf(modes.front().estimate, clouds.truth), test::chi_square_999);
+  expectFound(findModes(problem.scorer, problem.prior, first, only_hops), clouds);
 }
 
 TEST(CalibratedModes, WithinTheRegionOfAWiderOneAreNotModesOfTheirOwn)
@@ -486,10 +492,8 @@ TEST(CalibratedModes, ASlideFindsTheOtherPlacesAmongPillars)
   deviations << Eigen::Vector3d::Constant(0.35), Eigen::Vector3d::Constant(0.1);
   const test::Problem problem(clouds.source, clouds.target, deviations);
   for (const int num_pillars : {-1, 1}) {
-    const Eigen::Isometry3d slipped =
-        Eigen::Translation3d(num_pillars * pillar_distance, 0.0, 0.0) * clouds.truth;
-    const CalibratedEstimate first = problem.estimate({}, &slipped);
-    ASSERT_GT(squaredErrorOf(first, clouds.truth), 1000.0);
+    const CalibratedEstimate first =
+        estimateAfterSlip(problem, clouds, {num_pillars * pillar_distance, 0.0, 0.0});
     ASSERT_FALSE(mayHaveSeveralModes(problem.scorer, problem.prior, first));
     const std::vector<CalibratedMode> modes =
         findModes(problem.scorer, problem.prior, first);
@@ -676,7 +680,8 @@ TEST(CalibratedModes, OfACubeAreInTheSummary)
 
 TEST(CalibratedModes, TheYawOfACanIsThatOfThePrior)
 {
-  const Summary summary = estimateFrom(cloudsOf(onCan, 0.7), 1.0).summary;
+  const PosteriorEstimate estimate = estimateFrom(cloudsOf(onCan, 0.7), 1.0);
+  const Summary& summary = estimate.summary;
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
   EXPECT_TRUE(summary.modes.empty());
   int num_prior_only = 0;
@@ -686,15 +691,10 @@ TEST(CalibratedModes, TheYawOfACanIsThatOfThePrior)
       EXPECT_GT(std::abs(direction.twist.tail<3>().normalized().z()), 0.99);
     }
   EXPECT_EQ(num_prior_only, 1);
-}
-
-TEST(CalibratedModes, DrawsOfACanAreAroundItsAxisAsThePriorSays)
-{
-  const PosteriorEstimate estimate = estimateFrom(cloudsOf(onCan, 0.7), 1.0);
   // Of a von Mises variate with kappa = 1: E cos = I1(1) / I0(1), and E cos 2 =
   // I2(1) / I0(1) gives its variance.
   constexpr double mean = 0.446390, sd = 0.595;
-  const double ess = estimate.summary.coordinates[5].bulk_ess;
+  const double ess = summary.coordinates[5].bulk_ess;
   EXPECT_NEAR(
       estimate.samples.col(5).array().cos().mean(), mean, 4.0 * sd / std::sqrt(ess));
 }

@@ -192,62 +192,6 @@ TEST(Calibrated, FarCoordinatesLoseNothing)
   EXPECT_NEAR(there.data.noise_scale, here.data.noise_scale, 1e-3 * noise);
 }
 
-/** Where draws put points and where their mean does: root mean squares over the points
- * [m]. */
-struct Places {
-  /** Standard deviation over the draws. */
-  double spread;
-  /** From the mean place of a point to its place at the mean pose. */
-  double offset;
-};
-
-Places
-placesOf(const Eigen::Matrix3Xd& points, const PosteriorEstimate& estimate)
-{
-  const Eigen::Matrix3Xd at_mean = test::moved(estimate.summary.mean, points);
-  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, points.cols());
-  double sum_of_squares = 0.0;
-  for (const auto& draw : estimate.samples.rowwise()) {
-    const Eigen::Matrix3Xd offsets = test::moved(draw.transpose(), points) - at_mean;
-    sum += offsets;
-    sum_of_squares += offsets.squaredNorm();
-  }
-  const auto num_draws = static_cast<double>(estimate.samples.rows());
-  const auto num_points = static_cast<double>(points.cols());
-  const double squared_offset = (sum / num_draws).squaredNorm() / num_points;
-  return {std::sqrt(sum_of_squares / (num_draws * num_points) - squared_offset),
-          std::sqrt(squared_offset)};
-}
-
-TEST(Calibrated, TheMeanIsAsGoodFarFromTheOriginAsNearIt)
-{
-  Scans scans;
-  const PosteriorEstimate here = estimateFrom(scans);
-  const Vector6d truth_here = scans.truth;
-  Eigen::Matrix4d shift = Eigen::Matrix4d::Identity();
-  shift.topRightCorner<3, 1>() << 7000.0, -7100.0, 300.0;
-  for (Eigen::Matrix3Xd* cloud : {&scans.source, &scans.target})
-    cloud->colwise() += shift.topRightCorner<3, 1>();
-  scans.truth = poseOf(shift * matrixOf(truth_here) * shift.inverse());
-  const PosteriorEstimate there = estimateFrom(scans);
-  ASSERT_EQ(there.summary.status, Status::Ok) << there.summary.message;
-  const Places places = placesOf(scans.source, there);
-  EXPECT_LT(places.offset, 0.01 * places.spread);
-  for (const auto convention :
-       {CovarianceConvention::LeftSE3, CovarianceConvention::RightSE3}) {
-    const double near_error =
-        test::squaredErrorOf(here.summary, truth_here, convention);
-    // Four standard errors of a quadratic form of a mean and a covariance of at least
-    // 400 independent draws, twice.
-    EXPECT_NEAR(
-        test::squaredErrorOf(there.summary, scans.truth, convention),
-        near_error,
-        4.0 *
-            std::sqrt(2.0 * (2.0 * near_error * near_error + 4.0 * near_error) / 400.0))
-        << toString(convention);
-  }
-}
-
 /** Random points of a floor of rooms, 5 x 5 m each, behind walls of 0.15 m, or of the
  * part of it that can be seen from within one room.
  * \param[in] num_rooms on each side */

@@ -8,8 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 /** n points of which each measures one random direction of the pose. */
 struct StandIn {
@@ -137,5 +136,4 @@ private:
   }
 };
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

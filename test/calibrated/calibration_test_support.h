@@ -9,8 +9,7 @@
 
 #include <cmath>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 /** A source on a target [m], and a prior about the identity. It stays where it is: the
  * scorer refers to the model. */
@@ -193,5 +192,4 @@ distanceJacobians(const Sheet& sheet)
   return jacobians;
 }
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

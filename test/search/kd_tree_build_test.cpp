@@ -9,8 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 using kd_tree::Storage;
@@ -95,5 +94,4 @@ TEST(KdTreeBuild, EqualPointsTakeOneLeafOfTheSearch)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

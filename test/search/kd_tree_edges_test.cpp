@@ -8,8 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -111,5 +110,4 @@ TEST_P(KdTreeEdges, TiesOfRepeatedPointsAreSeenAcrossLeaves)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

@@ -13,8 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 INSTANTIATE_TEST_SUITE_P(InstructionSets,
@@ -183,5 +182,4 @@ TEST(KdTree, NeedsNoMoreMemoryThanStated)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

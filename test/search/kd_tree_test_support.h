@@ -11,8 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -142,5 +141,4 @@ isNone(const KdTree::Neighbor& neighbor)
   return isSame(neighbor, {KdTree::none, infinity, false});
 }
 
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

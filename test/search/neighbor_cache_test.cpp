@@ -8,8 +8,7 @@
 
 #include <limits>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 class NeighborCachePath : public KdTreePath {};
@@ -121,5 +120,4 @@ TEST_P(NeighborCachePath, PlacesThatAreNotFiniteHaveNoNeighborAndDoNoHarm)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test

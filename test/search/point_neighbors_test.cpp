@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace bayesian_icp {
-namespace test {
+namespace bayesian_icp::test {
 namespace {
 
 using Ranking = std::vector<std::pair<float, std::uint32_t>>;
@@ -94,5 +93,4 @@ TEST(PointNeighbors, AreNotPointsTooFarAwayForAFloat)
 }
 
 } // namespace
-} // namespace test
-} // namespace bayesian_icp
+} // namespace bayesian_icp::test
