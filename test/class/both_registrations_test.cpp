@@ -412,11 +412,12 @@ TYPED_TEST(BothRegistrations, TargetPointsThatAreNotSelectedAreNotSearched)
   with_indices.setCorrespondenceEstimation(estimation);
   this->align(with_indices);
   expectSameResult(with_indices, plain);
-  const auto ready_tree = pcl::make_shared<Tree>();
+  const auto ready_tree = pcl::make_shared<OwnSearch>();
   ready_tree->setInputCloud(this->scans.target, selected);
   with_tree.setSearchMethodTarget(ready_tree, true);
   this->align(with_tree);
   expectSameResult(with_tree, plain);
+  EXPECT_EQ(ready_tree->num_builds, 1);
   TypeParam all_points;
   this->align(all_points);
   EXPECT_NE(all_points.getFinalTransformation(), plain.getFinalTransformation());

@@ -6,7 +6,6 @@
 #include <pcl/registration/correspondence_rejection_one_to_one.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -257,47 +256,6 @@ TEST_P(DropInClouds, WithTreesOfTheUserAlsoOfHalfOfTheTarget)
   });
 }
 
-/** A tree that searches by itself, as KdTreeNanoflann of PCL 1.15.1 does: it derives
- * from PCL's tree and has null where that one has its FLANN. */
-struct OwnSearch : Tree {
-  using Tree::nearestKSearch;
-  using Tree::radiusSearch;
-
-  OwnSearch() { tree_.reset(); }
-
-  Built
-  setInputCloud(const Cloud::ConstPtr& cloud,
-                const IndicesConstPtr& indices = IndicesConstPtr()) override
-  {
-    input_ = cloud;
-    indices_ = indices;
-    return (searched.setInputCloud(cloud, indices));
-  }
-
-  int
-  nearestKSearch(const PointXYZ& point,
-                 int k,
-                 Indices& indices,
-                 std::vector<float>& squared_distances) const override
-  {
-    ++num_queries;
-    return (searched.nearestKSearch(point, k, indices, squared_distances));
-  }
-
-  int
-  radiusSearch(const PointXYZ& point,
-               double radius,
-               Indices& indices,
-               std::vector<float>& squared_distances,
-               unsigned int max_nn = 0) const override
-  {
-    return (searched.radiusSearch(point, radius, indices, squared_distances, max_nn));
-  }
-
-  Tree searched;
-  mutable std::atomic<int> num_queries{0};
-};
-
 /** Has null inside, and nothing in its place. PCL's functions dereference it. */
 struct Hollow : Tree {
   Hollow() { tree_.reset(); }
@@ -383,41 +341,11 @@ TEST_P(DropInClouds, OneIterationAtATime)
   });
 }
 
-TEST_P(DropInClouds, WithPointsThatAreNotFinite)
+TEST_P(DropInClouds, WithTargetPointsThatAreNotFinite)
 {
-  // PCL's class aborts on them in the source, and leaves them out of the target.
-  const auto with_holes = [](Cloud cloud) {
-    for (std::size_t i = 3; i < cloud.size(); i += 10)
-      cloud[i].y = std::nanf("");
-    return (cloud);
-  };
-  *target = with_holes(*target);
-  const Cloud whole = with_holes(*source);
-  Indices finite;
-  for (std::size_t i = 0; i < whole.size(); ++i)
-    if (isXYZFinite(whole[i]))
-      finite.push_back(static_cast<index_t>(i));
-  ASSERT_LT(finite.size(), whole.size());
-  Cloud::Ptr finite_source(new Cloud);
-  copyPointCloud(whole, finite, *finite_source);
-
-  const QuietConsole quiet;
-  Recorder<Icp> icp;
-  Recorder<BayesianIcp> bayesian;
-  usePaper(bayesian);
-  icp.setInputSource(finite_source);
-  bayesian.setInputSource(whole.makeShared());
-  for (Icp* registration : {static_cast<Icp*>(&icp), static_cast<Icp*>(&bayesian)})
-    registration->setInputTarget(target);
-  icp.alignAndRecord(no_guess);
-  bayesian.alignAndRecord(no_guess);
-  Snapshot &actual = bayesian.snapshots[0], &expected = icp.snapshots[0];
-  for (auto& pair : expected.correspondences)
-    pair.index_query = finite[static_cast<std::size_t>(pair.index_query)];
-  Cloud finite_output;
-  copyPointCloud(actual.output, finite, finite_output);
-  actual.output = finite_output;
-  expectSame(actual, expected);
+  for (std::size_t i = 3; i < target->size(); i += 10)
+    (*target)[i].y = nan_value;
+  expectSameWith([](Icp&) {});
 }
 
 TEST_P(DropInClouds, ThePairsOfTheDefaultEstimationCanBeAskedForAfterwards)
@@ -468,7 +396,7 @@ TEST_P(DropInTrees, ATreeThatSearchesByItselfIsUsedByEveryPreset)
     const auto tree = pcl::make_shared<OwnSearch>();
     expectSame(alignedWith([&](auto& icp) { icp.setSearchMethodTarget(tree); }, preset),
                expected);
-    EXPECT_GT(tree->num_queries, 0);
+    EXPECT_GT(tree->num_queries, 0u);
     EXPECT_GT(num_draws, 0u);
   }
 }
@@ -515,7 +443,7 @@ TEST_P(DropInTrees, ARepresentationThatTheTreeCannotBeToldOfIsRefused)
                icp.setSearchMethodTarget(own_search);
              }),
              stretched);
-  EXPECT_EQ(own_search->num_queries, 0);
+  EXPECT_EQ(own_search->num_queries, 0u);
   // Once it is not wanted any more, the tree is welcome.
   expectSame(alignedWith([&](auto& icp) {
                icp.setPointRepresentation(pcl::make_shared<TenfoldHeights>());

@@ -207,32 +207,9 @@ TEST(Plugins, RejectorsThatNeedNormalsGetThoseOfTheMovedMiniBatch)
   EXPECT_GT(icp.getSamples().rows(), 0);
 }
 
-/** A search tree that counts queries. */
-struct CountingTree : Tree {
-  using Tree::nearestKSearch;
-  int
-  nearestKSearch(const PointXYZ& point,
-                 int k,
-                 Indices& indices,
-                 std::vector<float>& squared_distances) const override
-  {
-    ++num_queries;
-    return (Tree::nearestKSearch(point, k, indices, squared_distances));
-  }
-  Built
-  setInputCloud(const PointCloudConstPtr& cloud,
-                const IndicesConstPtr& indices = IndicesConstPtr()) override
-  {
-    ++num_builds;
-    return (Tree::setInputCloud(cloud, indices));
-  }
-  mutable std::size_t num_queries = 0;
-  std::size_t num_builds = 0;
-};
-
 TEST_F(PluginTest, OwnSearchTreeIsAskedByEveryStep)
 {
-  const pcl::shared_ptr<CountingTree> tree(new CountingTree);
+  const auto tree = pcl::make_shared<OwnSearch>();
   icp.setMaximumIterations(1);
   icp.setSearchMethodTarget(tree);
   align(icp);
@@ -315,32 +292,13 @@ TEST_F(PluginTest, ThePluginsHaveTheTargetAlsoWhereIcpDoesNotRun)
   }
 }
 
-TEST_F(PluginTest, ASharedReadyTreeIsNeverRebuilt)
-{
-  const pcl::shared_ptr<CountingTree> tree(new CountingTree);
-  tree->setInputCloud(scans.target);
-  icp.setSearchMethodTarget(tree, true);
-  align(icp);
-  EXPECT_EQ(tree->num_builds, 1u);
-  EXPECT_TRUE(icp.hasConverged());
-}
-
 TEST_F(PluginTest, PointRepresentationOfTheTreeIsHonoured)
 {
-  // Heights only: correspondences, and with them the draws, must differ from the
-  // default's.
-  struct HeightOnly : PointRepresentation<PointXYZ> {
-    HeightOnly() { nr_dimensions_ = 1; }
-    void
-    copyToFloatArray(const PointXYZ& point, float* out) const override
-    {
-      out[0] = point.z;
-    }
-  };
+  // Correspondences, and with them the draws, must differ from the default's.
   icp.setMaximumIterations(1);
   align(icp);
   const auto by_all_coordinates = icp.getSamples();
-  icp.setPointRepresentation(pcl::shared_ptr<const HeightOnly>(new HeightOnly));
+  icp.setPointRepresentation(pcl::make_shared<TenfoldHeights>());
   align(icp);
   ASSERT_EQ(icp.getSamples().rows(), 40);
   EXPECT_GT((icp.getSamples() - by_all_coordinates).norm(), 1e-3);

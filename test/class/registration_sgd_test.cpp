@@ -214,19 +214,6 @@ TEST_F(SgdRegistration, OwnEstimationIsAskedByEveryStep)
             1e-5f);
 }
 
-TEST_F(SgdRegistration, ASharedReadyTreeIsSearchedAsItIs)
-{
-  SgdIcp plain, with_tree;
-  align(plain);
-  const Tree::Ptr tree(new Tree);
-  tree->setInputCloud(scans.target);
-  const auto input = tree->getInputCloud();
-  with_tree.setSearchMethodTarget(tree, true);
-  align(with_tree);
-  EXPECT_EQ(with_tree.getFinalTransformation(), plain.getFinalTransformation());
-  EXPECT_EQ(tree->getInputCloud(), input);
-}
-
 TEST_F(SgdRegistration, StaysWithinWhatAPlanarEstimationAllows)
 {
   SgdIcp icp;

@@ -358,14 +358,10 @@ largestConcurrency(bool is_thread_safe,
   return largest;
 }
 
-TEST(Threads, AreUsedAndLimited)
+TEST(Threads, AreUsedAndLimitedToOneForAnUnsafeGradient)
 {
   EXPECT_EQ(largestConcurrency(true, 1, 100ms), 1);
   EXPECT_EQ(largestConcurrency(true, 2, 60s), 2);
-}
-
-TEST(Threads, AnUnsafeGradientIsNeverCalledTwiceAtOnce)
-{
   EXPECT_EQ(largestConcurrency(false, 4, 100ms), 1);
 }
 

@@ -13,14 +13,7 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-class KdTreeEdges : public KdTreePath {};
-
-INSTANTIATE_TEST_SUITE_P(InstructionSets,
-                         KdTreeEdges,
-                         testing::ValuesIn(supportedInstructionSets()),
-                         nameOf);
-
-TEST_P(KdTreeEdges, GateIsInclusive)
+TEST_P(KdTreePath, GateIsInclusive)
 {
   Random random(3, 0);
   const Eigen::Matrix3Xf points = uniformPoints(random, 500);
@@ -38,7 +31,7 @@ TEST_P(KdTreeEdges, GateIsInclusive)
   }
 }
 
-TEST_P(KdTreeEdges, EmptyCloudHasNoNeighbor)
+TEST_P(KdTreePath, EmptyCloudHasNoNeighbor)
 {
   const KdTree tree = treeOf(Eigen::Matrix3Xf(3, 0));
   EXPECT_EQ(tree.size(), 0u);
@@ -46,7 +39,7 @@ TEST_P(KdTreeEdges, EmptyCloudHasNoNeighbor)
   EXPECT_TRUE(isNone(tree.nearest(Eigen::Vector3f::Zero(), infinity, 0)));
 }
 
-TEST_P(KdTreeEdges, NonFiniteColumnsAreNeverFound)
+TEST_P(KdTreePath, NonFiniteColumnsAreNeverFound)
 {
   Random random(4, 0);
   Eigen::Matrix3Xf points = uniformPoints(random, 300);
@@ -63,19 +56,18 @@ TEST_P(KdTreeEdges, NonFiniteColumnsAreNeverFound)
   EXPECT_TRUE(isNone(nothing.nearest(Eigen::Vector3f::Zero(), infinity, 3)));
 }
 
-TEST_P(KdTreeEdges, NonFiniteQueryHasNoNeighbor)
+TEST_P(KdTreePath, NonFiniteQueryHasNoNeighbor)
 {
   Random random(5, 0);
   const KdTree tree = treeOf(uniformPoints(random, 100));
   for (const float coordinate : {nan, infinity, -infinity})
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3f query = coordinate * Eigen::Vector3f::Unit(axis);
-      EXPECT_TRUE(isNone(tree.nearest(query, infinity)));
-      EXPECT_TRUE(isNone(tree.nearest(query, infinity, 5)));
-    }
+    for (int axis = 0; axis < 3; ++axis)
+      for (const std::uint32_t hint : {KdTree::none, 5u})
+        EXPECT_TRUE(isNone(
+            tree.nearest(coordinate * Eigen::Vector3f::Unit(axis), infinity, hint)));
 }
 
-TEST_P(KdTreeEdges, HugeCoordinatesAreSearchedAndOverflowIsBeyondEveryGate)
+TEST_P(KdTreePath, HugeCoordinatesAreSearchedAndOverflowIsBeyondEveryGate)
 {
   Random random(6, 0);
   const Eigen::Matrix3Xf points = 1e18f * uniformPoints(random, 2000);
@@ -94,7 +86,7 @@ TEST_P(KdTreeEdges, HugeCoordinatesAreSearchedAndOverflowIsBeyondEveryGate)
   EXPECT_EQ(treeOf(extremes).nearest(far, infinity, 3).index, 20u);
 }
 
-TEST_P(KdTreeEdges, TiesOfRepeatedPointsAreSeenAcrossLeaves)
+TEST_P(KdTreePath, TiesOfRepeatedPointsAreSeenAcrossLeaves)
 {
   // Leaves of 16: so many repeated points are alone in theirs, and some are not.
   for (Eigen::Index num_others = 10; num_others < 20; ++num_others) {

@@ -15,7 +15,7 @@ namespace bayesian_icp::test {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/** A test to be run for every instruction set. */
+/** A test to be run for every instruction set; kd_tree_test.cpp says which. */
 class KdTreePath : public testing::TestWithParam<InstructionSet> {
 protected:
   KdTree

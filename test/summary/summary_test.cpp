@@ -40,30 +40,19 @@ someCovariance(Random& random)
   return factor * factor.transpose() + 1e-4 * Matrix6d::Identity();
 }
 
+/** \param[in] random a Random, which may be a temporary */
+template <typename Generator>
 ChainSet
-chainSetOf(const std::vector<PoseMatrix>& chains)
+mixedChains(Generator&& random, int num_chains = 4, Eigen::Index num_draws = 500)
 {
   ChainSet set;
-  for (const auto& draws : chains) {
-    Chain chain;
-    chain.draws = draws;
-    set.chains.push_back(chain);
-  }
-  return set;
-}
-
-ChainSet
-mixedChains(Random& random, int num_chains = 4, Eigen::Index num_draws = 500)
-{
-  std::vector<PoseMatrix> chains;
-  chains.reserve(static_cast<std::size_t>(num_chains));
   for (int c = 0; c < num_chains; ++c)
-    chains.push_back(gaussianDraws(random,
-                                   num_draws,
-                                   Vector6d::Constant(0.1),
-                                   1e-3 * Matrix6d::Identity(),
-                                   CovarianceConvention::Parameters));
-  return chainSetOf(chains);
+    set.chains.push_back({gaussianDraws(random,
+                                        num_draws,
+                                        Vector6d::Constant(0.1),
+                                        1e-3 * Matrix6d::Identity(),
+                                        CovarianceConvention::Parameters)});
+  return set;
 }
 
 /** All draws X as A X B. */
@@ -258,19 +247,16 @@ TEST(Covariance, HoldsTheTruthFarFromTheOriginAsNearIt)
 
 TEST(Covariance, IsUndefinedForFewerThanTwoDraws)
 {
-  for (const Eigen::Index n : {0, 1})
-    EXPECT_TRUE(covarianceAbout(Vector6d::Zero(),
-                                PoseMatrix::Zero(n, 6),
-                                CovarianceConvention::Parameters)
-                    .array()
-                    .isNaN()
-                    .all());
+  for (const Eigen::Index n : {0, 1}) {
+    const Matrix6d covariance = covarianceAbout(
+        Vector6d::Zero(), PoseMatrix::Zero(n, 6), CovarianceConvention::Parameters);
+    EXPECT_TRUE(covariance.array().isNaN().all());
+  }
 }
 
 TEST(Summary, OfMixedChainsIsOkAndConsistent)
 {
-  Random random(33, 0);
-  const ChainSet chains = mixedChains(random);
+  const ChainSet chains = mixedChains(Random(33, 0));
   const PoseMatrix draws = pooledDraws(chains.chains);
   const Summary summary = summarize(chains);
   EXPECT_EQ(summary.status, Status::Ok) << summary.message;
@@ -297,8 +283,7 @@ TEST(Summary, OfMixedChainsIsOkAndConsistent)
 
 TEST(Summary, IsTheSameOnBothSidesOfTheAnglesCut)
 {
-  Random random(34, 0);
-  ChainSet chains = mixedChains(random);
+  ChainSet chains = mixedChains(Random(34, 0));
   const Summary reference = summarize(chains);
   for (auto& chain : chains.chains)
     for (Eigen::Index i = 0; i < chain.draws.rows(); ++i)
@@ -316,8 +301,7 @@ TEST(Summary, IsTheSameOnBothSidesOfTheAnglesCut)
 
 TEST(Summary, ChainsThatDisagreeAreNotMixed)
 {
-  Random random(35, 0);
-  ChainSet chains = mixedChains(random);
+  ChainSet chains = mixedChains(Random(35, 0));
   chains.chains[2].draws.col(4).array() += 0.05;
   const Summary summary = summarize(chains);
   EXPECT_EQ(summary.status, Status::NotMixed);
@@ -327,8 +311,7 @@ TEST(Summary, ChainsThatDisagreeAreNotMixed)
 
 TEST(Summary, ManyChainsThatDisagreeALittleAreNotMixed)
 {
-  Random random(38, 0);
-  ChainSet chains = mixedChains(random, 40);
+  ChainSet chains = mixedChains(Random(38, 0), 40);
   for (std::size_t c = 0; c < 10; ++c) // half a deviation
     chains.chains[c].draws.col(4).array() += 0.016;
   const Summary summary = summarize(chains);
@@ -340,8 +323,7 @@ TEST(Summary, ManyChainsThatDisagreeALittleAreNotMixed)
 
 TEST(Summary, TooFewDrawsForDiagnosticsAreNotMixed)
 {
-  Random random(36, 0);
-  const Summary summary = summarize(mixedChains(random, 4, 2));
+  const Summary summary = summarize(mixedChains(Random(36, 0), 4, 2));
   EXPECT_EQ(summary.status, Status::NotMixed);
   EXPECT_TRUE(std::isnan(summary.coordinates[0].rhat));
   EXPECT_EQ(summary.message.rfind("8 draws are too few to tell", 0), 0u)
@@ -364,8 +346,7 @@ TEST(Summary, GoodChainsThatAreTooShortAreToldFromBadOnes)
 
 TEST(Summary, DivergedChainsAreLeftOutAndReported)
 {
-  Random random(37, 0);
-  ChainSet chains = mixedChains(random);
+  ChainSet chains = mixedChains(Random(37, 0));
   chains.chains[1].draws.setConstant(1e6);
   chains.chains[1].diverged = true;
   const Summary summary = summarize(chains);
@@ -374,24 +355,17 @@ TEST(Summary, DivergedChainsAreLeftOutAndReported)
   EXPECT_EQ(summary.num_draws, 1500);
   EXPECT_NEAR(summary.mean[0], 0.1, 0.01);
   EXPECT_EQ(pooledDraws(chains.chains).rows(), 1500);
-}
-
-TEST(Summary, WithoutAnyUsableChainIsNaN)
-{
-  Random random(38, 0);
-  ChainSet chains = mixedChains(random, 2);
   for (auto& chain : chains.chains)
     chain.diverged = true;
-  const Summary summary = summarize(chains);
-  EXPECT_EQ(summary.status, Status::Diverged);
-  EXPECT_EQ(summary.num_draws, 0);
-  EXPECT_TRUE(summary.mean.array().isNaN().all());
+  const Summary nothing = summarize(chains);
+  EXPECT_EQ(nothing.status, Status::Diverged);
+  EXPECT_EQ(nothing.num_draws, 0);
+  EXPECT_TRUE(nothing.mean.array().isNaN().all());
 }
 
 TEST(Summary, ChainsOfUnequalLengthAreAllUsedForTheMoments)
 {
-  Random random(39, 0);
-  ChainSet chains = mixedChains(random);
+  ChainSet chains = mixedChains(Random(39, 0));
   chains.chains[3].draws.conservativeResize(499, 6);
   const Summary summary = summarize(chains);
   EXPECT_EQ(summary.num_draws, 1999);
@@ -401,8 +375,7 @@ TEST(Summary, ChainsOfUnequalLengthAreAllUsedForTheMoments)
 TEST(Summary, ChainsWithFewEffectiveDrawsInTheTailsAreNotMixed)
 {
   // Independent but in width: one in ten is wide, and these come 25 at a time.
-  Random random(40, 0);
-  ChainSet chains = mixedChains(random);
+  ChainSet chains = mixedChains(Random(40, 0));
   for (auto& chain : chains.chains) {
     const double mean = chain.draws.col(1).mean();
     for (Eigen::Index i = 0; i < chain.draws.rows(); ++i)
@@ -444,19 +417,15 @@ TEST(Doubts, OfRoundingThatIsATenthOfTheVarianceOfADistance)
     for (const double factor : {0.99, 1.01}) {
       Options options;
       options.preset = preset;
-      options.paper.scale.measurement_sigma = options.exact.scale.measurement_sigma =
-          1.0;
       Summary summary;
       summary.status = Status::Ok;
       summary.num_chains = 4;
-      if (preset == Preset::Paper)
-        options.paper.scale.measurement_sigma = factor * limit;
-      if (preset == Preset::Exact)
-        options.exact.scale.measurement_sigma = factor * limit;
-      if (preset == Preset::Calibrated) {
-        summary.data.is_available = true;
-        summary.data.noise_scale = factor * limit;
-      }
+      summary.data.is_available = preset == Preset::Calibrated;
+      double& noise = preset == Preset::Calibrated ? summary.data.noise_scale
+                      : preset == Preset::Exact
+                          ? options.exact.scale.measurement_sigma
+                          : options.paper.scale.measurement_sigma;
+      noise = factor * limit;
       doubtRounding(700.0, options, summary);
       EXPECT_EQ(summary.status, factor < 1.0 ? Status::Doubtful : Status::Ok)
           << toString(preset) << ' ' << factor;

@@ -12,9 +12,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 namespace pcl::test {
 
@@ -132,6 +134,49 @@ protected:
   Scans<PointXYZ> scans;
   Cloud output;
   QuietConsole quiet;
+};
+
+/** A tree that searches by itself, and counts, as KdTreeNanoflann of PCL 1.15.1 does:
+ * it derives from PCL's tree and has null where that one has its FLANN. */
+struct OwnSearch : Tree {
+  using Tree::nearestKSearch;
+  using Tree::radiusSearch;
+
+  OwnSearch() { tree_.reset(); }
+
+  Built
+  setInputCloud(const Cloud::ConstPtr& cloud,
+                const IndicesConstPtr& indices = IndicesConstPtr()) override
+  {
+    ++num_builds;
+    input_ = cloud;
+    indices_ = indices;
+    return (searched.setInputCloud(cloud, indices));
+  }
+
+  int
+  nearestKSearch(const PointXYZ& point,
+                 int k,
+                 Indices& indices,
+                 std::vector<float>& squared_distances) const override
+  {
+    ++num_queries;
+    return (searched.nearestKSearch(point, k, indices, squared_distances));
+  }
+
+  int
+  radiusSearch(const PointXYZ& point,
+               double radius,
+               Indices& indices,
+               std::vector<float>& squared_distances,
+               unsigned int max_nn = 0) const override
+  {
+    return (searched.radiusSearch(point, radius, indices, squared_distances, max_nn));
+  }
+
+  Tree searched;
+  int num_builds = 0;
+  mutable std::atomic<std::size_t> num_queries{0};
 };
 
 /** Distances along z count ten times. */
