@@ -10,7 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <stdexcept>
+#include <map>
 
 namespace bayesian_icp::test {
 namespace {
@@ -80,12 +80,18 @@ quickOptions(Preset preset, int num_threads)
 }
 
 RunRecord
+recordOf(const Scans& scans, const Options& options)
+{
+  return test::recordOf(
+      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+}
+
+RunRecord
 calibratedRun(const RunSettings& settings)
 {
   const Scans scans = makeScans(settings.is_nudged);
   const Options options = quickOptions(Preset::Calibrated, settings.num_threads);
-  return recordOf(
-      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+  return recordOf(scans, options);
 }
 
 /** A cube with four sides that are the same to the bit, where the prior leaves several
@@ -105,8 +111,7 @@ calibratedModesRun(const RunSettings& settings)
   Options options = quickOptions(Preset::Calibrated, settings.num_threads);
   options.prior.mean << 0.0, 0.0, 0.0, 0.0, 0.0, 0.1;
   options.prior.variance << 1e-3, 1e-3, 1e-3, 4e-3, 4e-3, 1.0;
-  return recordOf(
-      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+  return recordOf(scans, options);
 }
 
 /** \p residual and steps of preset `exact`, at one scale. */
@@ -121,8 +126,7 @@ exactRun(const RunSettings& settings,
   options.exact.scale.measurement_sigma = 0.02;
   options.exact.steps = steps;
   options.exact.residual.residual = residual;
-  return recordOf(
-      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+  return recordOf(scans, options);
 }
 
 /** Six steps of each chain: at the paper's step size every step triples a difference.
@@ -133,8 +137,7 @@ paperRun(const RunSettings& settings)
   const Scans scans = makeScans(settings.is_nudged);
   Options options = quickOptions(Preset::Paper, settings.num_threads);
   options.chains.num_draws = 24;
-  return recordOf(
-      estimatePosterior(scans.source, scans.target, Vector6d::Zero(), options));
+  return recordOf(scans, options);
 }
 
 /** The pose after each step. */
@@ -185,13 +188,8 @@ monteCarloRun(const RunSettings& settings)
   return record;
 }
 
-/** A run by its name. */
-struct Run {
-  const char* name;
-  std::function<RunRecord(const RunSettings&)> make;
-};
-
-std::vector<Run>
+/** The runs by their names. */
+std::map<std::string, std::function<RunRecord(const RunSettings&)>>
 allRuns()
 {
   return {
@@ -304,18 +302,15 @@ std::vector<std::string>
 runNames()
 {
   std::vector<std::string> names;
-  for (const Run& run : allRuns())
-    names.push_back(run.name);
+  for (const auto& [name, make] : allRuns())
+    names.push_back(name);
   return names;
 }
 
 RunRecord
 makeRun(const std::string& name, const RunSettings& settings)
 {
-  for (const Run& run : allRuns())
-    if (run.name == name)
-      return run.make(settings);
-  throw std::invalid_argument("no run is called " + name);
+  return allRuns().at(name)(settings);
 }
 
 } // namespace bayesian_icp::test

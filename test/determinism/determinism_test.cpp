@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 namespace bayesian_icp {
-
 namespace {
 
 /** What the library is told that the processor can do. */

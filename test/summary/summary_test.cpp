@@ -422,9 +422,8 @@ TEST(Doubts, OfRoundingThatIsATenthOfTheVarianceOfADistance)
       summary.num_chains = 4;
       summary.data.is_available = preset == Preset::Calibrated;
       double& noise = preset == Preset::Calibrated ? summary.data.noise_scale
-                      : preset == Preset::Exact
-                          ? options.exact.scale.measurement_sigma
-                          : options.paper.scale.measurement_sigma;
+                      : preset == Preset::Exact ? options.exact.scale.measurement_sigma
+                                                : options.paper.scale.measurement_sigma;
       noise = factor * limit;
       doubtRounding(700.0, options, summary);
       EXPECT_EQ(summary.status, factor < 1.0 ? Status::Doubtful : Status::Ok)
