@@ -30,9 +30,6 @@ tukeyEnergy(double u, double tau)
  * count, and some beyond its border. */
 struct PlaneCase {
   PlaneCase()
-  : model(test::gridPlane(40, 0.05).points)
-  , pose(isometryOf(Vector6d::Zero()))
-  , tau(1.7)
   {
     Random random(61, 0);
     // Patches of exact points have a noise of 1e-4 spacings.
@@ -45,9 +42,6 @@ struct PlaneCase {
     points.col(7).x() += 4.0;
     points.col(33).y() -= 4.0;
     points.col(8).z() = 20.0 * tau * sigma;
-    // Anywhere in the source frame.
-    const Vector6d parameters(0.4, -0.2, 1.0, 0.5, -0.4, 2.0);
-    pose = isometryOf(parameters);
     source = pose.inverse() * points;
   }
 
@@ -97,9 +91,10 @@ struct PlaneCase {
     return 0.01 * model.medianSigma();
   }
 
-  SurfaceModel model;
-  Isometry3d pose;
-  double tau;
+  SurfaceModel model{test::gridPlane(40, 0.05).points};
+  /** Anywhere in the source frame. */
+  Isometry3d pose = isometryOf({0.4, -0.2, 1.0, 0.5, -0.4, 2.0});
+  double tau = 1.7;
   Matrix3Xd source;
 };
 

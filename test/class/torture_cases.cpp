@@ -161,6 +161,39 @@ const Expectation at_the_pole = {
     Verdict::Warned,
     {{Status::NotMixed, "pitch +-90"}, {Status::Doubtful, "pitch +-90"}}};
 
+/** Another truth and guess. */
+Make
+turned(const Vector6d& truth, const Vector6d& guess)
+{
+  return spoilt([truth, guess](TorturePair& pair) {
+    pair.guess = guess;
+    pair.truth = truth;
+    pair.target = moved(truth, scan(2, num_target_points, whole, usual_noise));
+  });
+}
+
+/** Usual clouds and other options. */
+Make
+with(const std::function<void(Options&)>& change)
+{
+  return [change](Options& options) {
+    change(options);
+    return usualPair();
+  };
+}
+
+Make
+withVariance(double value)
+{
+  return with([value](Options& o) { o.prior.variance.setConstant(value); });
+}
+
+Make
+withBatchSize(int size)
+{
+  return with([size](Options& o) { o.exact.batch_size = o.paper.batch_size = size; });
+}
+
 /** All lengths multiplied, in the clouds and in the options. */
 Make
 scaled(double scale)
@@ -204,10 +237,46 @@ repeat(Eigen::Index times, Matrix3Xd& cloud)
   cloud = repeated;
 }
 
-std::vector<TortureCase>
-casesOfScale()
+} // namespace
+
+Options
+tortureOptions(Preset preset)
 {
+  Options options;
+  options.preset = preset;
+  options.prior.variance.setConstant(0.01);
+  options.prior.frame = PriorFrame::SourceCentroid;
+  if (preset == Preset::Exact) {
+    options.exact.scale.measurement_sigma = 0.005;
+    options.exact.scale.effective_points = 150.0;
+    options.exact.max_source_points = 500;
+    options.chains.num_draws = 1000;
+  }
+  if (preset == Preset::Paper)
+    options.chains.num_draws = 200;
+  return options;
+}
+
+Options
+smallStepOptions()
+{
+  Options options = tortureOptions(Preset::Paper);
+  options.paper.scale.measurement_sigma = 0.03;
+  options.paper.sgld.step_size = 3e-9;
+  options.paper.batch_size = 40;
+  options.paper.thinning = 10;
+  options.paper.num_burn_in = 200;
+  options.chains.num_draws = 2000;
+  return options;
+}
+
+std::vector<TortureCase>
+tortureCases()
+{
+  const Make apart =
+      unrelated([](TorturePair& pair) { pair.source.row(0).array() += 100.0; });
   return {
+      // Of scale.
       {"Usual", "nothing special", usual, {right, right, not_mixed}, right},
       {"Far10km",
        "both clouds 10 km from the origin",
@@ -232,13 +301,8 @@ casesOfScale()
         not_mixed_or_diverged}},
       {"Millimetres", "an object of 1 mm", scaled(1e-3), {right, right, diverged}},
       {"Kilometre", "a terrain of 1 km", scaled(1e3), {right, right, not_mixed}},
-  };
-}
 
-std::vector<TortureCase>
-casesOfShape()
-{
-  return {
+      // Of shape.
       {"SourceEqual",
        "all source points equal",
        unrelated([](TorturePair& pair) { makeEqual(pair.source); }),
@@ -301,15 +365,8 @@ casesOfShape()
        {warned(Status::Doubtful, "hold none"),
         warned(Status::Doubtful, "m from the target"),
         not_mixed_or_diverged}},
-  };
-}
 
-std::vector<TortureCase>
-casesOfOverlap()
-{
-  const Make apart =
-      unrelated([](TorturePair& pair) { pair.source.row(0).array() += 100.0; });
-  return {
+      // Of overlap.
       {"OnePoint",
        "the clouds share one point, a corner",
        spoilt([](TorturePair& pair) {
@@ -366,20 +423,8 @@ casesOfOverlap()
        spoilt([](TorturePair& pair) { repeat(10, pair.source); }),
        {right, right, not_mixed_or_diverged},
        right},
-  };
-}
 
-std::vector<TortureCase>
-casesOfPose()
-{
-  const auto turned = [](const Vector6d& truth, const Vector6d& guess) {
-    return spoilt([truth, guess](TorturePair& pair) {
-      pair.guess = guess;
-      pair.truth = truth;
-      pair.target = moved(truth, scan(2, num_target_points, whole, usual_noise));
-    });
-  };
-  return {
+      // Of the pose.
       {"YawPlusPi",
        "yaw just below pi, guess just above -pi",
        turned({0.01, -0.02, 0.015, 0.02, -0.03, pi - 0.01},
@@ -407,60 +452,40 @@ casesOfPose()
        turned({0.01, -0.02, 0.015, 0, 0.5 * pi - 0.035, 0},
               {0, 0, 0, 0, 0.5 * pi - 0.06, 0}),
        {right, right, not_mixed}},
-  };
-}
 
-std::vector<TortureCase>
-casesOfOptions()
-{
-  const auto with = [](const std::function<void(Options&)>& change) {
-    return [change](Options& options) {
-      change(options);
-      return usualPair();
-    };
-  };
-  const auto variance = [with](double value) {
-    return with([value](Options& o) { o.prior.variance.setConstant(value); });
-  };
-  const auto batch = [with](int size) {
-    return with([size](Options& o) {
-      o.paper.batch_size = size;
-      o.exact.batch_size = size;
-    });
-  };
-  return {
+      // Of options.
       {"PriorZero",
        "prior variances of 0",
-       variance(0.0),
+       withVariance(0.0),
        everywhere(refused(Status::InvalidOptions, "must be positive"))},
       {"PriorInfinite",
        "prior variances of infinity",
-       variance(infinity),
+       withVariance(infinity),
        {refused(Status::InvalidOptions, "must be finite"), right, not_mixed},
        right},
       {"PriorTiny",
        "prior variances of 1e-12, far from the truth",
-       variance(1e-12),
+       withVariance(1e-12),
        {warned(Status::Doubtful, "surfaces disagree"),
         warned(Status::Doubtful, "m from the target"),
         diverged}},
       {"PriorHuge",
        "prior variances of 1e12",
-       variance(1e12),
+       withVariance(1e12),
        {right, right, not_mixed}},
       {"BatchZero",
        "mini-batches of 0 points",
-       batch(0),
+       withBatchSize(0),
        {no_such_option,
         refused(Status::InvalidOptions, "batch_size is 0"),
         refused(Status::InvalidOptions, "batch_size is 0")}},
       {"BatchOne",
        "mini-batches of 1 point",
-       batch(1),
+       withBatchSize(1),
        {no_such_option, not_mixed, not_mixed}},
       {"BatchHuge",
        "mini-batches of 2^31 - 1 points",
-       batch(std::numeric_limits<int>::max()),
+       withBatchSize(std::numeric_limits<int>::max()),
        {no_such_option, right, not_mixed}},
       {"NoDraws",
        "zero draws",
@@ -491,52 +516,6 @@ casesOfOptions()
        spoilt([](TorturePair& pair) { pair.guess[0] = infinity; }),
        everywhere(refused(Status::InvalidInput, "not finite"))},
   };
-}
-
-} // namespace
-
-Options
-tortureOptions(Preset preset)
-{
-  Options options;
-  options.preset = preset;
-  options.prior.variance.setConstant(0.01);
-  options.prior.frame = PriorFrame::SourceCentroid;
-  if (preset == Preset::Exact) {
-    options.exact.scale.measurement_sigma = 0.005;
-    options.exact.scale.effective_points = 150.0;
-    options.exact.max_source_points = 500;
-    options.chains.num_draws = 1000;
-  }
-  if (preset == Preset::Paper)
-    options.chains.num_draws = 200;
-  return options;
-}
-
-Options
-smallStepOptions()
-{
-  Options options = tortureOptions(Preset::Paper);
-  options.paper.scale.measurement_sigma = 0.03;
-  options.paper.sgld.step_size = 3e-9;
-  options.paper.batch_size = 40;
-  options.paper.thinning = 10;
-  options.paper.num_burn_in = 200;
-  options.chains.num_draws = 2000;
-  return options;
-}
-
-std::vector<TortureCase>
-tortureCases()
-{
-  std::vector<TortureCase> all;
-  for (const auto& cases : {casesOfScale(),
-                            casesOfShape(),
-                            casesOfOverlap(),
-                            casesOfPose(),
-                            casesOfOptions()})
-    all.insert(all.end(), cases.begin(), cases.end());
-  return all;
 }
 
 } // namespace bayesian_icp::test

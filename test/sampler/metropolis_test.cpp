@@ -29,13 +29,13 @@ exampleCovariance()
 }
 
 PoseMatrix
-gaussianDraws(const Vector6d& mean, const Matrix6d& covariance, int number)
+exampleDraws(int number)
 {
-  const Matrix6d factor = covariance.llt().matrixL();
+  const Matrix6d factor = exampleCovariance().llt().matrixL();
   Random random(11, 0);
   PoseMatrix draws(number, 6);
-  for (int i = 0; i < number; ++i)
-    draws.row(i) = (mean + factor * random.normal6()).transpose();
+  for (auto draw : draws.rowwise())
+    draw = (factor * random.normal6()).transpose();
   return draws;
 }
 
@@ -60,7 +60,7 @@ TEST(TMixture, AFittedOneIntegratesToOneAndDrawsFollowIt)
 {
   // The mean of f/g over draws from g is the integral of f, for every g.
   Random random(3, 0);
-  PoseMatrix draws = gaussianDraws(Vector6d::Zero(), exampleCovariance(), 4000);
+  PoseMatrix draws = exampleDraws(4000);
   draws.topRows(1000).col(3).array() += 12.0;
   TMixture fitted(draws, 4, random);
   fitted.add(Vector6d::Constant(3.0), exampleCovariance(), 0.1);
@@ -92,8 +92,7 @@ TEST(TMixture, AFittedOneIntegratesToOneAndDrawsFollowIt)
 TEST(TMixture, ComponentsFindTheClusters)
 {
   // Far apart: within the clusters the covariance is the example's.
-  const Matrix6d covariance = exampleCovariance();
-  PoseMatrix draws = gaussianDraws(Vector6d::Zero(), covariance, 6000);
+  PoseMatrix draws = exampleDraws(6000);
   draws.topRows(2000).col(1).array() += 60.0;
   Random random(4, 0);
   const TMixture mixture(draws, 8, random);
