@@ -15,7 +15,6 @@ namespace bayesian_icp {
 namespace {
 
 using Eigen::Index;
-using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr double bar_noise = 0.001;

@@ -105,26 +105,27 @@ TEST(PreconditionedSampler, ADirectionWithoutLikelihoodKeepsItsPrior)
 
 TEST(PreconditionedSampler, ABananaIsExactWithMetropolisAndCloseWithout)
 {
+  const auto deviations = [](double bend) {
+    Vector6d variance = Vector6d::Constant(0.09);
+    variance[1] = 0.05 * 0.05 + 2.0 * bend * bend * std::pow(0.3, 4);
+    return Vector6d(variance.cwiseSqrt());
+  };
   const double bend = 0.6;
-  Vector6d variance = Vector6d::Constant(0.09);
-  variance[1] = 0.05 * 0.05 + 2.0 * bend * bend * std::pow(0.3, 4);
   ExactOptions sampler;
   sampler.steps = ExactSteps::Metropolis;
   const Summary exact = summarize(sample(banana(bend), sampler, chainOptions(8000)));
   // Langevin steps of one length do not resolve a narrow bend: a milder one.
   const double mild_bend = 0.25;
-  Vector6d mild_variance = variance;
-  mild_variance[1] = 0.05 * 0.05 + 2.0 * mild_bend * mild_bend * std::pow(0.3, 4);
   const Summary langevin =
       summarize(sample(banana(mild_bend), ExactOptions(), chainOptions(8000)));
   EXPECT_EQ(exact.status, Status::Ok) << exact.message;
   for (std::size_t k = 0; k < 6; ++k) {
     const auto& c = exact.coordinates[k];
-    const double sd = std::sqrt(variance[static_cast<Eigen::Index>(k)]);
+    const double sd = deviations(bend)[static_cast<Eigen::Index>(k)];
     EXPECT_NEAR(c.mean, 0.0, 4.5 * c.mcse) << k;
     // The fourth moment of the bent coordinate is that of a chi-squared: 4 errors.
     EXPECT_NEAR(c.standard_deviation / sd, 1.0, k == 1 ? 0.12 : 0.07) << k;
-    const double mild_sd = std::sqrt(mild_variance[static_cast<Eigen::Index>(k)]);
+    const double mild_sd = deviations(mild_bend)[static_cast<Eigen::Index>(k)];
     EXPECT_NEAR(langevin.coordinates[k].standard_deviation / mild_sd, 1.0, 0.15) << k;
   }
 }

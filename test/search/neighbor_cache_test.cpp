@@ -11,13 +11,6 @@
 namespace bayesian_icp::test {
 namespace {
 
-class NeighborCachePath : public KdTreePath {};
-
-INSTANTIATE_TEST_SUITE_P(InstructionSets,
-                         NeighborCachePath,
-                         testing::ValuesIn(supportedInstructionSets()),
-                         nameOf);
-
 /** From \p home, straight to where the point \p rival is as near as the nearest one:
  * which of them is found there depends on the last bit. */
 Eigen::Vector3f
@@ -34,7 +27,7 @@ halfWay(const Eigen::Vector3f& home,
       .cast<float>();
 }
 
-TEST_P(NeighborCachePath, AnswersAsTheTreeWhereverThePointIsMoved)
+TEST_P(KdTreePath, ACacheAnswersAsTheTreeWhereverThePointIsMoved)
 {
   Random random(21, 0);
   for (const Cloud& cloud : clouds())
@@ -66,7 +59,7 @@ TEST_P(NeighborCachePath, AnswersAsTheTreeWhereverThePointIsMoved)
     }
 }
 
-TEST_P(NeighborCachePath, LeavesTheTreeAloneWhereTheAnswerIsKnown)
+TEST_P(KdTreePath, ACacheLeavesTheTreeAloneWhereTheAnswerIsKnown)
 {
   Random random(22, 0);
   const Eigen::Matrix3Xf points = uniformPoints(random, 1000);
@@ -89,7 +82,7 @@ TEST_P(NeighborCachePath, LeavesTheTreeAloneWhereTheAnswerIsKnown)
   }
 }
 
-TEST_P(NeighborCachePath, KnowsWhereNothingIsWithinTheGate)
+TEST_P(KdTreePath, ACacheKnowsWhereNothingIsWithinTheGate)
 {
   // A nearest point at 0.5, and a gate at 0.3.
   const KdTree tree = treeOf(Eigen::Vector3f::Zero()),
@@ -103,7 +96,7 @@ TEST_P(NeighborCachePath, KnowsWhereNothingIsWithinTheGate)
   EXPECT_EQ(cache.nearest(tree, gate, 0, {0.29f, 0.f, 0.f}), 0u);
 }
 
-TEST_P(NeighborCachePath, PlacesThatAreNotFiniteHaveNoNeighborAndDoNoHarm)
+TEST_P(KdTreePath, ACacheHasNoNeighborForPlacesThatAreNotFinite)
 {
   Random random(23, 0);
   const Eigen::Matrix3Xf points = uniformPoints(random, 100);
