@@ -146,10 +146,6 @@ TEST_P(DropInOnScans, IsTheRegistrationOfIcp)
     icp.setMaxCorrespondenceDistance(0.02);
     align(bayesian_icp::matrixOf(smallPose()));
   });
-}
-
-TEST_P(DropInOnScans, IsTheRegistrationOfIcpInDouble)
-{
   expectTheRegistrationOfIcp<double>([this](auto& icp, const Align& align) {
     icp.setInputSource(source);
     icp.setInputTarget(target);

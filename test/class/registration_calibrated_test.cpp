@@ -57,10 +57,7 @@ TEST_F(CalibratedTest, TheMeanCanBeTheFinalTransformationInPlaceOfIcp)
   EXPECT_TRUE(icp.hasConverged());
   EXPECT_EQ(icp.getSamples(), expected);
   EXPECT_EQ(icp.getFinalTransformation(), icp.getMeanTransformation());
-  Cloud moved;
-  transformPointCloud(*source, moved, icp.getMeanTransformation());
-  for (std::size_t i = 0; i < output.size(); ++i)
-    ASSERT_LT((output[i].getVector3fMap() - moved[i].getVector3fMap()).norm(), 1e-6f);
+  expectMoved(output, *source, icp.getMeanTransformation());
 }
 
 TEST_F(CalibratedTest, IcpRunsWhereThereIsNoUsableMean)

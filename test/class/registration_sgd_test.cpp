@@ -41,12 +41,7 @@ TEST_F(SgdRegistration, TheOutputIsTheSourceMovedByTheFinalTransformation)
   useGentleSteps(icp);
   align(icp);
   EXPECT_TRUE(icp.hasConverged());
-  Cloud expected;
-  transformPointCloud(*scans.source, expected, icp.getFinalTransformation());
-  ASSERT_EQ(output.size(), expected.size());
-  for (std::size_t i = 0; i < output.size(); ++i)
-    ASSERT_LT((output[i].getVector3fMap() - expected[i].getVector3fMap()).norm(),
-              1e-6f); // a few roundings of numbers below 1 m
+  expectMoved(output, *scans.source, icp.getFinalTransformation());
   EXPECT_EQ(icp.getFinalTransformation(),
             bayesian_icp::matrixOf(icp.getResult().pose).cast<float>().eval());
   EXPECT_EQ(icp.nr_iterations_, icp.getResult().num_iterations);

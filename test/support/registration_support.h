@@ -225,6 +225,18 @@ rejectorBeyond(float max_distance)
   return (rejector);
 }
 
+/** Up to a few roundings of numbers below 1 m. */
+inline void
+expectMoved(const Cloud& actual, const Cloud& source, const Eigen::Matrix4f& motion)
+{
+  Cloud expected;
+  transformPointCloud(source, expected, motion);
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i)
+    ASSERT_LT((actual[i].getVector3fMap() - expected[i].getVector3fMap()).norm(),
+              1e-6f);
+}
+
 inline void
 expectSamePoints(const Cloud& actual, const Cloud& expected)
 {
