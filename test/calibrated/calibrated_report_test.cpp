@@ -69,12 +69,9 @@ TEST(Report, ClosedFormOfADiagonalEstimate)
   // Sorted by 1 / sqrt(4 (1 + relative information)).
   const double information[] = {399.0, 99.0, 24.0, 8.0, 3.0, 0.0};
   const int columns[] = {4, 0, 1, 5, 2, 3};
-  const Observability observability[] = {Observability::Observed,
-                                         Observability::Observed,
-                                         Observability::Observed,
-                                         Observability::Observed,
-                                         Observability::Weak,
-                                         Observability::PriorOnly};
+  constexpr auto observed = Observability::Observed, weak = Observability::Weak;
+  const Observability observability[] = {
+      observed, observed, observed, observed, weak, Observability::PriorOnly};
   ASSERT_EQ(report.directions.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
     const DataDirection& direction = report.directions[i];

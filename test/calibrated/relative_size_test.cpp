@@ -1,5 +1,6 @@
 #include "calibrated/surface/relative_size.h"
 #include "geometry/twist.h"
+#include "search/finite_columns.h"
 
 #include <bayesian_icp/pose.h>
 #include <bayesian_icp/random.h>
@@ -8,7 +9,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace bayesian_icp {
 namespace {
@@ -28,14 +28,6 @@ wavyGround(double size, Index num_points)
     points.col(i) << x, y, 0.2 * std::sin(x) * std::cos(y);
   }
   return points;
-}
-
-std::vector<Index>
-allColumnsOf(const Matrix3Xd& points)
-{
-  std::vector<Index> columns(static_cast<std::size_t>(points.cols()));
-  std::iota(columns.begin(), columns.end(), Index(0));
-  return columns;
 }
 
 TEST(RelativeSize, AMapHasMorePatchesThanAScan)
@@ -85,7 +77,7 @@ TEST(RelativeSize, TheReachHoldsTheSourceWhereverThePriorLetsItBe)
   variance << 0.04, 0.01, 0.09, 0.01, 0.0025, 0.04;
   for (const Vector3d& reference : {Vector3d(0.0, 0.0, 0.0), Vector3d(8.0, 2.0, 1.0)}) {
     const Prior prior(mean, variance, reference);
-    const Reach reach = reachOf(source, allColumnsOf(source), prior);
+    const Reach reach = reachOf(source, finiteColumns(source), prior);
     double furthest = 0.0;
     for (int run = 0; run < 500; ++run) {
       // On the surface of the three-sigma balls of translation and rotation.
@@ -110,7 +102,7 @@ TEST(RelativeSize, TheReachHoldsTheSourceWhereverThePriorLetsItBe)
 TEST(RelativeSize, PointsBeyondReachAreLeftOutUnlessFewRemain)
 {
   const Matrix3Xd map = wavyGround(40.0, 40000);
-  const std::vector<Index> all = allColumnsOf(map);
+  const std::vector<Index> all = finiteColumns(map);
   const std::vector<Index> within =
       columnsWithin({Vector3d(20.0, 20.0, 0.0), 10.0}, map, all);
   EXPECT_NEAR(double(within.size()),

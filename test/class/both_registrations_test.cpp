@@ -89,15 +89,13 @@ expectNoResult(SgdIcp& icp)
               icp.getResult().end == bayesian_icp::DescentEnd::InvalidInput);
 }
 
+template <typename Registration>
 void
-useMeanIfItHasOne(BayesianIcp& icp, bool is_mean)
+useMeanIfItHasOne(Registration& icp, bool is_mean)
 {
-  icp.setUseMeanAsFinalTransformation(is_mean);
+  if constexpr (std::is_base_of_v<BayesianIcp, Registration>)
+    icp.setUseMeanAsFinalTransformation(is_mean);
 }
-
-void
-useMeanIfItHasOne(SgdIcp&, bool)
-{}
 
 /** Counts the calls of every protected virtual function of PCL's ICP, and shows what
  * subclasses of ICP read after align(). */

@@ -145,7 +145,7 @@ TEST_F(SeededKdTreeTest, TakesPointRepresentationsBeforeAndAfterTheCloud)
   });
 }
 
-TEST_F(SeededKdTreeTest, TakesTheOrderOfItsResults)
+TEST_F(SeededKdTreeTest, TakesTheOrderOfItsResultsAndEpsilon)
 {
   expectPclsAnswersAfter([this](Tree& tree) {
     tree.setSortedResults(false);
@@ -155,11 +155,7 @@ TEST_F(SeededKdTreeTest, TakesTheOrderOfItsResults)
     tree.setInputCloud(target);
     tree.setSortedResults(false);
   });
-}
-
-TEST_F(SeededKdTreeTest, KeepsEpsilonAsPcls)
-{
-  // Too small to change an answer.
+  // An epsilon that is too small to change an answer.
   expectPclsAnswersAfter([this](Tree& tree) {
     tree.setInputCloud(target);
     tree.setEpsilon(1e-9f);

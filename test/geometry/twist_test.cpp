@@ -194,15 +194,14 @@ TEST(TwistPrior, OfAHoldIsTheGradientOfItsEnergyToo)
 {
   Random random(59, 0);
   for (int repeat = 0; repeat < 20; ++repeat) {
-    HeldPrior prior(randomPrior(random, Vector3d(0.5, 1.0, -0.3)));
-    PlaneHold plane;
-    plane.source_point = Vector3d(0.5, 1.0, -0.3);
-    plane.source_normal = random.normal6().head<3>().normalized();
-    plane.target_point = random.normal6().head<3>();
-    plane.target_normal = random.normal6().head<3>().normalized();
-    plane.distance_sd = 0.2;
-    plane.angle_sd = 0.3;
-    prior.plane = plane;
+    const Vector3d reference(0.5, 1.0, -0.3);
+    HeldPrior prior(randomPrior(random, reference));
+    prior.plane = PlaneHold{reference,
+                            random.normal6().head<3>().normalized(),
+                            random.normal6().head<3>(),
+                            random.normal6().head<3>().normalized(),
+                            0.2,
+                            0.3};
     const Isometry3d pose = isometryOf(test::randomPose(random, 0.8));
     const Vector3d centre = randomCentre(random);
     const Vector6d expected = energyGradient(prior, pose, centre);

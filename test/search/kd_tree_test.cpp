@@ -21,6 +21,7 @@ INSTANTIATE_TEST_SUITE_P(InstructionSets,
                          testing::ValuesIn(supportedInstructionSets()),
                          nameOf);
 
+/** To the last bit, so that all instruction sets answer alike. */
 TEST_P(KdTreePath, FindsTheSameAsBruteForceWhateverTheCloudTheGateAndTheHint)
 {
   Random random(1, 0);
@@ -91,22 +92,6 @@ TEST_P(KdTreePath, OfTwoEquallyNearPointsInDifferentSubtreesTheFirstIsFound)
       ASSERT_TRUE(isSame(tree.nearest(query, infinity), expected));
       ASSERT_TRUE(isSame(tree.nearest(query, infinity, later), expected));
     }
-}
-
-TEST(KdTree, AllInstructionSetsGiveTheSameBits)
-{
-  Random random(7, 0);
-  const Eigen::Matrix3Xf points = uniformPoints(random, 20000);
-  std::vector<KdTree> trees;
-  for (const InstructionSet set : supportedInstructionSets())
-    trees.emplace_back(points, 1, set);
-  for (int i = 0; i < 2000; ++i) {
-    const Eigen::Vector3f query = uniformPoints(random, 1) + offset(random, i);
-    const auto hint = static_cast<std::uint32_t>(random.index(20000));
-    const KdTree::Neighbor expected = trees.front().nearest(query, infinity);
-    for (const KdTree& tree : trees)
-      ASSERT_TRUE(isSame(tree.nearest(query, infinity, hint), expected));
-  }
 }
 
 TEST(KdTree, SeveralThreadsMaySearchAtOnce)
