@@ -169,18 +169,20 @@ TEST(CalibratedEstimate, IsTheSameTheOtherWay)
     const Matrix3Xd& points = c.scorer.sourcePoints();
     const PreparedSurface source = prepareSurface(points, 1);
     const PreparedSurface target = prepareSurface(c.target, 1);
-    const Isometry3d start = isometryOf(c.prior.mean());
-    const Prior wide(poseOf(start.matrix()), Vector6d::Ones(), c.scorer.centroid());
-    const CalibratedEstimate forth = estimateCalibrated(
-        scorerOf(points, source, c.target, target, 4000, 1), wide, {}, &start);
-    const Isometry3d back_start = start.inverse();
-    const Prior wide_back(
-        poseOf(back_start.matrix()), Vector6d::Ones(), c.target.rowwise().mean());
+    const Isometry3d start = Isometry3d::Identity();
+    const auto widePrior = [](const Vector3d& reference) {
+      return Prior(Vector6d::Zero(), Vector6d::Ones(), reference);
+    };
+    const CalibratedEstimate forth =
+        estimateCalibrated(scorerOf(points, source, c.target, target, 4000, 1),
+                           widePrior(c.scorer.centroid()),
+                           {},
+                           &start);
     const CalibratedEstimate back =
         estimateCalibrated(scorerOf(c.target, target, points, source, 4000, 1),
-                           wide_back,
+                           widePrior(c.target.rowwise().mean()),
                            {},
-                           &back_start);
+                           &start);
     const Vector6d difference =
         twistBetween(forth.mode, back.mode.inverse(), forth.centre);
     // The modes are found to a hundredth of the noise, which is 0.2 of a deviation of

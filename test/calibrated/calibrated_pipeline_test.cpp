@@ -314,18 +314,7 @@ expectFailure(const PosteriorEstimate& estimate, Status status, const char* word
   EXPECT_FALSE(estimate.summary.data.is_available);
 }
 
-TEST(Calibrated, ASearchInPlaceOfTheTargetsPointsIsRefused)
-{
-  const Scans scans;
-  expectFailure(estimatePosterior(scans.source,
-                                  test::BruteForceSearch(scans.target),
-                                  Vector6d::Zero(),
-                                  calibratedOptions()),
-                Status::InvalidOptions,
-                "target's points");
-}
-
-TEST(Calibrated, CloudsThatCannotDoAreAStatus)
+TEST(Calibrated, CloudsThatCannotDoAndASearchInTheirPlaceAreAStatus)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto expect = [](Status status, const char* word, const auto& spoil) {
@@ -344,6 +333,13 @@ TEST(Calibrated, CloudsThatCannotDoAreAStatus)
   expect(Status::TooFewCorrespondences, "surface", [](Scans& scans) {
     scans.target.colwise() = Eigen::Vector3d(0.1, 0.2, 0.3);
   });
+  const Scans scans;
+  expectFailure(estimatePosterior(scans.source,
+                                  test::BruteForceSearch(scans.target),
+                                  Vector6d::Zero(),
+                                  calibratedOptions()),
+                Status::InvalidOptions,
+                "target's points");
 }
 
 TEST(Calibrated, CanBeCancelledBeforeTheEstimateAndWhileDrawing)
