@@ -115,33 +115,6 @@ isRight(const TorturePair& pair,
          << " m off";
 }
 
-void
-expectVerdict(const Expectation& expected,
-              const TorturePair& pair,
-              const Options& options,
-              const PosteriorEstimate& estimate)
-{
-  const Summary& summary = estimate.summary;
-  EXPECT_TRUE(std::any_of(expected.outcomes.begin(),
-                          expected.outcomes.end(),
-                          [&summary](const Outcome& outcome) {
-                            return summary.status == outcome.status &&
-                                   summary.message.find(outcome.reason) !=
-                                       std::string::npos;
-                          }));
-  EXPECT_TRUE(estimate.samples.allFinite());
-  if (expected.verdict == Verdict::Refused || estimate.samples.rows() == 0) {
-    EXPECT_EQ(estimate.samples.rows(), 0);
-    EXPECT_TRUE(summary.mean.array().isNaN().all());
-    for (const Matrix6d& covariance : summary.covariances)
-      EXPECT_TRUE(covariance.array().isNaN().all());
-  }
-  if (expected.verdict == Verdict::Right ||
-      expected.verdict == Verdict::RightButWarned) {
-    EXPECT_TRUE(isRight(pair, options, estimate));
-  }
-}
-
 class Torture : public ::testing::TestWithParam<TortureCase> {
 protected:
   template <typename Scalar>
@@ -153,10 +126,28 @@ protected:
     const TortureCase& the_case = GetParam();
     const TorturePair pair = the_case.make(options);
     const PosteriorEstimate estimate = estimateOf<Scalar>(pair, options);
+    const Summary& summary = estimate.summary;
     SCOPED_TRACE(the_case.id + ", " + toString(options.preset) + ": " +
-                 toString(estimate.summary.status) + ": " + estimate.summary.message);
-    RecordProperty("message", estimate.summary.message); // for --gtest_output=xml
-    expectVerdict(expected, pair, options, estimate);
+                 toString(summary.status) + ": " + summary.message);
+    RecordProperty("message", summary.message); // for --gtest_output=xml
+    EXPECT_TRUE(std::any_of(expected.outcomes.begin(),
+                            expected.outcomes.end(),
+                            [&summary](const Outcome& outcome) {
+                              return summary.status == outcome.status &&
+                                     summary.message.find(outcome.reason) !=
+                                         std::string::npos;
+                            }));
+    EXPECT_TRUE(estimate.samples.allFinite());
+    if (expected.verdict == Verdict::Refused || estimate.samples.rows() == 0) {
+      EXPECT_EQ(estimate.samples.rows(), 0);
+      EXPECT_TRUE(summary.mean.array().isNaN().all());
+      for (const Matrix6d& covariance : summary.covariances)
+        EXPECT_TRUE(covariance.array().isNaN().all());
+    }
+    if (expected.verdict == Verdict::Right ||
+        expected.verdict == Verdict::RightButWarned) {
+      EXPECT_TRUE(isRight(pair, options, estimate));
+    }
   }
 };
 

@@ -221,11 +221,7 @@ TEST(Quantile, EqualsTypeSevenOfR)
     // Bit by bit: the tail ESS counts the draws up to a quantile that is one of them.
     EXPECT_EQ(quantile(values, number(reference[1])), number(reference.at(2)));
   }
-}
-
-TEST(Quantile, OfOneValueIsTheValue)
-{
-  for (const double probability : {0.0, 0.3, 1.0})
+  for (const double probability : {0.0, 0.3, 1.0}) // of one value
     EXPECT_EQ(quantile(VectorXd::Constant(1, 2.5), probability), 2.5);
 }
 
