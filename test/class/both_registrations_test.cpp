@@ -7,6 +7,8 @@
 #include <pcl/registration/stochastic_gradient_icp.h>
 
 #include <limits>
+#include <memory>
+#include <new>
 #include <stdexcept>
 
 namespace pcl::test {
@@ -354,6 +356,64 @@ TYPED_TEST(BothRegistrations, IndicesOutsideTheirCloudAreAnInvalidInput)
   estimation->setIndicesTarget(everyNth(0, static_cast<index_t>(target->size()) + 1));
   icp.setCorrespondenceEstimation(estimation);
   expectRefused(source, icp);
+  estimation->setIndicesTarget(IndicesPtr());
+  estimation->setIndicesSource(everyNth(0, size + 1));
+  expectRefused(source, icp);
+}
+
+TYPED_TEST(BothRegistrations, ATargetWithoutAPointToSearchIsRefused)
+{
+  Cloud& target = *this->scans.target;
+  target.push_back({nan_value, 0.0f, 0.0f});
+  const auto no_point = pcl::make_shared<Indices>();
+  const auto no_finite_point =
+      pcl::make_shared<Indices>(1, static_cast<index_t>(target.size()) - 1);
+  for (const IndicesPtr& selected : {no_point, no_finite_point}) {
+    TypeParam icp;
+    const auto estimation = pcl::make_shared<Estimation>();
+    estimation->setIndicesTarget(selected);
+    icp.setCorrespondenceEstimation(estimation);
+    this->align(icp);
+    EXPECT_FALSE(icp.hasConverged());
+    expectNoResult(icp);
+  }
+  TypeParam icp;
+  icp.setSearchMethodTarget(pcl::make_shared<search::KdTree<PointXYZ>>(), true);
+  this->align(icp);
+  EXPECT_FALSE(icp.hasConverged());
+  expectNoResult(icp);
+}
+
+TYPED_TEST(BothRegistrations, EmptiedCloudsAndMissingEstimationsAreInvalid)
+{
+  for (const bool is_source : {true, false}) {
+    TypeParam icp;
+    const auto source = pcl::make_shared<Cloud>(*this->scans.source);
+    const auto target = pcl::make_shared<Cloud>(*this->scans.target);
+    aligned(icp, source, target);
+    expectResult(icp);
+    (is_source ? source : target)->clear();
+    icp.align(this->output);
+    EXPECT_FALSE(icp.hasConverged());
+    expectInvalidInput(icp);
+  }
+  for (const bool is_of_pairs : {true, false}) {
+    TypeParam icp;
+    if (is_of_pairs)
+      icp.setCorrespondenceEstimation(nullptr);
+    else
+      icp.setTransformationEstimation(nullptr);
+    this->align(icp);
+    EXPECT_FALSE(icp.hasConverged());
+    expectInvalidInput(icp);
+  }
+}
+
+TYPED_TEST(BothRegistrations, MayBeMadeByNewThatDoesNotThrow)
+{
+  const std::unique_ptr<TypeParam> icp(new (std::nothrow) TypeParam);
+  this->align(*icp);
+  expectResult(*icp);
 }
 
 TYPED_TEST(BothRegistrations, ARefusedCloudIsAnInvalidInputUntilAnotherIsSet)

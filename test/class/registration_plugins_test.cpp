@@ -394,6 +394,15 @@ TEST_F(PluginTest, IcpRunsWhereTheEstimationKnowsNoMotionToTheMean)
   align(plain);
   EXPECT_EQ(icp.getFinalTransformation(), plain.getFinalTransformation());
   EXPECT_EQ(icp.hasConverged(), plain.hasConverged());
+
+  // Cancelled there, it keeps the posterior that it has.
+  usePaper(icp);
+  icp.setProgressCallback(
+      [](const bayesian_icp::Progress& p) { return (p.total_steps > 0); });
+  align(icp);
+  EXPECT_FALSE(icp.hasConverged());
+  EXPECT_NE(icp.getSummary().status, bayesian_icp::Status::Cancelled);
+  EXPECT_GT(icp.getSummary().num_draws, 0);
 }
 
 TEST_F(PluginTest, PresetExactNeedsAGateWherePairsMayBeDropped)
