@@ -287,9 +287,18 @@ private:
     PointTarget query;
     Indices found(1);
     std::vector<float> squared_distance(1);
+    // Beams without a return are (0, 0, 0) in some drivers' clouds: each search for
+    // such a point would meet all of them in the target.
+    Eigen::Vector3f tied_point = Eigen::Vector3f::Constant(max_float);
+    Correspondence of_tied;
     for (std::size_t i = begin; i < end; ++i) {
       const index_t index = (*indices_)[i];
       const PointSource& point = (*input_)[static_cast<std::size_t>(index)];
+      if (point.getVector3fMap() == tied_point) {
+        pairs[i] = of_tied;
+        pairs[i].index_query = index;
+        continue;
+      }
       const auto nearest = tree.nearest(point.getVector3fMap(), gate, last_answers_[i]);
       pairs[i] = Correspondence(index, UNAVAILABLE, 0.f);
       if (nearest.index == bayesian_icp::KdTree::none)
@@ -302,6 +311,8 @@ private:
       if (nearest.is_tied) {
         copyPoint(point, query);
         flann.searchFlann(query, 1, found, squared_distance);
+        tied_point = point.getVector3fMap();
+        of_tied = Correspondence(index, found[0], squared_distance[0]);
       }
       pairs[i] = Correspondence(index, found[0], squared_distance[0]);
     }
