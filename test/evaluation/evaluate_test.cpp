@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;
@@ -277,9 +278,9 @@ TEST(GoldStandard, SaysWhenItHasNotConverged)
   EXPECT_LT(gold.bulk_ess, options.min_ess);
 }
 
-// The energy jumps where nearest points change: Metropolis steps follow it, and Stein
-// particles, whose gradients do not see the jumps, are too narrow besides.
-TEST(GoldStandard, OfDistributionsIsWhatMetropolisStepsDraw)
+/** Two samples of a wavy surface. */
+Scene
+waves()
 {
   Random random(6, 0);
   const auto surface = [&](Eigen::Index num_points) {
@@ -289,7 +290,34 @@ TEST(GoldStandard, OfDistributionsIsWhatMetropolisStepsDraw)
                  0.003 * random.normal();
     return points;
   };
-  const Scene scene{"waves", surface(150), KdTree(surface(2000).cast<float>())};
+  Eigen::Matrix3Xd source = surface(150);
+  return {"waves", std::move(source), KdTree(surface(2000).cast<float>())};
+}
+
+TEST(SamplerProblem, HasTheGradientOfItsEnergy)
+{
+  const Scene scene = waves();
+  const Problem problem(scene, {0.01, 100.0});
+  const GradientFunction energy = problem.makeGradient();
+  Random random(8, 0);
+  const Vector6d phi = 0.05 * random.normal6();
+  const auto valueOf = [&](const Vector6d& at) {
+    Vector6d unused;
+    return energy(at, unused);
+  };
+  Vector6d gradient;
+  energy(phi, gradient);
+  // The prior's part is of about 1: the tolerance is below a thousandth of it.
+  const Vector6d differences = test::centralDifferences(valueOf, phi, 1e-7);
+  EXPECT_GT(problem.energy().priorGradient(phi).norm(), 1.0);
+  EXPECT_LT((gradient - differences).norm(), 1e-3);
+}
+
+// The energy jumps where nearest points change: Metropolis steps follow it, and Stein
+// particles, whose gradients do not see the jumps, are too narrow besides.
+TEST(GoldStandard, OfDistributionsIsWhatMetropolisStepsDraw)
+{
+  const Scene scene = waves();
   const Problem problem(scene, {0.01, 100.0}, Residual::DistributionToDistribution);
   const GoldStandard gold = sampleGold(problem.goldTarget(), GoldOptions(), no_report);
   EXPECT_TRUE(gold.has_converged);

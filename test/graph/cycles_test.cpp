@@ -26,7 +26,7 @@ TEST(Cycles, CloseWithinTheSumOfTheCovariances)
   constexpr int num_runs = 500;
   Random random(1, 0);
   double squared_error = 0.0;
-  int num_in_half = 0;
+  std::vector<app::ClosedCycle> closed;
   for (int run = 0; run < num_runs; ++run) {
     const auto poses = somePoses(4, random);
     // One edge of the path is backwards.
@@ -40,10 +40,14 @@ TEST(Cycles, CloseWithinTheSumOfTheCovariances)
     const Closure closure = app::closureOf(edges, cycles[0]);
     EXPECT_EQ(closure.num_degrees, 6);
     squared_error += closure.squared_error / num_runs;
-    num_in_half += closure.probability > 0.5 ? 1 : 0;
+    closed.push_back(app::closedCycles(edges, 4).at(0));
   }
   EXPECT_NEAR(squared_error, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
-  EXPECT_NEAR(num_in_half, num_runs / 2, 4.0 * std::sqrt(num_runs / 4.0));
+  const app::CycleStatistics all = app::statisticsOf(closed).back();
+  EXPECT_EQ(all.num_cycles, num_runs);
+  EXPECT_NEAR(all.nees_per_degree, squared_error / 6.0, 1e-9);
+  EXPECT_NEAR(all.share_in_half, 0.5, 4.0 * std::sqrt(0.25 / num_runs));
+  EXPECT_NEAR(all.share_in_95, 0.95, 4.0 * std::sqrt(0.95 * 0.05 / num_runs));
 }
 
 TEST(Cycles, TogetherAreChiSquareWhateverTheyHaveInCommon)
