@@ -85,12 +85,12 @@ class ScreenTest(ViewerTest):
             result = run(*scans(name), *CALIBRATED, "-o", cls.results / name, "--quiet")
             assert result.returncode == 0, result.stderr
 
-    @property
-    def path(self):
-        return self.folder / "picture.png"
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "picture.png"
 
-    def draw(self, *arguments, size=(300, 200)):
-        """The completed process that writes the picture."""
+    def draw(self, *arguments, size=(WIDTH, HEIGHT)):
+        """The completed process of --screenshot."""
         words = ["--screenshot", self.path, "--size", f"{size[0]}x{size[1]}"]
         return view(*arguments, *words, display=self.display)
 
@@ -216,16 +216,15 @@ class Pictures(ScreenTest):
 
     def test_what_cannot_be_trusted_is_shown_and_said(self):
         few = ["--samples", "40", "--chains", "2"]
-        result = self.draw(*scans("mug"), *CALIBRATED, *few)
+        result = self.draw(*scans("mug"), *CALIBRATED, *few, size=SMALL)
         self.assertEqual(result.returncode, 1)
         self.assertIn("not mixed: ", result.stderr)
-        self.assertEqual(Picture(self.path).image.width, 300)
+        self.assertEqual(Picture(self.path).image.width, SMALL[0])
 
     def test_clouds_that_a_posterior_names_may_have_moved(self):
         shutil.copytree(self.results / "mug", self.results / "moved")
         moved = self.results / "moved" / "posterior.json"
-        moved.write_text(text)
-        shutil.copy(self.results / "mug" / "samples.csv", moved.parent)
+        moved.write_text(moved.read_text().replace(str(DATA / "mug"), "/nowhere"))
         self.assert_refused(3, self.draw(moved), "/nowhere/source.pcd", "no such file")
         shown = self.picture(moved, *scans("mug"), "--show", "draws")
         self.assert_same_pixels(shown, self.saved("mug", "--show", "draws"))
@@ -238,19 +237,19 @@ class Pictures(ScreenTest):
         self.assertTrue(self.path.exists())
 
     def view_mixed(self, samples, *arguments):
-        """The mug's posterior.json beside other draws; the completed process."""
-        mixed = self.folder / "mixed"
-        mixed.mkdir()
-        (mixed / "samples.csv").write_text(samples)
-        saved = shutil.copy(self.results / "mug" / "posterior.json", mixed)
-        result = self.draw(saved, *arguments, size=(WIDTH, HEIGHT))
+        """The mug's posterior.json beside other draws; standard error."""
+        self.file("samples.csv", samples)
+        saved = shutil.copy(self.results / "mug" / "posterior.json", self.folder)
+        result = self.draw(saved, *arguments)
         self.assertEqual(result.returncode, 1)
         return result.stderr
 
     def test_draws_of_another_run_are_told_and_drawn(self):
         green = ["--show", "target", "-fc", "1,1,1", "-fc", "0,1,0"]
-        result = self.view_mixed((other / "samples.csv").read_text(), *green)
-        self.assertIn("samples.csv has another mean or other deviations", result.stderr)
+        usual = self.saved("mug", *green).rows_with(WHITE)
+        samples, _ = self.run_to_files(*scans("mug"), *CALIBRATED, "--seed", "2")
+        errors = self.view_mixed(samples, *green)
+        self.assertIn("samples.csv has another mean or other deviations", errors)
         picture = Picture(self.path)
         warned = picture.rows_with(WHITE)
         # The text is below the target, however many lines it has.
@@ -271,8 +270,7 @@ class Pictures(ScreenTest):
 
     def test_points_that_are_not_finite_count(self):
         exact = ["--preset=exact", "--sigma=0.01"]
-        saved = self.saved_result([*box_surface(), (math.nan, 0, 0)], *exact)
-        result = self.draw(saved)
+        result = self.draw_result([*box_surface(), (math.nan, 0, 0)], *exact)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("in place of", result.stderr)
 
@@ -280,18 +278,15 @@ class Pictures(ScreenTest):
         single = ["--preset=paper", "--step-size=1e-6", "--samples=1", "--chains=1"]
         stein = ["--preset=exact", "--sigma=0.01", "--steps=stein-newton"]
         for options in (FAST, [*FAST, "--normalize-cloud"], single, stein):
-            saved = self.saved_result(box_surface(), *options)
-            self.assertNotIn("samples.csv", self.draw(saved).stderr)
+            self.assertNotIn("samples.csv", self.draw_result(box_surface(), *options).stderr)
 
     def test_run_without_draws_is_shown(self):
-        saved = self.saved_result(box_surface(), "--preset=paper", "--step-size=10")
-        result = self.draw(saved)
-        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assert_ran(self.draw_result(box_surface(), "--preset=paper", "--step-size=10"))
         self.assertTrue(self.path.exists())
 
     def test_bad_camera(self):
-        saved = self.results / "mug" / "posterior.json"
-        self.assert_refused(2, self.draw(saved, "-cam", "1/2"), "-cam", "'1/2'")
+        result = self.draw(self.results / "mug" / "posterior.json", "-cam", "1/2")
+        self.assert_refused(2, result, "-cam", "'1/2'")
 
 
 class WindowOnScreen(ScreenTest):
