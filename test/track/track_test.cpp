@@ -12,7 +12,6 @@
 
 #include <Eigen/LU>
 
-#include <array>
 #include <stdexcept>
 
 using namespace bayesian_icp;
@@ -177,19 +176,26 @@ TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
 
 TEST(Registered, TriplesTheDeviationsOfWhatIsDoubtful)
 {
-  // Three of four points of each cloud are of something that the other one lacks.
-  const auto layers = [](std::uint64_t seed, const std::array<double, 4>& heights) {
-    const Eigen::Matrix3Xd surface = wavySurface(seed, 3000, 0.1);
-    Eigen::Matrix3Xd points(3, 4 * surface.cols());
-    for (std::size_t k = 0; k < heights.size(); ++k)
-      points.middleCols(static_cast<Eigen::Index>(k) * surface.cols(), surface.cols()) =
-          surface.colwise() + heights[k] * Eigen::Vector3d::UnitZ();
+  // Both clouds have the same surface, and balls that the other one does not have.
+  const auto withBalls = [](std::uint64_t seed) {
+    constexpr int num_points = 3000, num_balls = 10;
+    Random random(seed, 1);
+    Eigen::Matrix3Xd balls(3, 3 * num_points);
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = 0; i < balls.cols(); ++i) {
+      if (i % (balls.cols() / num_balls) == 0)
+        centre << random.uniform() - 0.5, random.uniform() - 0.5,
+            random.uniform() + 0.3;
+      balls.col(i) = centre + 0.1 * random.normal6().head<3>().normalized();
+    }
+    Eigen::Matrix3Xd points(3, num_points + balls.cols());
+    points << wavySurface(seed, num_points, 0.05), balls;
     return points;
   };
-  const PreparedCloud source(layers(1, {0.0, 0.5, 1.0, 1.5}));
-  const PreparedCloud target(layers(2, {0.0, 0.25, 0.75, 1.3}));
+  const PreparedCloud source(withBalls(1)), target(withBalls(2));
   Options options;
   options.prior.frame = PriorFrame::Origin;
+  options.prior.mean.setZero();
   const app::Registration result = app::registered(source, target, options, nullptr);
   ASSERT_EQ(result.quality, app::Quality::Doubtful) << result.message;
   const Summary summary =
