@@ -1,6 +1,7 @@
 """pcl_bayesian_icp_pose_graph against trajectories that are known."""
 
 import math
+import re
 import os
 
 import numpy as np
@@ -157,6 +158,9 @@ class PoseGraphLoops(PoseGraphTest):
             r"loop 0-12: refused, contradicts the chain, [\d.]+ m and [\d.]+ degrees away: squared "
             r"error \d+\.\d for 6 degrees of freedom, probability ",
         )
+        # At most a turn of 0.04 circles, and less as far as the registrations correct it.
+        away = float(re.search(r"([\d.]+) degrees away", result.stderr)[1])
+        self.assertTrue(5.0 < away < 14.5, away)
         words += ["--quiet", "--loop", "0,12", "--robust-loss", "cauchy", "--optimize", self.output]
         result = call(POSE_GRAPH, *words)
         self.assertEqual(result.returncode, 1, result.stderr)
@@ -165,6 +169,16 @@ class PoseGraphLoops(PoseGraphTest):
         self.assertIn((0, 12), read_graph(self.output / "graph.g2o")[1])
         report = (self.output / "report.html").read_text()
         self.assertTrue("Edges contradict each other" in report)
+
+    def test_spans_begin_where_the_chain_leads(self):
+        """Two steps are a turn of 60 degrees: no other guess leads there."""
+        result = self.run_graph(*self.scans[:4], *self.odometry(1.0, 0.0025), "--span", 2)
+        self.assert_ran(result)
+        _, edges = read_graph(self.graph)
+        self.assertEqual(sorted(edges), [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3)])
+        for (i, j), (pose, information) in edges.items():
+            error = g2o_error(pose, inv(self.truth[i]) @ self.truth[j])
+            self.assertLess(quadratic(error, information), CHI2_HIGH[6], (i, j))
 
 
 class PoseGraphEdges(PoseGraphTest):
