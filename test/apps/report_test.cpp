@@ -1,6 +1,7 @@
 // The report's verdict in words, its escaping, and what its charts are given.
 #include "html/page.h"
 #include "io/picture_numbers.h"
+#include "report/charts.h"
 #include "report/draw_set.h"
 #include "report/path_charts.h"
 #include "report/verdict.h"
@@ -297,6 +298,33 @@ numbersOf(const std::string& block, const Chart& chart)
   std::istringstream text(chart.drawing.script.substr(
       from, chart.drawing.script.find("EOD\n", from) - from));
   return {std::istream_iterator<double>(text), std::istream_iterator<double>()};
+}
+
+TEST(CloudCharts, ShowTheSourceAtTheGuessAndWhereItEnds)
+{
+  const auto cloudOf = [](const Eigen::Matrix3Xf& points) {
+    io::CloudFile cloud;
+    cloud.points = points;
+    cloud.num_finite = static_cast<std::size_t>(points.cols());
+    return cloud;
+  };
+  app::Run run;
+  run.source = cloudOf(Eigen::Vector3f(1.0F, 0.0F, 0.0F).replicate(1, 3));
+  run.target = cloudOf(Eigen::Matrix3f::Identity());
+  run.settings.guess = matrixOf(Vector6d(0.5, 0.0, 0.0, 0.0, 0.0, 0.5 * pi));
+  run.result.final_matrix = matrixOf(Vector6d(0.0, 0.0, 2.0, 0.0, 0.0, 0.0));
+  const std::vector<Chart> charts = cloudCharts(run);
+  ASSERT_EQ(charts.size(), 4U);
+  const auto expectSource = [&](std::size_t chart, const std::array<double, 3>& point) {
+    const std::vector<double> numbers = numbersOf("source", charts[chart]);
+    ASSERT_EQ(numbers.size(), 9U);
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(numbers[k], point[k], 1e-6) << charts[chart].id;
+  };
+  for (const std::size_t before : {0U, 1U})
+    expectSource(before, {0.5, 1.0, 0.0});
+  for (const std::size_t after : {2U, 3U})
+    expectSource(after, {1.0, 0.0, 2.0});
 }
 
 TEST(PathChart, DrawsRegionsInTheFrameOfScan0)

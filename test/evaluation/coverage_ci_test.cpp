@@ -144,6 +144,18 @@ TEST(CoverageOfCalibrated, IsRightOnTheTunedScenes)
   EXPECT_LT(control.coverage.back().value, 0.5);
 }
 
+TEST(CoverageOfCalibrated, HasRegionsOfStudentsTInTheDirectionsThatTheDataHold)
+{
+  for (const auto& [scene, num_held] : {std::pair("can", 5), std::pair("mug", 6)}) {
+    const CoverageCase problem = makeCoverageCase(scene, "same", first_seed);
+    for (const MethodResult& result :
+         {resultOf(calibratedEstimateOf(problem)), runCalibratedDraws(problem)}) {
+      EXPECT_EQ(result.shape.degrees_of_freedom, 20) << scene;
+      EXPECT_EQ(result.shape.num_held, num_held) << scene;
+    }
+  }
+}
+
 // Along the tunnel and over the ground nothing holds the pose, but planes through few
 // rings lean.
 TEST(CoverageOfCalibrated, IsNotTooSureOfWhatFewRingsSee)

@@ -12,6 +12,7 @@
 
 #include <Eigen/LU>
 
+#include <cmath>
 #include <stdexcept>
 
 using namespace bayesian_icp;
@@ -172,6 +173,20 @@ TEST(Track, GoesOnFromItsLinesAsIfItHadNotStopped)
             app::g2oText(again.poses(), again.edges()));
   EXPECT_EQ(app::tumCovarianceText(track.times(), track.poses()),
             app::tumCovarianceText(again.times(), again.poses()));
+}
+
+TEST(Track, TellsHowFarARegistrationIsFromThePrediction)
+{
+  Track track(uncertainModel(), requestOf(3).times, 1);
+  TrackStep step = nextStep(track, registered);
+  const app::GaussianPose expected = track.prediction(false);
+  const double variance = expected.covariance(0, 0) + step.edge.pose.covariance(0, 0);
+  step.edge.pose.mean = expected.mean;
+  step.edge.pose.mean[0] += 2.0 * std::sqrt(variance);
+  track.take(step);
+  EXPECT_NEAR(track.innovations().back(), 4.0, 1e-3);
+  take({predicted}, track);
+  EXPECT_TRUE(std::isnan(track.innovations().back()));
 }
 
 TEST(Registered, TriplesTheDeviationsOfWhatIsDoubtful)
