@@ -1,7 +1,6 @@
 #include "samplers/gold_standard.h"
 
 #include "io/clocks.h"
-#include "sampler/t_mixture.h"
 #include "study/draw_statistics.h"
 
 #include <bayesian_icp/diagnostics.h>
@@ -34,79 +33,6 @@ constexpr double hot_energy = 10.0;
 constexpr double best_walk_acceptance = 0.35;
 /** Optimal scale of a random walk in six dimensions (Roberts et al. 1997). */
 const double walk_scale = 2.38 / std::sqrt(6.0);
-
-/** Position and energy of a chain of Metropolis-Hastings. */
-class MetropolisState {
-public:
-  MetropolisState(const Vector6d& start, EnergyFunction energy, Random random)
-  : energy_(std::move(energy))
-  , random_(random)
-  , position_(start)
-  , current_energy_(energy_(start))
-  {}
-
-  /** Random walk, proposal x + factor z with z standard normal, at the given
-   * temperature. */
-  bool
-  walk(const Matrix6d& factor, double temperature = 1.0)
-  {
-    return accept(position_ + factor * random_.normal6(), 0.0, temperature);
-  }
-
-  /** Proposal from \p mixture, wherever the chain is. */
-  bool
-  jump(const TMixture& mixture)
-  {
-    const Vector6d proposal = mixture.draw(random_);
-    return accept(
-        proposal, mixture.logDensity(position_) - mixture.logDensity(proposal), 1.0);
-  }
-
-  /** Put the chain elsewhere. */
-  void
-  moveTo(const Vector6d& position)
-  {
-    position_ = position;
-    current_energy_ = energy_(position);
-  }
-
-  const Vector6d&
-  position() const
-  {
-    return position_;
-  }
-
-  double
-  energy() const
-  {
-    return current_energy_;
-  }
-
-  Random&
-  random()
-  {
-    return random_;
-  }
-
-private:
-  bool
-  accept(const Vector6d& proposal, double log_proposal_ratio, double temperature)
-  {
-    const double energy = energy_(proposal);
-    const double log_ratio =
-        (current_energy_ - energy) / temperature + log_proposal_ratio;
-    if (!(std::log(1.0 - random_.uniform()) < log_ratio))
-      return false;
-    position_ = proposal;
-    current_energy_ = energy;
-    return true;
-  }
-
-  EnergyFunction energy_;
-  Random random_;
-  Vector6d position_;
-  double current_energy_;
-};
 
 /** One of the runs behind a gold standard: chains that learn a walk together. */
 class GoldRun {
@@ -351,57 +277,6 @@ sampleGold(const GoldTarget& target,
   for (PoseMatrix& chain : gold.chains)
     chain = thinned(chain);
   return gold;
-}
-
-PoseMatrix
-runRandomWalk(const Vector6d& start,
-              const EnergyFunction& energy,
-              const Matrix6d& factor,
-              int num_steps,
-              Random& random)
-{
-  MetropolisState state(start, energy, random);
-  PoseMatrix draws(num_steps, 6);
-  for (int step = 0; step < num_steps; ++step) {
-    state.walk(factor);
-    draws.row(step) = state.position().transpose();
-  }
-  random = state.random();
-  return draws;
-}
-
-PoseMatrix
-runMala(const Vector6d& start,
-        const GradientFunction& energy,
-        const Matrix6d& factor,
-        double step,
-        int num_steps,
-        Random& random)
-{
-  const Matrix6d preconditioner = factor * factor.transpose();
-  const auto whiten = [&factor](const Vector6d& v) {
-    return Vector6d(factor.triangularView<Eigen::Lower>().solve(v));
-  };
-  PoseMatrix draws(num_steps, 6);
-  Vector6d x = start, gradient, proposed_gradient;
-  double u = energy(x, gradient);
-  for (int i = 0; i < num_steps; ++i) {
-    const Vector6d z = random.normal6();
-    const Vector6d y =
-        x - 0.5 * step * preconditioner * gradient + std::sqrt(step) * factor * z;
-    const double v = energy(y, proposed_gradient);
-    const Vector6d back =
-        whiten(x - y + 0.5 * step * preconditioner * proposed_gradient);
-    const double log_ratio =
-        u - v + 0.5 * z.squaredNorm() - 0.5 * back.squaredNorm() / step;
-    if (std::log(1.0 - random.uniform()) < log_ratio) {
-      x = y;
-      u = v;
-      gradient = proposed_gradient;
-    }
-    draws.row(i) = x.transpose();
-  }
-  return draws;
 }
 
 PoseMatrix

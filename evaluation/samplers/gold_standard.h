@@ -1,26 +1,16 @@
 /** \file
- * \brief Reference draws from a density in six dimensions: long Metropolis runs whose
- * convergence is shown, not assumed; and random walk and Langevin (MALA) as
- * competitors.
+ * \brief Reference draws from a density: long Metropolis runs whose convergence is
+ * shown, not assumed.
  */
 #pragma once
 
-#include <bayesian_icp/pose.h>
-#include <bayesian_icp/random.h>
+#include "samplers/metropolis_runs.h"
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
-
-/** \brief U(x) = -log density up to a constant. May remember what makes it faster, but
- * its value depends on x alone; one object serves one chain. */
-using EnergyFunction = std::function<double(const Vector6d&)>;
-
-/** \brief U(x), and its gradient into the second argument. */
-using GradientFunction = std::function<double(const Vector6d&, Vector6d&)>;
 
 /** \brief Length and stopping rule of the runs. */
 struct GoldOptions {
@@ -74,24 +64,6 @@ GoldStandard
 sampleGold(const GoldTarget& target,
            const GoldOptions& options,
            const std::function<void(const std::string&)>& report);
-
-/** \brief Random-walk Metropolis with a fixed proposal covariance factor factor^T. */
-PoseMatrix
-runRandomWalk(const Vector6d& start,
-              const EnergyFunction& energy,
-              const Matrix6d& factor,
-              int num_steps,
-              Random& random);
-
-/** \brief Metropolis-adjusted Langevin steps of size \p step, preconditioned by
- * factor factor^T, \p factor lower triangular. */
-PoseMatrix
-runMala(const Vector6d& start,
-        const GradientFunction& energy,
-        const Matrix6d& factor,
-        double step,
-        int num_steps,
-        Random& random);
 
 /** \brief Draws of all chains, one after the other. */
 PoseMatrix

@@ -1,6 +1,5 @@
 #include "samplers/sampler_runs.h"
 
-#include "algebra/decompositions.h"
 #include "io/clocks.h"
 #include "study/draw_statistics.h"
 
