@@ -232,7 +232,11 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::searchedTargetP
 {
   using namespace bayesian_icp_detail;
   const auto& cloud = this->searchedCloud();
-  const Indices found = this->searchedTarget();
+  Indices found;
+  this->anyOfSearched([&found](index_t index) {
+    found.push_back(index);
+    return (false);
+  });
   if (isWholeCloud(found, cloud.size()))
     return (pointMatrix(cloud));
   PointCloud<PointTarget> selection;

@@ -484,7 +484,7 @@ protected:
       fail(output, guess, false, "the initial guess is not finite");
       return;
     }
-    if (searchedTarget().empty() ||
+    if (!anyOfSearched([](index_t) { return (true); }) ||
         usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
       fail(output,
            guess,
@@ -621,28 +621,29 @@ protected:
     return (hasReadyTree() ? *tree_->getInputCloud() : *target_);
   }
 
-  /** Indices of its finite points that the search tree finds. */
-  Indices
-  searchedTarget() const
+  /** Calls \p visit for the index of each of its finite points that the search tree
+   * finds, until it returns true.
+   * \return whether it did */
+  template <typename Visit>
+  bool
+  anyOfSearched(const Visit& visit) const
   {
     if (force_no_recompute_ && !hasReadyTree() && isDefaultTree(*tree_))
-      return (Indices());
+      return (false);
     const PointCloudTarget& cloud = searchedCloud();
     const IndicesConstPtr selected =
         hasReadyTree()
             ? tree_->getIndices()
             : IndicesConstPtr(correspondence_estimation_->getIndicesTarget());
-    Indices found;
-    const auto addIfFinite = [&](index_t index) {
-      if (isXYZFinite(cloud[static_cast<std::size_t>(index)]))
-        found.push_back(index);
+    const auto isFiniteAndVisited = [&](index_t index) {
+      return (isXYZFinite(cloud[static_cast<std::size_t>(index)]) && visit(index));
     };
     if (selected)
-      std::for_each(selected->begin(), selected->end(), addIfFinite);
-    else
-      for (std::size_t i = 0; i < cloud.size(); ++i)
-        addIfFinite(static_cast<index_t>(i));
-    return (found);
+      return (std::any_of(selected->begin(), selected->end(), isFiniteAndVisited));
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+      if (isFiniteAndVisited(static_cast<index_t>(i)))
+        return (true);
+    return (false);
   }
 
   /** The transformation next to \p to that the transformation estimation allows: a
