@@ -144,16 +144,16 @@ sceneList()
   return list.str();
 }
 
-/** \throws io::UsageError of an option of another kind of sensor, unless it is 0 */
+/** \throws io::UsageError of an option without effect, unless it is 0 */
 void
 refuseOptionsWithoutEffect(const po::variables_map& given,
                            const SimulationOptions& options)
 {
   visitOptions(options, [&given](const OptionField& field, const auto& value) {
     if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>)
-      if (given.count(field.name) > 0 && !field.is_recorded && value != 0)
-        throw io::UsageError(std::string("--") + field.name +
-                             ": has no effect with this sensor and its other options");
+      if (given.count(field.name) > 0 && field.no_effect != nullptr && value != 0)
+        throw io::UsageError(std::string("--") + field.name + ": has no effect " +
+                             field.no_effect);
   });
 }
 
@@ -174,12 +174,12 @@ parseCommandLine(int argc, const char* const* argv)
     if (given.count(required) == 0)
       throw io::UsageError(std::string("--") + required + " is missing");
   io::takeOptions(given, options);
-  View& source = request.options.source_view;
-  const bool is_same_view = given.count("same-view") > 0;
-  if (is_same_view && given.count("source-eye") == 0)
-    source.eye = request.options.target_view.eye;
-  if (is_same_view && given.count("source-look-at") == 0)
-    source.look_at = request.options.target_view.look_at;
+  if (given.count("same-view") > 0) {
+    io::refuseOptions(given,
+                      {"source-eye", "source-look-at", "sweep-motion"},
+                      ": has no effect with --same-view");
+    request.options.source_view = request.options.target_view;
+  }
   validate(request.options);
   refuseOptionsWithoutEffect(given, request.options);
   return request;

@@ -69,15 +69,13 @@ jsonOf(Quantisation quantisation)
   return quantisation == Quantisation::Kinect ? "kinect" : "none";
 }
 
-/** Every option under its name on the command line; of a camera's noise that is
- * correlated or grows with the angle of incidence, and of the motion during a scan,
- * only what is switched on. */
+/** Every option that has an effect, under its name on the command line. */
 Json
 optionsRecord(const SimulationOptions& options)
 {
   Json record;
   visitOptions(options, [&record](const OptionField& field, const auto& value) {
-    if (field.is_recorded)
+    if (field.no_effect == nullptr)
       record[field.name] = jsonOf(value);
   });
   if (options.sensor.quantisation == Quantisation::Step)

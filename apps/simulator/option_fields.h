@@ -33,8 +33,8 @@ struct OptionField {
   const char* placeholder;
   const char* help;
   Range range = {};
-  /** Whether it has an effect that scene.json tells of. */
-  bool is_recorded = true;
+  /** Why it has no effect, and is not in scene.json; null if it has one. */
+  const char* no_effect = nullptr;
 };
 
 // clang-format off
@@ -46,8 +46,9 @@ visitSensor(SensorT& sensor, const Visitor& visit)
 {
   using Group = OptionGroup;
   const bool is_camera = sensor.kind == SensorKind::DepthCamera;
-  const bool is_lidar = !is_camera;
-  const bool is_correlated = sensor.noise_correlation > 0.0;
+  const char* no_camera = is_camera ? nullptr : "with a lidar";
+  const char* no_lidar = is_camera ? "with a depth-camera" : nullptr;
+  const char* no_noise = sensor.noise > 0.0 ? nullptr : "with --noise 0";
   auto& camera = sensor.camera;
   auto& lidar = sensor.lidar;
   visit({Group::Sensor, "sensor", "KIND",
@@ -57,40 +58,41 @@ visitSensor(SensorT& sensor, const Visitor& visit)
          "--incidence-noise 0.25 --ring-offset 0.01 --azimuth-phase 1. The other "
          "options override these values. (default depends on the scene)"}, sensor.kind);
   visit({Group::Sensor, "width", "N", "Camera: columns [pixels]. (default 640)",
-         {1, 8192}, is_camera}, camera.width);
+         {1, 8192}, no_camera}, camera.width);
   visit({Group::Sensor, "height", "N", "Camera: rows [pixels]. (default 480)",
-         {1, 8192}, is_camera}, camera.height);
+         {1, 8192}, no_camera}, camera.height);
   visit({Group::Sensor, "fov", "DEG",
          "Camera: horizontal field of view [degrees]. (default 57)",
-         {0.1, 170.0}, is_camera}, camera.horizontal_fov);
+         {0.1, 170.0}, no_camera}, camera.horizontal_fov);
   visit({Group::Errors, "lateral-noise", "FACTOR",
          "Camera: factor on the noise across the ray, about 0.8 pixels (Kinect, Nguyen "
-         "2012). (default 0)", not_negative, is_camera}, camera.lateral_noise);
+         "2012). (default 0)", not_negative, no_camera}, camera.lateral_noise);
   visit({Group::Sensor, "rings", "N",
          "Lidar: number of rings. (default 16; most scenes with a lidar 32)",
-         {1, 1024}, is_lidar}, lidar.rings);
+         {1, 1024}, no_lidar}, lidar.rings);
   visit({Group::Sensor, "min-elevation", "DEG",
          "Lidar: lowest ring [degrees]. (default -15; most scenes with a lidar -30)",
-         {-90.0, 90.0}, is_lidar}, lidar.min_elevation);
+         {-90.0, 90.0}, no_lidar}, lidar.min_elevation);
   visit({Group::Sensor, "max-elevation", "DEG",
          "Lidar: highest ring [degrees]. (default 15; most scenes with a lidar 10)",
-         {lidar.min_elevation, 90.0}, is_lidar}, lidar.max_elevation);
+         {lidar.min_elevation, 90.0}, no_lidar}, lidar.max_elevation);
   visit({Group::Sensor, "azimuth-step", "DEG",
          "Lidar: angle between rays [degrees]. (default 0.4)",
-         {0.01, 180.0}, is_lidar}, lidar.azimuth_step);
+         {0.01, 180.0}, no_lidar}, lidar.azimuth_step);
   visit({Group::Sensor, "azimuth-phase", "PART",
          "Lidar: turn all rays of a scan by a random fraction of an azimuth step, at "
-         "most this fraction, 0 to 1. (default 0)", part_of_all, is_lidar},
+         "most this fraction, 0 to 1. (default 0)", part_of_all, no_lidar},
         lidar.azimuth_phase);
   visit({Group::Noise, "range-noise", "M",
          "Lidar: standard deviation of the range [m]. (default 0.02)",
-         not_negative, is_lidar}, lidar.range_noise);
+         not_negative, is_camera ? no_lidar : no_noise}, lidar.range_noise);
   visit({Group::Errors, "ring-offset", "M",
          "Lidar: standard deviation of the rings' constant range offsets [m], which "
-         "are the same in both scans. (default 0)", not_negative, is_lidar},
+         "are the same in both scans. (default 0)", not_negative, no_lidar},
         lidar.ring_offset);
   visit({Group::Errors, "sensor-seed", "N",
-         "Lidar: seed of these offsets, 0 to 2^64-1. (default 1)", {}, is_lidar},
+         "Lidar: seed of these offsets, 0 to 2^64-1. (default 1)", {},
+         lidar.ring_offset > 0.0 ? no_lidar : "without --ring-offset"},
         lidar.sensor_seed);
   visit({Group::Sensor, "min-range", "M",
          "Nearest reading [m]. (default 0.3; lidar16 to lidar128 1)", positive},
@@ -104,16 +106,18 @@ visitSensor(SensorT& sensor, const Visitor& visit)
         sensor.noise);
   visit({Group::Noise, "noise-correlation", "PART",
          "Fraction of the variance of the reading's noise, 0 to 1, that neighbouring "
-         "rays share. (default 0)", part_of_all, is_correlated},
-        sensor.noise_correlation);
+         "rays share. (default 0)", part_of_all,
+         sensor.noise_correlation > 0.0 ? no_noise : "at 0"}, sensor.noise_correlation);
   visit({Group::Noise, "noise-correlation-pixels", "N",
          "Standard deviation of the Gaussian that smooths the shared part [pixels; "
-         "rings and azimuth steps]. (default 2.5)", {0.1, 100.0}, is_correlated},
+         "rings and azimuth steps]. (default 2.5)", {0.1, 100.0},
+         sensor.noise_correlation > 0.0 ? no_noise : "without --noise-correlation"},
         sensor.noise_correlation_pixels);
   visit({Group::Noise, "incidence-noise", "POWER",
          "Divide the noise of the reading by cos(angle of incidence) to this power, 0 "
          "to 4; time-of-flight cameras have about 1. It grows tenfold at most. (default "
-         "0)", {0.0, 4.0}, is_lidar || sensor.incidence_noise > 0.0},
+         "0)", {0.0, 4.0},
+         !is_camera || sensor.incidence_noise > 0.0 ? no_noise : "at 0"},
         sensor.incidence_noise);
   visit({Group::Errors, "quantisation", "KIND",
          "Rounding of the readings: none, kinect (camera: 345 m / k, 3 mm at 1 m) or a "
@@ -126,8 +130,8 @@ visitSensor(SensorT& sensor, const Visitor& visit)
          "Probability of a wrong reading, 0 to 1. (default 0)", part_of_all},
         sensor.outliers);
   visit({Group::Errors, "outlier-spread", "M",
-         "Largest error of a wrong reading [m]. (default 0.1)", not_negative},
-        sensor.outlier_spread);
+         "Largest error of a wrong reading [m]. (default 0.1)", not_negative,
+         sensor.outliers > 0.0 ? nullptr : "without --outliers"}, sensor.outlier_spread);
   visit({Group::Errors, "jitter", "PART",
          "Move each ray at random within this fraction, 0 to 1, of a pixel or azimuth "
          "step. 0 is the fixed grid of a real sensor. (default 0)", part_of_all},
@@ -162,7 +166,7 @@ visitOptions(OptionsT& options, const Visitor& visit)
          "a lidar makes at constant velocity during one turn, which begins and ends at "
          "the back. The points are not corrected for it. The true pose is that between "
          "the middles of both turns. With 1 the second scan follows the first "
-         "immediately. (default 0)", {}, options.sweep_motion > 0.0},
+         "immediately. (default 0)", {}, options.sweep_motion > 0.0 ? nullptr : "at 0"},
         options.sweep_motion);
   visitSensor(options.sensor, visit);
 }

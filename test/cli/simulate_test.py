@@ -70,7 +70,10 @@ class Simulate(ToolTest):
             --scene can --rings 3; --scene mug --ring-offset 0.1; --scene mug --range-noise 5
             --scene room --width 100; --scene can --noise-correlation-pixels 4
             --scene can --frame world; --scene can --quantisation fine
-            --scene room --quantisation kinect; --scene can --scene mug"""
+            --scene room --quantisation kinect; --scene can --scene mug
+            --scene room --sensor-seed 3; --scene street --same-view --sweep-motion 0.5
+            --scene can --same-view --source-eye 0,-1,1; --scene can --outlier-spread 0.2
+            --scene street --noise 0 --incidence-noise 1; --scene room --noise 0 --range-noise 1"""
         for words in ["", *re.split("[;\n]", lines.strip())]:
             with self.subTest(words=words):
                 self.assert_refused(2, call(SIMULATE, *words.split(), "-o", folder))
