@@ -26,6 +26,8 @@ constexpr double least_eigenvalue = -1e-6;
 constexpr double symmetry_tolerance = 1e-3;
 /** Of covariances, by their largest variance. */
 constexpr double rounding = 1e-12;
+/** In a covariance, so that products of its numbers do not overflow. */
+constexpr double largest_number = 1e100;
 
 Vector6d
 meanOf(const StatedPose& pose)
@@ -60,8 +62,6 @@ checkedCovariance(const Matrix6d& stated, const PriorFloor& floor)
 {
   static constexpr std::array<const char*, 6> axes = {
       "x", "y", "z", "rotation about x", "rotation about y", "rotation about z"};
-  if (!stated.allFinite())
-    throw Refusal("the prior's covariance is not finite");
   Matrix6d covariance = 0.5 * (stated + stated.transpose());
   for (Eigen::Index k = 0; k < 6; ++k)
     if (covariance(k, k) < 0.0)
@@ -71,6 +71,9 @@ checkedCovariance(const Matrix6d& stated, const PriorFloor& floor)
     const double least = k < 3 ? floor.translation : floor.rotation;
     covariance(k, k) = std::max(covariance(k, k), least * least);
   }
+  if (!(covariance.array().abs() <= largest_number).all())
+    throw Refusal("the prior's covariance is not finite, or beyond " +
+                  io::textOf(largest_number) + " (m^2, rad^2)");
   for (Eigen::Index k = 0; k < 6; ++k)
     if (!(covariance(k, k) > 0.0))
       throw Refusal("the prior's variance of " + std::string(axes[k]) +

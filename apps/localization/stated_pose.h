@@ -59,8 +59,9 @@ struct StatedPrior {
  * correlations in its row, which makes the prior wider than the stated one in every
  * direction.
  * \throws Refusal with the reason if the pose is not finite, the quaternion has no
- * length of 1, pitch is within 0.01 rad of +-pi/2, or the covariance is not symmetric,
- * not positive semi-definite or has a variance that is not positive and has no floor */
+ * length of 1, pitch is within 0.01 rad of +-pi/2, or the covariance is not finite, has
+ * numbers beyond 1e100, is not symmetric, not positive semi-definite or has a variance
+ * that is not positive and has no floor */
 StatedPrior
 priorFrom(const StatedPose& pose, const PriorFloor& floor = PriorFloor());
 

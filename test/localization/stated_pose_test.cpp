@@ -165,6 +165,9 @@ TEST(StatedPose, ThatCannotBeUsedIsRefusedWithTheReason)
   bad = good;
   bad(2, 3) = std::numeric_limits<double>::quiet_NaN();
   expectRefusal(stated(somePose(), bad), "covariance is not finite");
+  bad = good;
+  bad(0, 0) = std::numeric_limits<double>::max();
+  expectRefusal(stated(somePose(), bad), "beyond 1e+100");
 
   StatedPose pose = stated(somePose(), good);
   pose.orientation.coeffs().setZero();
