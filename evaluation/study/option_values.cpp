@@ -7,6 +7,7 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <thread>
 
 namespace bayesian_icp::evaluate {
@@ -107,7 +108,11 @@ addResultOptions(ResultOptions& result,
   // clang-format off
   description.add_options()
     ("output", outputName("file", result.file), file_help)
-    ("report", io::flag(result.has_report),
+    ("report", io::flag(result.has_report)->notifier([&result](bool) {
+       if (std::filesystem::path(result.file).extension() != ".csv")
+         throw io::BadValue(" reads files whose names end in .csv, but --output is " +
+                            io::inQuotes(result.file));
+     }),
      "also make a report, with figures, of all results in that folder")
     ("help", "show this text");
   // clang-format on

@@ -136,6 +136,7 @@ TEST_F(EvaluateCommands, BadOptionsExitWithTwoAndLeaveNothing)
         "--quic",
         "word",
         "--output ''",
+        "--output cov.txt --report",
         "--real . --conditions same"}},
       {"sbc",
        {"--sampler guessing",
