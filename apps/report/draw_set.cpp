@@ -100,14 +100,16 @@ double
 kernelWidth(const DrawSet& draws, int coordinate)
 {
   constexpr double silverman = 1.06;
+  const auto squaresOf = [](const auto& errors) {
+    return (errors.array() - errors.mean()).square().sum();
+  };
   double sum_of_squares = 0.0;
-  Eigen::Index num_draws = 0;
-  for (const ChainDraws& chain : draws.chains) {
-    const auto column = chain.errors.col(coordinate);
-    sum_of_squares += (column.array() - column.mean()).square().sum();
-    num_draws += column.size();
-  }
-  const auto num = static_cast<double>(num_draws);
+  for (const ChainDraws& chain : draws.chains)
+    sum_of_squares += squaresOf(chain.errors.col(coordinate));
+  const Eigen::VectorXd errors = pooledErrors(draws, coordinate);
+  if (sum_of_squares == 0.0)
+    sum_of_squares = squaresOf(errors);
+  const auto num = static_cast<double>(errors.size());
   return silverman * std::sqrt(sum_of_squares / num) * std::pow(num, -0.2);
 }
 

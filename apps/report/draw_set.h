@@ -60,8 +60,8 @@ std::vector<Eigen::VectorXd>
 ranksOf(const DrawSet& draws, int coordinate);
 
 /** \brief Width of a kernel that shows the density of one coordinate: Silverman's for
- * the spread within chains, so that chains in different places stay apart; 0 if no
- * chain moves. */
+ * the spread within chains, so that chains in different places stay apart. If no chain
+ * moves, as with one draw in each, it is that for the spread of all draws. */
 double
 kernelWidth(const DrawSet& draws, int coordinate);
 

@@ -70,15 +70,18 @@ intervalText(const Axis& axis)
 std::string
 densityScript(const DrawSet& draws, int k)
 {
+  constexpr double share_of_tick = 0.2; // room for the longest numbers
   const Axis& axis = draws.axes[k];
-  const auto [low, high] = rangeOf(draws, k);
   const double width = kernelWidth(draws, k);
+  auto [low, high] = rangeOf(draws, k);
+  low -= 2.0 * width;
+  high += 2.0 * width;
   std::string script = drawsBlock(draws, max_density_draws, "") + chart_style +
                        "set border 1\nunset ytics\nset xlabel " +
-                       plot::quotedForGnuplot(differenceLabel(axis)) +
-                       "\nset xtics autofreq\nset yrange [0:*]\nset samples 240\n"
-                       "set xrange " +
-                       plotRange(low - 2.0 * width, high + 2.0 * width) + '\n';
+                       plot::quotedForGnuplot(differenceLabel(axis)) + "\nset xtics " +
+                       plotNumber(io::roundedUp(share_of_tick * (high - low))) +
+                       "\nset yrange [0:*]\nset samples 240\nset xrange " +
+                       plotRange(low, high) + '\n';
   const std::string mean_line =
       "set arrow from first 0, graph 0 to first 0, graph 1 nohead dashtype 2\n";
   if (!(width > 0.0)) // the draws are all alike

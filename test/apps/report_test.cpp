@@ -287,6 +287,8 @@ TEST(DrawSet, KernelIsAsNarrowAsTheChainsAreNotAsTheirDistance)
   EXPECT_NEAR(kernelWidth(near, 5), kernelWidth(far, 5), 1e-9);
   EXPECT_GT(kernelWidth(near, 5), 0.0);
   EXPECT_EQ(kernelWidth(near, 0), 0.0);
+  // Chains of one draw have a distance only.
+  EXPECT_GT(kernelWidth(drawSetOf(resultWith({{0.0}, {0.1}})), 5), 0.0);
 }
 
 /** The numbers of a block of data of a picture's script. */
