@@ -27,7 +27,7 @@ struct PaperRunName {
 };
 
 /** \brief A run of a method against the baseline and the truth, behind Table I. Numbers
- * are NaN, or divergences infinite, where there are fewer than 10 draws. */
+ * are NaN, or divergences infinite, where there are fewer than min_scored_draws. */
 struct DistributionRun {
   static constexpr int num_name_columns = 4;
 
@@ -172,7 +172,7 @@ struct DrawPart {
 PoseMatrix
 partOf(const ChainSet& chains, const DrawPart& part);
 
-/** \brief KL(baseline || draws); infinite with fewer than 10 draws. */
+/** \brief KL(baseline || draws); infinite with fewer than min_scored_draws. */
 CurveDivergences
 curveDivergences(const PoseMatrix& draws, const PaperBaseline& baseline);
 

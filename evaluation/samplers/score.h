@@ -8,6 +8,7 @@
 #include "study/run_file.h"
 #include "study/text_table.h"
 
+#include <bayesian_icp/options.h>
 #include <bayesian_icp/summary.h>
 
 #include <cstdint>
@@ -95,7 +96,7 @@ struct ScoredRun {
 };
 
 /** \brief With fewer draws there are no distances. */
-constexpr Eigen::Index min_scored_draws = 10;
+constexpr Eigen::Index min_scored_draws = min_particles;
 
 /** \param[in] gold_draws poses theta of the gold standard */
 Score

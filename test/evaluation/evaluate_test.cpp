@@ -188,6 +188,10 @@ TEST(Score, JudgesGoodAndBadDraws)
   EXPECT_LT(shifted.coordinate_kl[2], 0.01);
 
   EXPECT_TRUE(std::isinf(scoreOf(SamplerRun(), gold).kl));
+  SamplerRun particles; // as few as Stein steps take
+  particles.chains.chains.resize(1);
+  particles.chains.chains[0].draws = gaussianDraws(gaussian, min_particles, 2);
+  EXPECT_TRUE(std::isfinite(scoreOf(particles, gold).kl));
 }
 
 TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)
