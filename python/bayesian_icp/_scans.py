@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ class ScanPair(NamedTuple):
     """(4, 4) the true pose."""
 
 
-def simulate(scene: str, *, seed: int = 1, **options: Any) -> ScanPair:
+def simulate(scene: str, *, seed: int = 1, same_view: bool = False, **options: Any) -> ScanPair:
     """Scan a simulated scene twice, as the program pcl_bayesian_icp_simulate does.
 
     Parameters
@@ -57,15 +58,18 @@ def simulate(scene: str, *, seed: int = 1, **options: Any) -> ScanPair:
         One of `scenes`.
     seed : int
         Of the noise. The same arguments give the same points.
+    same_view : bool
+        Scan the source from the target's view.
     **options
         The options of the program with underscores: ``noise=2``, ``sensor="lidar64"``,
-        ``width=160, height=120``, ``source_eye=(1, 0, 0.5)``, ``same_view=True``. Its
-        ``--help`` explains them.
+        ``width=160, height=120``, ``source_eye=(1, 0, 0.5)``. Its ``--help`` explains them.
 
     Raises
     ------
+    TypeError
+        If there is no such option.
     ValueError
-        If there is no such scene or option, or a value is out of range.
+        If there is no such scene, or a value is out of range.
 
     Examples
     --------
@@ -73,23 +77,21 @@ def simulate(scene: str, *, seed: int = 1, **options: Any) -> ScanPair:
     >>> scans.source.shape[1], scans.T_target_source.shape
     (3, (4, 4))
     """
-    for name in ("help", "version", "list_scenes"):
-        if name in options:
-            raise ValueError(f"{name} is no option of simulate(); scenes() lists the scenes")
     arguments = [f"--scene={scene}", f"--seed={seed}", "--output=none"]
+    arguments += ["--same-view"] if same_view else []
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
-        if isinstance(value, (bool, np.bool_)):
-            arguments += [option] if value else []
-        elif np.ndim(value):
-            arguments.append(option + "=" + ",".join(repr(float(number)) for number in value))
-        else:
-            arguments.append(f"{option}={value}")
+        if np.ndim(value):
+            value = ",".join(repr(float(number)) for number in value)
+        arguments.append(f"{option}={value}")
     try:
         return ScanPair(*_tools.simulate(arguments))
     except ValueError as error:
-        text = str(error).replace("--list-scenes shows all", "scenes() lists all")
-        raise ValueError(text.replace("unrecognised option '--", "simulate() has no option '")) from None
+        text = str(error)
+    unknown = re.match("(?:unrecognised )?option '--([^'=]*)", text)
+    if unknown:
+        raise TypeError(f"simulate() has no option {unknown[1].replace('-', '_')}")
+    raise ValueError(text.replace("--list-scenes shows all", "scenes() lists all"))
 
 
 def scenes() -> dict[str, str]:

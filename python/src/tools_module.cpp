@@ -53,15 +53,11 @@ simulate(const std::vector<std::string>& arguments)
   for (const std::string& argument : arguments)
     words.push_back(argument.c_str());
   simulator::ScanPair pair;
-  try {
+  {
     const py::gil_scoped_release release;
     pair = simulator::simulate(
         simulator::parseCommandLine(static_cast<int>(words.size()), words.data())
             .options);
-  }
-  catch (const io::Answered&) {
-    throw std::invalid_argument(
-        "help, version and list_scenes are no options of simulate()");
   }
   return py::make_tuple(RowMajorPoints(pair.source.transpose()),
                         RowMajorPoints(pair.target.transpose()),

@@ -96,15 +96,16 @@ def test_simulates_as_the_program(program, tmp_path):
     assert "mug" in bayesian_icp.scenes()
 
 
-@pytest.mark.parametrize("keywords, pattern", [
-    ({"scene": "castle"}, r"castle.*scenes\(\)"), ({"scene": "mug", "nois": 2}, "nois"),
-    ({"scene": "mug", "noise": -1}, "noise"), ({"scene": "mug", "noise": "loud"}, "loud"),
-    ({"scene": "mug", "source_eye": (1, 2)}, "source-eye"), ({"scene": "mug", "help": True}, "help"),
-    ({"scene": "mug", "list_scenes": True}, r"list_scenes is no option .*scenes\(\)"),
+@pytest.mark.parametrize("kind, keywords, pattern", [
+    (ValueError, {"scene": "castle"}, r"castle.*scenes\(\)"), (ValueError, {"noise": -1}, "noise"),
+    (ValueError, {"noise": "loud"}, "loud"), (ValueError, {"noise": False}, "noise.*False"),
+    (ValueError, {"source_eye": (1, 2)}, "source-eye"), (TypeError, {"nois": 2}, "no option nois$"),
+    (TypeError, {"max_rang": False}, "no option max_rang$"), (TypeError, {"help": True}, "no option help$"),
+    (TypeError, {"list_scenes": True}, "no option list_scenes$"), (TypeError, {"output": "x"}, "no option output$"),
 ])
-def test_bad_simulations(keywords, pattern, capfd):
-    with pytest.raises(ValueError, match=pattern) as error:
-        bayesian_icp.simulate(**keywords)
+def test_bad_simulations(kind, keywords, pattern, capfd):
+    with pytest.raises(kind, match=pattern) as error:
+        bayesian_icp.simulate(**{"scene": "mug", **keywords})
     assert "--list" not in str(error.value) and capfd.readouterr().out == ""
 
 
