@@ -66,19 +66,6 @@ cloudLine(const char* role, const io::CloudFile& cloud);
 std::string
 matrixText(const Eigen::Matrix4d& matrix);
 
-/** \brief A flag and its name in files. */
-struct DataFlag {
-  const char* key;
-  bool DataFlags::*is_raised;
-};
-
-constexpr DataFlag data_flags[] = {{"wrong_basin", &DataFlags::wrong_basin},
-                                   {"low_support", &DataFlags::low_support},
-                                   {"few_patches", &DataFlags::few_patches},
-                                   {"misfit", &DataFlags::misfit},
-                                   {"no_information", &DataFlags::no_information},
-                                   {"prior_conflict", &DataFlags::prior_conflict}};
-
 /** \brief "wrong basin, misfit"; empty if no flag is raised. */
 std::string
 flagNames(const DataFlags& flags);

@@ -10,7 +10,6 @@
 #include "io/numbers.h"
 #include "methods/published_covariances.h"
 #include "register/choices.h"
-#include "register/report_text.h"
 #include "study/text_table.h"
 
 #include <algorithm>
@@ -76,7 +75,7 @@ std::string
 notesOf(const DataReport& report)
 {
   std::string notes;
-  for (const app::DataFlag& flag : app::data_flags)
+  for (const DataFlag& flag : data_flags)
     if (report.flags.*flag.is_raised)
       notes += std::string("flag:") + flag.key + ';';
   return notes + "prior_only=" + std::to_string(numPriorOnly(report)) +

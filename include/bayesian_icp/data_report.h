@@ -105,6 +105,20 @@ struct DataFlags {
   }
 };
 
+/** \brief A flag and its name in files and in Python. */
+struct DataFlag {
+  const char* key;
+  bool DataFlags::*is_raised;
+};
+
+/** \brief All flags. */
+constexpr DataFlag data_flags[] = {{"wrong_basin", &DataFlags::wrong_basin},
+                                   {"low_support", &DataFlags::low_support},
+                                   {"few_patches", &DataFlags::few_patches},
+                                   {"misfit", &DataFlags::misfit},
+                                   {"no_information", &DataFlags::no_information},
+                                   {"prior_conflict", &DataFlags::prior_conflict}};
+
 /** \brief The report of preset `calibrated`. If there are several modes, it describes
  * the heaviest one. */
 struct BAYESIAN_ICP_EXPORT DataReport {

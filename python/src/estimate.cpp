@@ -109,17 +109,9 @@ std::vector<std::string>
 flagsOfReport(const DataReport& report)
 {
   std::vector<std::string> names;
-  const auto add = [&names](bool is_raised, const char* name) {
-    if (is_raised)
-      names.emplace_back(name);
-  };
-  const DataFlags& flags = report.flags;
-  add(flags.wrong_basin, "wrong_basin");
-  add(flags.low_support, "low_support");
-  add(flags.few_patches, "few_patches");
-  add(flags.misfit, "misfit");
-  add(flags.no_information, "no_information");
-  add(flags.prior_conflict, "prior_conflict");
+  for (const DataFlag& flag : data_flags)
+    if (report.flags.*flag.is_raised)
+      names.emplace_back(flag.key);
   return names;
 }
 
