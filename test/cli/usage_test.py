@@ -3,7 +3,7 @@
 import re
 
 import cloud_files
-from cli_tool import FAST, SMALL_PAIR_POSE, TOOL, ToolTest, run, scans
+from cli_tool import DATA, FAST, SMALL_PAIR_POSE, TOOL, ToolTest, call, run, scans
 
 # They need not be there: options are looked at first.
 PAIR = ["a.pcd", "b.pcd"]
@@ -45,6 +45,16 @@ class Usage(ToolTest):
             (["--quiet", "--json"], "--json", "--quiet"),
         ]
         self.assert_each_refused(2, [TOOL, *PAIR], cases)
+
+    def test_scripts_refuse_words_that_they_do_not_know(self):
+        for line in """analyze src nowhere; bootstrap --demo word; coverage word; demo word; make-data a b c
+            make-doc-images a b; sanitize address --quick word; sanitize thread --quick
+            test --all word; test-on --all""".replace("\n", ";").split(";"):
+            with self.subTest(line=line):
+                script, *words = line.split()
+                result = call(DATA.parent / "scripts" / script, *words)
+                self.assertEqual((result.returncode, result.stdout), (2, ""))
+                self.assertIn(f"Usage: scripts/{script}", result.stderr)
 
     def test_malformed_values_name_option_and_value(self):
         self.assert_refused(2, run(*PAIR, "--preset=best"), "preset", "best")
