@@ -437,6 +437,7 @@ TYPED_TEST(BothRegistrations, ARefusedCloudIsAnInvalidInputUntilAnotherIsSet)
         EXPECT_FALSE(icp.hasConverged());
         expectInvalidInput(icp);
         EXPECT_EQ(this->output.size(), is_source ? 0 : this->scans.source->size());
+        EXPECT_EQ(icp.getFitnessScore(), std::numeric_limits<double>::max());
       }
     }
   this->align(icp);
@@ -454,6 +455,7 @@ TYPED_TEST(BothRegistrations, AMissingOrRefusedFirstCloudIsAnInvalidInput)
     icp.align(this->output);
     EXPECT_FALSE(icp.hasConverged());
     expectInvalidInput(icp);
+    EXPECT_EQ(icp.getFitnessScore(), std::numeric_limits<double>::max());
   }
 }
 

@@ -415,10 +415,13 @@ public:
    * PCL's, leaving out non-finite points (PCL 1.13 aborts on them, also where it is
    * called through a pointer to PCL's class).
    * \param[in] max_range largest squared distance that counts [m^2]
-   * \return the largest double if no point is in range */
+   * \return the largest double if no point is in range, or a cloud is missing or was
+   *         refused */
   double
   getFitnessScore(double max_range = std::numeric_limits<double>::max())
   {
+    if (is_source_refused_ || is_target_refused_ || !input_ || !target_)
+      return (std::numeric_limits<double>::max());
     PointCloudSource moved;
     transformPointCloud(*input_, moved, final_transformation_);
     Indices index(1);
