@@ -1,7 +1,6 @@
 #include "viewer/drawing.h"
 
 #include "io/picture_numbers.h"
-#include "viewer/annotations.h"
 
 #include <pcl/common/colors.h>
 #include <pcl/visualization/pcl_visualizer.h>
@@ -100,7 +99,7 @@ struct PanelDrawing {
     window.visualizer().addPointCloud<pcl::PointXYZRGB>(cloud, id, viewport);
     const PointStyle& style = options.styleOf(Layer::Aligned);
     setSizeAndOpacity(style.size + 1, style.opacity, id, viewport, window);
-    addColorBar(maximum, textColorOn(options.background), viewport, window);
+    window.addColorBar(maximum, textColorOn(options.background), viewport);
   }
 
   void
@@ -143,7 +142,7 @@ struct PanelDrawing {
       visualizer.setPointCloudRenderingProperties(
           visualization::PCL_VISUALIZER_OPACITY, 0.6, name, viewport);
       // A quarter round the rim, which is the middle of a fan.
-      addAxisName(k, cones[k].col(1 + last / 4), text_color, name, viewport, window);
+      window.addAxisName(k, cones[k].col(1 + last / 4), text_color, name, viewport);
     }
   }
 };
@@ -168,7 +167,7 @@ addAxes(double scale, const Color& text_color, int viewport, Window& window)
                        viewport);
     visualizer.setShapeRenderingProperties(
         visualization::PCL_VISUALIZER_LINE_WIDTH, 4, id, viewport);
-    addAxisName(k, scale * Eigen::Vector3d::Unit(k), text_color, id, viewport, window);
+    window.addAxisName(k, scale * Eigen::Vector3d::Unit(k), text_color, id, viewport);
   }
 }
 
@@ -196,7 +195,7 @@ drawScene(const Scene& scene, const ViewOptions& options, Window& window)
   const std::vector<int> viewports = window.makePanels(panels.size());
   const auto wrappedIn = [&window](const Layers& layers,
                                    const std::vector<LegendLine>& lines) {
-    return wrapped(lines, lineWidth(layers.count(Layer::Deviation) > 0, window));
+    return wrapped(lines, window.lineWidth(layers.count(Layer::Deviation) > 0));
   };
   const auto status = wrappedIn(panels.front().layers, statusOf(scene, options));
   Layers shown;
@@ -212,16 +211,16 @@ drawScene(const Scene& scene, const ViewOptions& options, Window& window)
           options.axes_scale, textColorOn(options.background), viewports[i], window);
     auto lines =
         wrappedIn(layers, legendOf(panels[i], scene, options, !options.isOffScreen()));
-    if (!hasRoomFor(lines.size() + status.size(), window))
+    if (!window.hasRoomFor(lines.size() + status.size()))
       lines.resize(title.empty() ? 0 : 1);
     num_lines = std::max(num_lines, lines.size());
-    addLegend(lines, viewports[i], window);
+    window.addLegend(lines, viewports[i]);
   }
-  addStatus(status, viewports.front(), window);
+  window.addStatus(status, viewports.front());
   window.lookAt(
       shownPoints(scene, shown),
       defaultView(scene.target, scene.sensor_origin),
-      areaBeside(num_lines, status.size(), shown.count(Layer::Deviation) > 0, window));
+      window.areaBeside(num_lines, status.size(), shown.count(Layer::Deviation) > 0));
 }
 
 } // namespace bayesian_icp::viewer

@@ -1,6 +1,5 @@
 #include "io/interrupt.h"
 #include "register/run.h"
-#include "viewer/annotations.h"
 #include "viewer/drawing.h"
 #include "viewer/live_state.h"
 
@@ -56,7 +55,7 @@ public:
     addPoints(scene.source, options.styleOf(Layer::Source), "icp", 0, window);
     window.lookAt(shownPoints(scene, {Layer::Source, Layer::Target}),
                   defaultView(scene.target, scene.sensor_origin),
-                  areaBeside(3, 0, false, window));
+                  window.areaBeside(3, 0, false));
   }
 
   void
@@ -111,7 +110,7 @@ private:
     lines.push_back({textOf(state), textColorOn(options_.background)});
     for (std::size_t i = 0; i < num_legend_lines_; ++i)
       window_.visualizer().removeShape("legend/0/" + std::to_string(i));
-    addLegend(lines, 0, window_);
+    window_.addLegend(lines, 0);
     num_legend_lines_ = lines.size();
   }
 

@@ -1,9 +1,11 @@
 /** \file
- * \brief The window, or the picture that stands in for it.
+ * \brief The window, or the picture that stands in for it, and what is written over
+ * what it shows: legend, status, colour bar.
  */
 #pragma once
 
 #include "viewer/geometry/camera.h"
+#include "viewer/legend.h"
 #include "viewer/view_options.h"
 
 #include <memory>
@@ -17,6 +19,8 @@ class OutputFolder;
 namespace pcl::visualization {
 class PCLVisualizer;
 }
+
+class vtkActor2D;
 
 namespace bayesian_icp::viewer {
 
@@ -49,9 +53,45 @@ public:
   std::vector<int>
   makePanels(std::size_t number);
 
-  /** \brief Size of one panel [pixels]. */
-  Eigen::Vector2i
-  panelSize() const;
+  /** \brief How many characters a line of a panel has room for, beside the colour bar
+   * if it has one. */
+  std::size_t
+  lineWidth(bool has_color_bar) const;
+
+  /** \brief Whether so many lines of legend and status leave a third of a panel's
+   * height to what it shows. */
+  bool
+  hasRoomFor(std::size_t num_lines) const;
+
+  /** \brief The area of a panel that a legend, the status and a colour bar leave free;
+   * at least the upper half but for the legend, however long the status is. */
+  PictureArea
+  areaBeside(std::size_t num_legend_lines,
+             std::size_t num_status_lines,
+             bool has_color_bar) const;
+
+  /** \brief Write lines into the upper left corner of a panel, under names that begin
+   * with "legend". */
+  void
+  addLegend(const std::vector<LegendLine>& lines, int viewport);
+
+  /** \brief Write what the registration came to along the lower edge of a panel. */
+  void
+  addStatus(const std::vector<LegendLine>& lines, int viewport);
+
+  /** \brief Write x, y or z where an axis ends [m], in front of all that is drawn,
+   * under a name that begins with \p id. */
+  void
+  addAxisName(std::size_t axis,
+              const Eigen::Vector3d& end,
+              const Color& color,
+              const std::string& id,
+              int viewport);
+
+  /** \brief A bar with ticks in mm or m at the right of a panel, from 0 to \p maximum
+   * [m], under a name that begins with "legend". */
+  void
+  addColorBar(double maximum, const Color& text_color, int viewport);
 
   /** \brief Look at points from a direction, unless the user has given a camera. */
   void
@@ -82,6 +122,32 @@ private:
    * \p prefix. */
   void
   toggle(const std::string& prefix);
+
+  /** Of one panel [pixels], as are the three below. */
+  Eigen::Vector2i
+  panelSize() const;
+
+  int
+  fontSize() const;
+
+  /** From one line of text to the next. */
+  int
+  lineHeight() const;
+
+  /** Of a colour bar with its numbers. */
+  int
+  barWidth() const;
+
+  /** Writes at the left of a panel, the first line \p y pixels above its lower edge,
+   * under names that begin with \p prefix. */
+  void
+  write(const std::vector<LegendLine>& lines,
+        int y,
+        const std::string& prefix,
+        int viewport);
+
+  void
+  addActor(vtkActor2D* actor, const std::string& id, int viewport);
 
   std::shared_ptr<pcl::visualization::PCLVisualizer> visualizer_;
   bool is_off_screen_;
