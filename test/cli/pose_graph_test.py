@@ -223,6 +223,28 @@ class PoseGraphEdges(PoseGraphTest):
         self.assertEqual(self.names_of_output(), ["graph.g2o"])
         self.assertEqual((self.output / "graph.g2o").read_text(), self.graph.read_text())
 
+    def test_edges_that_contradict_each_other_end_with_one(self):
+        """Each two of three scans have another part in common, the last of which has moved."""
+        generator = np.random.default_rng(1)
+
+        def part(sides, place):
+            points = generator.uniform(size=(600, 3)) * sides
+            points[np.arange(600), np.arange(600) % 3] = 0
+            return points + place + 0.001 * generator.normal(size=(600, 3))
+
+        a, b = ((0.3, 0.2, 0.1), (0, 0, 0)), ((0.2, 0.3, 0.25), (1, 0, 0))
+        for shift, exit_code in ((0, 0), (0.05, 1)):
+            c, moved_c = (((0.15, 0.1, 0.3), (x, 1, 0)) for x in (0, shift))
+            scans = [
+                self.pcd(f"{k}.pcd", np.vstack([part(*each) for each in parts]).tolist())
+                for k, parts in enumerate([(a, c), (a, b), (b, moved_c)])
+            ]
+            words = ["--prior-variance", 0.0025, "--span", 2, "--optimize", self.output]
+            result = self.run_graph(*scans, *words)
+            self.assertEqual(result.returncode, exit_code, result.stderr)
+            self.assertEqual(result.stderr.count(": ok ("), 3, result.stderr)
+            self.assertEqual("edge 0-1 contradicts the others" in result.stderr, exit_code == 1)
+
     def test_loops_do_not_count_the_prior(self):
         """In its plane a bare table top is held by the prior alone."""
         source, target = scans("table_top")
