@@ -102,6 +102,28 @@ TEST_F(Posterior, HasTheDrawsThatWereAskedFor)
   EXPECT_EQ(icp.getSummary().num_draws, 103);
 }
 
+TEST_F(Posterior, TellsWhichOfItsChainsDiverged)
+{
+  usePaper(icp);
+  auto options = icp.getOptions();
+  options.paper.sgld.step_size = 4e-4;
+  do { // until the first of them run away
+    options.paper.sgld.step_size *= 1.1;
+    icp.setOptions(options);
+    align(icp);
+  }
+  while (icp.getSummary().num_diverged_chains == 0);
+  int num_diverged = 0;
+  Eigen::Index num_draws = 0;
+  for (std::size_t chain = 0; chain < 5; ++chain) { // of which the last is none
+    num_diverged += icp.hasChainDiverged(chain) ? 1 : 0;
+    num_draws += icp.hasChainDiverged(chain) ? 0 : icp.getChain(chain).rows();
+  }
+  EXPECT_EQ(num_diverged, icp.getSummary().num_diverged_chains);
+  EXPECT_EQ(num_draws, icp.getSamples().rows());
+  EXPECT_GT(num_draws, 0);
+}
+
 /** For other numbers of threads and larger clouds see determinism_large_test.cpp. */
 TEST_F(Posterior, IsRepeatableAndThatOfItsSeed)
 {
