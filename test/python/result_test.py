@@ -1,5 +1,7 @@
 """What a result gives to others: covariances, exports, diagnostics, measurement."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -191,13 +193,16 @@ def test_a_failed_result_has_a_guess_and_no_prior(failed):
     assert np.isnan(failed.prior.variance).all() and np.isnan(failed.prior.reference_point).all()
 
 
-def test_result_shows_itself(result):
+def test_result_shows_itself_and_does_not_pickle(result):
     assert repr(result).startswith("<bayesian_icp.Result ok: x=0.0")
     assert "observed" in repr(result.directions[0])
     assert repr(result.data).startswith("<bayesian_icp.DataReport: noise 0.00")
     assert repr(result.coordinates["x"]).startswith(f"<{result.coordinates['x'].mean:.4g}±")
     assert not np.signbit(result.init_T_target_source).any() and "=-0±" not in repr(result.prior)
     assert result.seconds > 0
+    for part in (result, result.data, result.directions[0]):
+        with pytest.raises(TypeError, match="cannot pickle"):
+            pickle.dumps(part)
 
 
 @pytest.mark.parametrize("kind", [bayesian_icp.DataReport, bayesian_icp.CoordinateSummary, bayesian_icp.Direction])
