@@ -303,21 +303,26 @@ TYPED_TEST(BothRegistrations, IndicesSelectThePointsOfTheEstimate)
 {
   const IndicesPtr indices = everyNth(100, 700, 2);
   const Cloud::Ptr whole = this->scans.source;
-  this->scans.source = pcl::make_shared<Cloud>(*whole, *indices);
-  TypeParam of_subset;
-  this->align(of_subset);
-  const Cloud expected = this->output;
+  const auto subset = pcl::make_shared<Cloud>(*whole, *indices);
+  for (const bool is_reciprocal : {false, true}) {
+    Derived<TypeParam> of_subset, icp;
+    for (TypeParam* registration : {&of_subset, &icp})
+      registration->setUseReciprocalCorrespondences(is_reciprocal);
+    this->scans.source = subset;
+    this->align(of_subset);
+    const Cloud expected = this->output;
 
-  this->scans.source = whole;
-  Derived<TypeParam> icp;
-  icp.setIndices(indices);
-  this->align(icp);
-  expectSameResult(icp, of_subset);
-  ASSERT_EQ(this->output.size(), whole->size()); // the whole cloud, as in PCL
-  EXPECT_EQ(this->output[102].getVector3fMap(), expected[1].getVector3fMap());
-  ASSERT_EQ(icp.correspondences_->size(), indices->size());
-  for (std::size_t i = 0; i < indices->size(); ++i)
-    EXPECT_EQ((*icp.correspondences_)[i].index_query, (*indices)[i]);
+    this->scans.source = whole;
+    icp.setIndices(indices);
+    this->align(icp);
+    expectSameResult(icp, of_subset);
+    ASSERT_EQ(this->output.size(), whole->size()); // the whole cloud, as in PCL
+    EXPECT_EQ(this->output[102].getVector3fMap(), expected[1].getVector3fMap());
+    ASSERT_EQ(icp.correspondences_->size(), of_subset.correspondences_->size());
+    for (std::size_t i = 0; i < icp.correspondences_->size(); ++i)
+      EXPECT_EQ((*icp.correspondences_)[i].index_query,
+                (*indices)[(*of_subset.correspondences_)[i].index_query]);
+  }
 }
 
 TYPED_TEST(BothRegistrations, AnEmptyListOfIndicesMeansTheWholeCloud)

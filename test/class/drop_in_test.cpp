@@ -294,6 +294,18 @@ TEST_P(DropInClouds, WithTargetIndicesOfTheEstimation)
   });
 }
 
+TEST_P(DropInClouds, WithSourceIndicesOfTheEstimation)
+{
+  for (const bool is_reciprocal : {false, true})
+    expectSameWith([is_reciprocal](Icp& icp) {
+      const auto estimation = pcl::make_shared<Estimation>();
+      estimation->setIndicesSource(everyNth(100, 900, 3));
+      icp.setCorrespondenceEstimation(estimation);
+      icp.addCorrespondenceRejector(pcl::make_shared<OneToOne>());
+      icp.setUseReciprocalCorrespondences(is_reciprocal);
+    });
+}
+
 TEST_P(DropInClouds, WithTargetsThatChange)
 {
   expectSameAfter([&](Icp& icp, const Align& align) {

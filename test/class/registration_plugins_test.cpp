@@ -11,7 +11,9 @@
 #include <pcl/registration/transformation_estimation_point_to_plane_lls.h>
 #include <pcl/registration/transformation_estimation_symmetric_point_to_plane_lls.h>
 
+#include <initializer_list>
 #include <stdexcept>
+#include <vector>
 
 namespace pcl::test {
 namespace {
@@ -129,25 +131,62 @@ TEST_F(PluginTest, ReciprocityIsThatOfTheWholeSourceAlsoWithRejectors)
   EXPECT_EQ(icp.getSamples(), plain.getSamples());
 }
 
-TEST_F(PluginTest, RejectorsWithDataOfTheirOwnKnowPointsByTheirIndexInTheSource)
+/** Has data of its own for every source point: whether its pairs may be kept. */
+struct Knowing : registration::CorrespondenceRejectorOneToOne {
+  explicit Knowing(const Cloud& source)
+  {
+    for (const PointXYZ& point : source)
+      is_good.push_back(point.x > -0.2f);
+  }
+
+  void
+  getRemainingCorrespondences(const Correspondences& in, Correspondences& out) override
+  {
+    out.clear();
+    for (const auto& pair : in)
+      if (is_good.at(static_cast<std::size_t>(pair.index_query)))
+        out.push_back(pair);
+  }
+
+  std::vector<bool> is_good;
+};
+
+TEST_F(PluginTest, PluginsKnowPointsByTheirIndexInTheSource)
 {
-  struct Recording : registration::CorrespondenceRejectorOneToOne {
-    void
-    getRemainingCorrespondences(const Correspondences& in,
-                                Correspondences& out) override
-    {
-      CorrespondenceRejectorOneToOne::getRemainingCorrespondences(in, out);
-      if (in.size() <= 20) // a mini-batch
-        for (const auto& pair : in)
-          largest_index = std::max(largest_index, pair.index_query);
-    }
-    index_t largest_index = 0;
+  const IndicesPtr odd = everyNth(1, 900, 2), usable(new Indices);
+  for (const index_t i : *odd)
+    if (i % 7 == 0)
+      (*scans.source)[i].y = nan_value;
+    else
+      usable->push_back(i);
+  const auto subset = pcl::make_shared<Cloud>(*scans.source, *usable);
+  const auto ready_tree = pcl::make_shared<Tree>();
+  ready_tree->setInputCloud(scans.source, usable);
+  // PCL's ICP leaves points out by the indices of its estimation only.
+  const auto estimation = pcl::make_shared<Estimation>();
+  estimation->setIndicesSource(usable);
+  Icp reference;
+  reference.setCorrespondenceEstimation(estimation);
+  icp.setIndices(odd);
+  for (Icp* registration : std::initializer_list<Icp*>{&reference, &icp})
+    registration->addCorrespondenceRejector(pcl::make_shared<Knowing>(*scans.source));
+  plain.addCorrespondenceRejector(pcl::make_shared<Knowing>(*subset));
+  const auto expectSame = [&] {
+    align(reference);
+    align(icp);
+    EXPECT_EQ(icp.getFinalTransformation(), reference.getFinalTransformation());
+    EXPECT_TRUE(icp.hasConverged());
+    aligned(plain, subset, scans.target);
+    EXPECT_EQ(icp.getSamples(), plain.getSamples());
+    EXPECT_GT(icp.getSamples().rows(), 0);
   };
-  const pcl::shared_ptr<Recording> rejector(new Recording);
-  icp.addCorrespondenceRejector(rejector);
-  align(icp);
-  EXPECT_GT(rejector->largest_index, 800); // of 900
-  EXPECT_EQ(icp.getSamples().rows(), 40);
+  expectSame();
+  for (Icp* registration : std::initializer_list<Icp*>{&reference, &icp, &plain})
+    registration->setUseReciprocalCorrespondences(true);
+  expectSame();
+  for (Icp* registration : std::initializer_list<Icp*>{&reference, &icp})
+    registration->setSearchMethodSource(ready_tree, true);
+  expectSame();
 }
 
 TEST_F(PluginTest, ADistanceRejectorActsAsTheGate)
@@ -433,12 +472,15 @@ TEST_F(PluginTest, TheFastSearchFindsWhatPclsEstimationFinds)
 {
   for (const bool is_reciprocal : {false, true}) {
     const double max_distance = 0.03;
+    const IndicesPtr indices = everyNth(0, 900);
     Tree::Ptr tree(new Tree);
     tree->setInputCloud(scans.target);
     const bayesian_icp_detail::KdTreeSearch<PointXYZ, PointXYZ> search(
-        tree, scans.target, max_distance, is_reciprocal ? scans.source : nullptr);
-
-    const IndicesPtr indices = everyNth(0, 900);
+        tree,
+        scans.target,
+        max_distance,
+        indices,
+        is_reciprocal ? scans.source : nullptr);
     const std::vector<std::size_t> all(indices->begin(), indices->end());
     bayesian_icp::Random random(3, 0);
     std::size_t num_compared = 0;

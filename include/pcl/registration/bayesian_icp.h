@@ -274,6 +274,7 @@ protected:
   using Base::correspondence_rejectors_;
   using Base::final_transformation_;
   using Base::force_no_recompute_;
+  using Base::input_;
   using Base::reg_name_;
   using Base::target_;
   using Base::tree_;
@@ -286,10 +287,8 @@ protected:
   }
 
   /** \brief ICP, then the posterior. */
-  bool
-  registerUsable(const PointCloudSourceConstPtr& source,
-                 PointCloudSource& output,
-                 const Matrix4& guess) override;
+  void
+  registerUsable(const IndicesConstPtr& usable, const Matrix4& guess) override;
 
   void
   keepFailure(bool is_input_valid, const char* reason) override
@@ -303,13 +302,16 @@ protected:
 private:
   /** \return false if the progress callback has cancelled it */
   bool
-  runIcp(PointCloudSource& output, const Matrix4& guess);
+  runIcp(const Matrix4& guess);
 
   void
-  samplePosterior(const PointCloudSourceConstPtr& source, const Matrix4& guess);
+  samplePosterior(const IndicesConstPtr& usable, const Matrix4& guess);
 
+  /** \param[in] usable indices of the source's \p points */
   bayesian_icp::PosteriorEstimate
-  estimateByPreset(const PointCloudSourceConstPtr& source, const Vector6d& start);
+  estimateByPreset(Eigen::Matrix3Xd points,
+                   const IndicesConstPtr& usable,
+                   const Vector6d& start);
 
   /** \brief Whether the pairs are exactly those of the nearest points. */
   bool
@@ -337,7 +339,7 @@ private:
   targetTree() const;
 
   bool
-  moveToMean(const PointCloudSource& source);
+  moveToMean(const Indices& usable);
 
   bayesian_icp::Options options_;
   /** Whether a setter has changed the scale since setOptions(). */

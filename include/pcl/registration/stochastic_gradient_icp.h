@@ -110,6 +110,7 @@ protected:
   using Base::converged_;
   using Base::correspondences_;
   using Base::final_transformation_;
+  using Base::input_;
   using Base::max_iterations_;
   using Base::nr_iterations_;
   using Base::previous_transformation_;
@@ -127,10 +128,8 @@ protected:
     result_ = Result();
   }
 
-  bool
-  registerUsable(const PointCloudSourceConstPtr& source,
-                 PointCloudSource& output,
-                 const Matrix4& guess) override;
+  void
+  registerUsable(const IndicesConstPtr& usable, const Matrix4& guess) override;
 
   void
   keepFailure(bool is_input_valid, const char* /* reason */) override
@@ -145,11 +144,11 @@ private:
   /** \return whether Scalar can hold the pose; if not, nothing is done */
   bool
   takeStep(const Search& search,
-           const PointCloudSource& source,
+           const Indices& usable,
            const bayesian_icp::Vector6d& pose);
 
   void
-  findPairs(const Search& search, const PointCloudSource& source);
+  findPairs(const Search& search, const Indices& usable);
 
   void
   publishEnd();

@@ -69,19 +69,17 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::setNumberOfThre
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-bool
+void
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
-    const PointCloudSourceConstPtr& source,
-    PointCloudSource& output,
-    const Matrix4& guess)
+    const IndicesConstPtr& usable, const Matrix4& guess)
 {
   if (!use_mean_as_final_transformation_) {
-    if (runIcp(output, guess))
-      samplePosterior(source, guess);
-    return (true);
+    if (runIcp(guess))
+      samplePosterior(usable, guess);
+    return;
   }
   this->giveTargetToPlugins();
-  samplePosterior(source, guess);
+  samplePosterior(usable, guess);
   // Without ICP, and as long as there is no mean, the source stays at the guess.
   this->nr_iterations_ = 0;
   this->correspondences_->clear();
@@ -89,20 +87,19 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::registerUsable(
   convergence_criteria_->setConvergenceState(
       Base::State::CONVERGENCE_CRITERIA_NOT_CONVERGED);
   final_transformation_ = guess;
-  if (moveToMean(*source) ||
-      estimate_.summary.status == bayesian_icp::Status::Cancelled)
-    return (false);
-  runIcp(output, guess);
-  return (true);
+  if (!moveToMean(*usable) &&
+      estimate_.summary.status != bayesian_icp::Status::Cancelled)
+    runIcp(guess);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
-    PointCloudSource& output, const Matrix4& guess)
+    const Matrix4& guess)
 {
+  PointCloudSource moved; // the output may be the source, which the posterior needs
   if (!progress_callback_) {
-    Icp::computeTransformation(output, guess);
+    Icp::computeTransformation(moved, guess);
     return (true);
   }
   // PCL calls the visualizer in each iteration, and looks at the largest number of
@@ -123,7 +120,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
     using Visualizer = decltype(this->update_visualizer_);
     const bayesian_icp_detail::Substitution<Visualizer> asking(
         this->update_visualizer_, Visualizer(askAndVisualize));
-    Icp::computeTransformation(output, guess);
+    Icp::computeTransformation(moved, guess);
   }
   if (!is_cancelled)
     return (true);
@@ -139,16 +136,16 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::runIcp(
 template <typename PointSource, typename PointTarget, typename Scalar>
 void
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior(
-    const PointCloudSourceConstPtr& source, const Matrix4& guess)
+    const IndicesConstPtr& usable, const Matrix4& guess)
 {
-  using bayesian_icp_detail::usualCoordinate;
   const Eigen::Matrix4d initial = guess.template cast<double>();
   if (bayesian_icp_detail::isRigid(initial)) {
-    estimate_ = estimateByPreset(source, bayesian_icp::poseOf(initial));
-    bayesian_icp::doubtRounding(
-        std::max(usualCoordinate(*source), usualCoordinate(*target_)),
-        options_,
-        estimate_.summary);
+    Eigen::Matrix3Xd points = bayesian_icp_detail::pointMatrix(*input_, *usable);
+    const double coordinate = std::max(bayesian_icp::usualCoordinate(points),
+                                       bayesian_icp_detail::usualCoordinate(*target_));
+    estimate_ =
+        estimateByPreset(std::move(points), usable, bayesian_icp::poseOf(initial));
+    bayesian_icp::doubtRounding(coordinate, options_, estimate_.summary);
   }
   else {
     keepFailure(false, "the initial guess is not a rotation and a translation");
@@ -159,9 +156,8 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::samplePosterior
 template <typename PointSource, typename PointTarget, typename Scalar>
 bayesian_icp::PosteriorEstimate
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPreset(
-    const PointCloudSourceConstPtr& source, const Vector6d& start)
+    Eigen::Matrix3Xd points, const IndicesConstPtr& usable, const Vector6d& start)
 {
-  auto points = bayesian_icp_detail::pointMatrix(*source);
   bayesian_icp::Options options = options_;
   const auto refused = [](const char* reason) {
     bayesian_icp::PosteriorEstimate refusal;
@@ -202,7 +198,7 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::estimateByPrese
     return (bayesian_icp::estimatePosterior(
         points, *tree, start, options, progress_callback_));
   const auto search =
-      this->makeCorrespondenceSearch(source, std::min(gate, corr_dist_threshold_));
+      this->makeCorrespondenceSearch(usable, std::min(gate, corr_dist_threshold_));
   return (bayesian_icp::estimatePosterior(
       points, *search, start, options, progress_callback_));
 }
@@ -230,18 +226,12 @@ Eigen::Matrix3Xd
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::searchedTargetPoints()
     const
 {
-  using namespace bayesian_icp_detail;
-  const auto& cloud = this->searchedCloud();
   Indices found;
   this->anyOfSearched([&found](index_t index) {
     found.push_back(index);
     return (false);
   });
-  if (isWholeCloud(found, cloud.size()))
-    return (pointMatrix(cloud));
-  PointCloud<PointTarget> selection;
-  copyPointCloud(cloud, found, selection);
-  return (pointMatrix(selection));
+  return (bayesian_icp_detail::pointMatrix(this->searchedCloud(), found));
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -274,12 +264,12 @@ BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::targetTree() co
 template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 BayesianIterativeClosestPoint<PointSource, PointTarget, Scalar>::moveToMean(
-    const PointCloudSource& source)
+    const Indices& usable)
 {
   if (!bayesian_icp::hasUsableMean(estimate_.summary.status))
     return (false);
   const Matrix4 mean =
-      this->asEstimationAllows(source, final_transformation_, getMeanTransformation());
+      this->asEstimationAllows(usable, final_transformation_, getMeanTransformation());
   if (!mean.allFinite())
     return (false);
   final_transformation_ = mean;

@@ -46,6 +46,52 @@ pointMatrix(const PointCloud<PointT>& cloud)
   return (points);
 }
 
+/** The coordinates of the points of \p indices, 3 x n [m]. */
+template <typename PointT>
+Eigen::Matrix3Xd
+pointMatrix(const PointCloud<PointT>& cloud, const Indices& indices)
+{
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(indices.size()));
+  Eigen::Index column = 0;
+  for (const auto index : indices)
+    points.col(column++) = cloud[index].getVector3fMap().template cast<double>();
+  return (points);
+}
+
+/** The source indices that a correspondence estimation was given. Null if it was given
+ * none: PCL makes a list of all points of the input then. */
+template <typename Estimation>
+IndicesPtr
+givenSourceIndices(Estimation& estimation)
+{
+  struct Opened : Estimation {
+    using Estimation::fake_indices_;
+  };
+  const bool are_given = !(estimation.*(&Opened::fake_indices_));
+  return (are_given ? estimation.getIndicesSource() : IndicesPtr());
+}
+
+/** Gives a correspondence estimation other source indices for the lifetime of this
+ * object; null means all points of its input. */
+template <typename Estimation>
+class SourceIndices {
+public:
+  SourceIndices(Estimation& estimation, const IndicesPtr& indices)
+  : estimation_(estimation)
+  , original_(givenSourceIndices(estimation))
+  {
+    estimation_.setIndicesSource(indices);
+  }
+  ~SourceIndices() { estimation_.setIndicesSource(original_); }
+  SourceIndices(const SourceIndices&) = delete;
+  SourceIndices&
+  operator=(const SourceIndices&) = delete;
+
+private:
+  Estimation& estimation_;
+  IndicesPtr original_;
+};
+
 /** Nearest neighbour in a PCL search tree; the buffers spare PCL's an allocation. */
 template <typename PointT>
 class NearestNeighbor {
@@ -81,13 +127,18 @@ private:
   std::vector<float> squared_distance_ = std::vector<float>(1);
 };
 
-/** A search that also knows which target points its answers are. */
+/** A search that also knows which points of the clouds it is asked about, and which
+ * ones its answers are. */
 template <typename PointTarget>
 class PairSearch : public bayesian_icp::CorrespondenceSearch {
 public:
   using TargetConstPtr = typename PointCloud<PointTarget>::ConstPtr;
 
-  explicit PairSearch(const TargetConstPtr& target) : target_(target) {}
+  /** \param[in] usable indices in the source cloud of the points that find() counts */
+  PairSearch(const IndicesConstPtr& usable, const TargetConstPtr& target)
+  : usable_(usable)
+  , target_(target)
+  {}
 
   void
   find(const bayesian_icp::Vector6d& pose,
@@ -95,15 +146,19 @@ public:
        const Eigen::Matrix3Xd& moved_points,
        bayesian_icp::Correspondences& correspondences) const override
   {
+    std::vector<std::size_t> in_cloud;
+    in_cloud.reserve(source_indices.size());
+    for (const std::size_t index : source_indices)
+      in_cloud.push_back(static_cast<std::size_t>((*usable_)[index]));
     correspondences.clear();
-    for (const auto& pair : findPairs(pose, source_indices, moved_points))
+    for (const auto& pair : findPairs(pose, in_cloud, moved_points))
       if (pair.index_match >= 0)
         correspondences.push_back({static_cast<std::size_t>(pair.index_query),
                                    targetPoint(pair.index_match)});
   }
 
   /** As find(), as PCL's pairs: index_query counts columns, distance is squared [m^2].
-   */
+   * \param[in] source_indices count points of the source cloud, usable or not */
   virtual Correspondences
   findPairs(const bayesian_icp::Vector6d& pose,
             const std::vector<std::size_t>& source_indices,
@@ -117,6 +172,7 @@ protected:
   }
 
 private:
+  IndicesConstPtr usable_;
   TargetConstPtr target_;
 };
 
@@ -134,14 +190,15 @@ public:
   KdTreeSearch(const TargetTreeConstPtr& target_tree,
                const TargetConstPtr& target,
                double max_distance,
+               const IndicesConstPtr& usable,
                const SourceConstPtr& reciprocal_source)
-  : PairSearch<PointTarget>(target)
+  : PairSearch<PointTarget>(usable, target)
   , target_tree_(target_tree)
   , max_squared_distance_(max_distance * max_distance)
   {
     if (reciprocal_source) {
       source_tree_.reset(new search::KdTree<PointSource>);
-      source_tree_->setInputCloud(reciprocal_source);
+      source_tree_->setInputCloud(reciprocal_source, usable);
     }
   }
 
@@ -200,14 +257,15 @@ public:
   using SourceConstPtr = typename Source::ConstPtr;
   using TargetConstPtr = typename PointCloud<PointTarget>::ConstPtr;
   using Matrix4 = Eigen::Matrix<Scalar, 4, 4>;
+  using Estimation =
+      registration::CorrespondenceEstimationBase<PointSource, PointTarget, Scalar>;
 
   struct Plugins {
     /** Set if only rejectors are the user's own: PCL's estimation, of which a
      * mini-batch would see no more than itself where correspondences have to be
      * reciprocal. */
     std::shared_ptr<const KdTreeSearch<PointSource, PointTarget>> default_search;
-    typename registration::
-        CorrespondenceEstimationBase<PointSource, PointTarget, Scalar>::Ptr estimation;
+    typename Estimation::Ptr estimation;
     std::vector<registration::CorrespondenceRejector::Ptr> rejectors;
     double max_distance;
     bool is_reciprocal;
@@ -221,10 +279,12 @@ public:
   /** The plug-ins have the target, from ICP or giveTargetToPlugins(). */
   PluginSearch(const Plugins& plugins,
                const SourceConstPtr& source,
+               const IndicesConstPtr& usable,
                const TargetConstPtr& target)
-  : PairSearch<PointTarget>(target)
+  : PairSearch<PointTarget>(usable, target)
   , plugins_(plugins)
   , source_(source)
+  , all_of_batch_(*plugins.estimation, IndicesPtr())
   {}
 
   Correspondences
@@ -325,6 +385,8 @@ private:
 
   Plugins plugins_;
   SourceConstPtr source_;
+  /** The estimation's own indices do not count points of a mini-batch. */
+  SourceIndices<Estimation> all_of_batch_;
 };
 
 } // namespace bayesian_icp_detail

@@ -119,97 +119,23 @@ areWithin(const Indices& indices, std::size_t num_points)
 /** Those of \p indices whose point can be searched for where it is and where \p guess
  * moves it. */
 template <typename PointT>
-Indices
+IndicesPtr
 usablePoints(const PointCloud<PointT>& cloud,
              const Indices& indices,
              const Eigen::Matrix4f& guess)
 {
   const Eigen::Matrix3f R = guess.topLeftCorner<3, 3>();
   const Eigen::Vector3f translation = guess.topRightCorner<3, 1>();
-  Indices usable;
-  usable.reserve(indices.size());
+  const IndicesPtr usable(new Indices);
+  usable->reserve(indices.size());
   for (const auto index : indices) {
     const Eigen::Vector3f position = cloud[index].getVector3fMap();
     const Eigen::Vector3f moved = R * position + translation;
     if (canBeQueried(position) && canBeQueried(moved))
-      usable.push_back(index);
+      usable->push_back(index);
   }
   return (usable);
 }
-
-/** The source points selected by the indices of a registration and by those of its
- * correspondence estimation. The latter are taken off the estimation for the lifetime
- * of this object: they count points of the whole source, but the estimation is given
- * subsets and mini-batches of it. */
-template <typename PointSource, typename PointTarget, typename Scalar>
-class SourceSelection {
-public:
-  using Estimation =
-      registration::CorrespondenceEstimationBase<PointSource, PointTarget, Scalar>;
-
-  /** \param[in] indices those of the registration; an empty list means the whole cloud,
-   *            as it does to pcl::IterativeClosestPoint */
-  SourceSelection(Estimation& estimation,
-                  const PointCloud<PointSource>& source,
-                  const Indices& indices)
-  : estimation_(estimation)
-  , indices_(indices)
-  {
-    if (indices_.empty()) {
-      indices_.resize(source.size());
-      std::iota(indices_.begin(), indices_.end(), 0);
-    }
-    taken_off_ = givenIndices(estimation);
-    if (!taken_off_)
-      return;
-    estimation_.setIndicesSource(IndicesPtr());
-    keepOnlyThose(*taken_off_, source.size());
-  }
-  ~SourceSelection()
-  {
-    if (taken_off_)
-      estimation_.setIndicesSource(taken_off_);
-  }
-  SourceSelection(const SourceSelection&) = delete;
-  SourceSelection&
-  operator=(const SourceSelection&) = delete;
-
-  const Indices&
-  indices() const
-  {
-    return (indices_);
-  }
-
-  /** Those that the user gave the estimation. Without any, PCL makes a list of all
-   * points of the input. */
-  static IndicesPtr
-  givenIndices(Estimation& estimation)
-  {
-    const bool are_given = !(estimation.*(&Opened::fake_indices_));
-    return (are_given ? estimation.getIndicesSource() : IndicesPtr());
-  }
-
-private:
-  struct Opened : Estimation {
-    using Estimation::fake_indices_;
-  };
-
-  void
-  keepOnlyThose(const Indices& own, std::size_t num_points)
-  {
-    std::vector<bool> is_selected(num_points, false);
-    for (const auto index : indices_)
-      is_selected[static_cast<std::size_t>(index)] = true;
-    indices_.clear();
-    for (const auto index : own)
-      if (is_selected[static_cast<std::size_t>(index)])
-        indices_.push_back(index);
-  }
-
-  Estimation& estimation_;
-  Indices indices_;
-  IndicesPtr taken_off_;
-};
 
 /** ICP of those points that are finite and selected by indices.
  *
@@ -468,7 +394,7 @@ protected:
   /** The state of convergence_criteria_ [see pcl::registration]. */
   using State = registration::DefaultConvergenceCriteria<Scalar>;
 
-  /** Registers the usable points, and moves the whole source to where they went. */
+  /** Registers the usable points, and moves the whole source. */
   void
   computeTransformation(PointCloudSource& output, const Matrix4& guess) override
   {
@@ -478,17 +404,14 @@ protected:
       return;
     }
     forgetResult();
-    const PointCloudSourceConstPtr whole = input_;
-    const SourceSelection<PointSource, PointTarget, Scalar> selection(
-        *correspondence_estimation_, *whole, *indices_);
     const Eigen::Matrix4f float_guess = guess.template cast<float>();
-    const Indices usable = usablePoints(*whole, selection.indices(), float_guess);
     if (!float_guess.allFinite()) {
       fail(output, guess, false, "the initial guess is not finite");
       return;
     }
+    const IndicesPtr usable = usablePoints(*input_, selectedPoints(), float_guess);
     if (!anyOfSearched([](index_t) { return (true); }) ||
-        usable.size() < static_cast<std::size_t>(min_number_correspondences_)) {
+        usable->size() < static_cast<std::size_t>(min_number_correspondences_)) {
       fail(output,
            guess,
            true,
@@ -496,50 +419,31 @@ protected:
            "needs");
       return;
     }
-
-    // PCL's ICP takes all points of input_, and writes to output while it still needs
-    // them if both are one cloud (icp.align(*source)).
-    PointCloudSourceConstPtr source = whole;
-    const bool is_subset = !isWholeCloud(usable, whole->size());
-    if (is_subset || &output == whole.get()) {
-      PointCloudSourcePtr copy(new PointCloudSource);
-      copyPointCloud(*whole, usable, *copy);
-      source = copy;
-    }
-    PointCloudSource scratch;
-    bool is_output_moved = false;
     try {
-      const Substitution<PointCloudSourceConstPtr> input(input_, source);
-      is_output_moved =
-          registerUsable(source, source == whole ? output : scratch, guess);
+      const bool is_whole = isWholeCloud(*usable, input_->size());
+      const SourceIndices<typename Base::CorrespondenceEstimation> searched(
+          *correspondence_estimation_, is_whole ? IndicesPtr() : usable);
+      registerUsable(usable, guess);
     }
     catch (...) { // of a callback, a plug-in or the memory
       forgetResult();
-      correspondences_->clear(); // they count points of the subset
+      correspondences_->clear();
       converged_ = false;
       throw;
     }
-    if (is_subset)
-      for (auto& correspondence : *correspondences_)
-        correspondence.index_query =
-            usable[static_cast<std::size_t>(correspondence.index_query)];
-    if (source != whole || !is_output_moved) {
-      output = *whole;
-      transformCloud(*whole, output, final_transformation_);
-    }
+    output = *input_;
+    transformCloud(*input_, output, final_transformation_);
   }
 
   /** Forget the last registration. */
   virtual void
   forgetResult() = 0;
 
-  /** Register \p source, the usable points, which is input_ at the time of the call:
-   * set final_transformation_, converged_, correspondences_ and the like.
-   * \return whether \p output is now the moved source */
-  virtual bool
-  registerUsable(const PointCloudSourceConstPtr& source,
-                 PointCloudSource& output,
-                 const Matrix4& guess) = 0;
+  /** Register the \p usable points of input_: set final_transformation_, converged_,
+   * correspondences_ and the like. The correspondence estimation searches for them
+   * only. */
+  virtual void
+  registerUsable(const IndicesConstPtr& usable, const Matrix4& guess) = 0;
 
   /** Take note of an input that is not valid, or has too few points; it has been
    * reported. */
@@ -582,9 +486,9 @@ protected:
   }
 
   /** A search among the pairs that the estimation and the rejectors would find for
-   * points of \p source within \p max_distance [m]. */
+   * \p usable points of the source within \p max_distance [m]. */
   std::unique_ptr<PairSearch<PointTarget>>
-  makeCorrespondenceSearch(const PointCloudSourceConstPtr& source, double max_distance)
+  makeCorrespondenceSearch(const IndicesConstPtr& usable, double max_distance)
   {
     std::unique_ptr<KdTreeSearch<PointSource, PointTarget>> default_search;
     if (hasDefaultEstimation())
@@ -592,7 +496,8 @@ protected:
           tree_,
           target_,
           max_distance,
-          use_reciprocal_correspondence_ ? source : PointCloudSourceConstPtr()));
+          usable,
+          use_reciprocal_correspondence_ ? input_ : PointCloudSourceConstPtr()));
     if (default_search && correspondence_rejectors_.empty())
       return default_search;
 
@@ -608,7 +513,8 @@ protected:
                                PointCloudSource& out,
                                const Matrix4& T) { transformCloud(in, out, T); };
     return (std::unique_ptr<PairSearch<PointTarget>>(
-        new PluginSearch<PointSource, PointTarget, Scalar>(plugins, source, target_)));
+        new PluginSearch<PointSource, PointTarget, Scalar>(
+            plugins, input_, usable, target_)));
   }
 
   bool
@@ -651,13 +557,11 @@ protected:
 
   /** The transformation next to \p to that the transformation estimation allows: a
    * user's own may know some motions only (2-D, translation), so it is asked for the
-   * one that brings \p source from \p from to \p to, until it no longer moves, because
+   * one that brings \p usable points from \p from to \p to, until none moves, because
    * its steps may be linearised. Normals do not matter, and may be unset: every point
    * gets one along an axis. Not finite, with a warning, if it knows no motion. */
   Matrix4
-  asEstimationAllows(const PointCloudSource& source,
-                     const Matrix4& from,
-                     const Matrix4& to)
+  asEstimationAllows(const Indices& usable, const Matrix4& from, const Matrix4& to)
   {
     const auto& estimation = *transformation_estimation_;
     if (typeid(estimation) ==
@@ -666,6 +570,8 @@ protected:
       return (to);
     constexpr int max_steps = 20;
     constexpr Scalar negligible = Scalar(1e-6);
+    PointCloudSource source;
+    copyPointCloud(*input_, usable, source);
     PointCloudSource there = source, here = source;
     transformCloud(source, there, to);
     PointCloudTarget goal;
@@ -746,9 +652,7 @@ private:
     // PCL adapts indices of its own to the source.
     for (const IndicesConstPtr& selected :
          {IndicesConstPtr(fake_indices_ ? nullptr : indices_),
-          IndicesConstPtr(
-              SourceSelection<PointSource, PointTarget, Scalar>::givenIndices(
-                  *correspondence_estimation_))})
+          IndicesConstPtr(givenSourceIndices(*correspondence_estimation_))})
       if (selected && !areWithin(*selected, input_->size()))
         return ("an index is outside the source of " + std::to_string(input_->size()) +
                 " points");
@@ -757,6 +661,30 @@ private:
       return ("an index is outside the target of " + std::to_string(target_->size()) +
               " points");
     return ("");
+  }
+
+  /** The source points selected by the indices of this object and by those of the
+   * correspondence estimation. An empty list here means the whole cloud, as it does to
+   * pcl::IterativeClosestPoint. */
+  Indices
+  selectedPoints() const
+  {
+    Indices selected = *indices_;
+    if (selected.empty()) {
+      selected.resize(input_->size());
+      std::iota(selected.begin(), selected.end(), 0);
+    }
+    const IndicesPtr given = givenSourceIndices(*correspondence_estimation_);
+    if (!given)
+      return (selected);
+    std::vector<bool> is_selected(input_->size(), false);
+    for (const auto index : selected)
+      is_selected[static_cast<std::size_t>(index)] = true;
+    selected.clear();
+    for (const auto index : *given)
+      if (is_selected[static_cast<std::size_t>(index)])
+        selected.push_back(index);
+    return (selected);
   }
 
   void

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace pcl {
 
@@ -45,11 +44,9 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-bool
+void
 StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    registerUsable(const PointCloudSourceConstPtr& source,
-                   PointCloudSource& /* output */,
-                   const Matrix4& guess)
+    registerUsable(const IndicesConstPtr& usable, const Matrix4& guess)
 {
   nr_iterations_ = 0;
   converged_ = false;
@@ -61,15 +58,15 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
   if (bayesian_icp_detail::isRigid(initial) && options.validate().empty()) {
     this->giveTargetToPlugins();
     const auto search =
-        this->makeCorrespondenceSearch(source, this->corr_dist_threshold_);
+        this->makeCorrespondenceSearch(usable, this->corr_dist_threshold_);
     bool is_in_range = true;
     result_ = bayesian_icp::stochasticGradientIcp(
-        bayesian_icp_detail::pointMatrix(*source),
+        bayesian_icp_detail::pointMatrix(*input_, *usable),
         *search,
         bayesian_icp::poseOf(initial),
         options,
         [&](int iteration, const bayesian_icp::Vector6d& pose) {
-          is_in_range = takeStep(*search, *source, pose);
+          is_in_range = takeStep(*search, *usable, pose);
           return (is_in_range &&
                   (!progress_callback_ || progress_callback_(iteration, pose)));
         });
@@ -77,21 +74,20 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
       result_.end = bayesian_icp::DescentEnd::Diverged;
     if (nr_iterations_ > 0) {
       const Matrix4 allowed =
-          this->asEstimationAllows(*source, guess, final_transformation_);
+          this->asEstimationAllows(*usable, guess, final_transformation_);
       if (allowed.allFinite())
         final_transformation_ = allowed;
     }
-    findPairs(*search, *source);
+    findPairs(*search, *usable);
   }
   publishEnd();
-  return (false);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 bool
 StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
     takeStep(const Search& search,
-             const PointCloudSource& source,
+             const Indices& usable,
              const bayesian_icp::Vector6d& pose)
 {
   const Eigen::Matrix4d T = bayesian_icp::matrixOf(pose);
@@ -104,9 +100,9 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
   ++nr_iterations_;
   if (update_visualizer_ == nullptr)
     return (true);
-  findPairs(search, source);
-  PointCloudSource moved = source;
-  this->transformCloud(source, moved, final_transformation_);
+  findPairs(search, usable);
+  PointCloudSource moved = *input_;
+  this->transformCloud(*input_, moved, final_transformation_);
   Indices in_source, in_target;
   for (const auto& pair : *correspondences_) {
     in_source.push_back(pair.index_query);
@@ -119,15 +115,16 @@ StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>
 template <typename PointSource, typename PointTarget, typename Scalar>
 void
 StochasticGradientDescentIterativeClosestPoint<PointSource, PointTarget, Scalar>::
-    findPairs(const Search& search, const PointCloudSource& source)
+    findPairs(const Search& search, const Indices& usable)
 {
   const bayesian_icp::Vector6d pose =
       bayesian_icp::poseOf(final_transformation_.template cast<double>());
   Eigen::Matrix3Xd moved;
-  bayesian_icp::movePoints(pose, bayesian_icp_detail::pointMatrix(source), moved);
-  std::vector<std::size_t> all(source.size());
-  std::iota(all.begin(), all.end(), std::size_t(0));
-  *correspondences_ = search.findPairs(pose, all, moved);
+  bayesian_icp::movePoints(
+      pose, bayesian_icp_detail::pointMatrix(*input_, usable), moved);
+  *correspondences_ = search.findPairs(pose, {usable.begin(), usable.end()}, moved);
+  for (auto& pair : *correspondences_)
+    pair.index_query = usable[static_cast<std::size_t>(pair.index_query)];
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
