@@ -18,7 +18,7 @@ namespace bayesian_icp::evaluate {
 namespace {
 
 /** To be changed with what a run does: old files are then ignored. */
-constexpr char version[] = "monte carlo icp 1";
+constexpr char version[] = "monte carlo icp 2";
 
 constexpr int block_size = 100;
 
@@ -79,23 +79,18 @@ baselineOptions(const PaperStudyOptions& paper)
 
 std::uint64_t
 monteCarloKey(const Eigen::Matrix3Xd& source,
-              const KdTree& target,
+              const Eigen::Matrix3Xd& target,
               const MonteCarloIcpOptions& options)
 {
   InputHash hash;
   hash.add(version, sizeof version);
   hash.addMatrix(source);
-  hash.addMatrix(target.points());
+  hash.addMatrix(target);
   hash.addMatrix(options.mean);
   hash.addMatrix(options.half_range);
   hash.add(&options.seed, sizeof options.seed);
-  for (const double number : {static_cast<double>(options.icp.max_iterations),
-                              options.icp.max_distance,
-                              options.icp.transformation_epsilon,
-                              options.icp.euclidean_fitness_epsilon,
-                              options.icp.rotation_epsilon,
-                              options.icp.absolute_fitness_epsilon})
-    hash.add(number);
+  hash.add(static_cast<double>(options.max_iterations));
+  hash.add(options.max_distance);
   return hash.value();
 }
 
@@ -107,7 +102,7 @@ monteCarloFile(const std::string& folder, const std::string& pair, std::uint64_t
 
 std::vector<MonteCarloIcpRun>
 keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
-                   const KdTree& target,
+                   const Eigen::Matrix3Xd& target,
                    const MonteCarloIcpOptions& options,
                    const std::string& file,
                    const std::function<void(const std::string&)>& report)
@@ -182,12 +177,12 @@ ComparedPair::ComparedPair(const PaperStudy& study, const ScanPair& pair)
 : problem(pair)
 {
   const MonteCarloIcpOptions options = baselineOptions(study.options);
-  const std::uint64_t runs_key = monteCarloKey(pair.source, problem.tree, options);
+  const std::uint64_t runs_key = monteCarloKey(pair.source, pair.target, options);
   baseline = baselineOf(
       pair.name,
       keptMonteCarloRuns(
           pair.source,
-          problem.tree,
+          pair.target,
           options,
           monteCarloFile(study.options.output_folder, pair.name, runs_key),
           [&](const std::string& line) { study.report(pair.name + ": " + line); }));

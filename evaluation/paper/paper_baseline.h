@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "baselines/monte_carlo_icp.h"
+#include "paper/monte_carlo_icp.h"
 #include "paper/paper_experiment.h"
 #include "paper/paper_methods.h"
 
@@ -20,7 +20,7 @@ namespace bayesian_icp::evaluate {
  * criteria of ICP. How many runs, and by how many threads, is left out. */
 std::uint64_t
 monteCarloKey(const Eigen::Matrix3Xd& source,
-              const KdTree& target,
+              const Eigen::Matrix3Xd& target,
               const MonteCarloIcpOptions& options);
 
 /** \brief FOLDER/monte_carlo_PAIR_KEY.csv, where the runs of a pair are kept: other
@@ -37,7 +37,7 @@ monteCarloFile(const std::string& folder, const std::string& pair, std::uint64_t
  * \throws io::FileError if the file cannot be written, or has a bad row */
 std::vector<MonteCarloIcpRun>
 keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
-                   const KdTree& target,
+                   const Eigen::Matrix3Xd& target,
                    const MonteCarloIcpOptions& options,
                    const std::string& file,
                    const std::function<void(const std::string&)>& report);

@@ -1,8 +1,8 @@
 #include "paper/paper_methods.h"
 
-#include "baselines/iterative_closest_point.h"
 #include "geometry/twist.h"
 #include "io/clocks.h"
+#include "paper/monte_carlo_icp.h"
 #include "study/draw_statistics.h"
 #include "study/named.h"
 
@@ -97,7 +97,6 @@ gaussian(const std::string& name,
 }
 
 constexpr int num_burn_in = 500;
-constexpr int max_icp_iterations = 1000;
 
 /** Of a uniform distribution. */
 double
@@ -157,11 +156,13 @@ sgdIcp(const char* name, bool is_one_to_one)
 AccuracyEstimate
 icp(const PaperProblem& problem, const DrawPlan& plan)
 {
-  IcpOptions options;
-  options.max_iterations = max_icp_iterations;
-  const IcpResult result = iterativeClosestPoint(
-      problem.pair.source, problem.tree, isometryOf(plan.start), options);
-  return {poseOf(result.T_target_source.matrix()), toString(result.stop)};
+  MonteCarloIcpOptions options;
+  options.mean = plan.start;
+  options.half_range.setZero();
+  options.num_runs = 1;
+  const MonteCarloIcpRun run =
+      monteCarloIcp(problem.pair.source, problem.pair.target, options).front();
+  return {run.end, toString(run.stop)};
 }
 
 } // namespace

@@ -1,7 +1,5 @@
 #include "determinism_runs.h"
 
-#include "baselines/monte_carlo_icp.h"
-
 #include <bayesian_icp/random.h>
 #include <bayesian_icp/stochastic_gradient_icp.h>
 #include <bayesian_icp/tree_search.h>
@@ -165,29 +163,6 @@ stochasticGradientRun(const RunSettings& settings)
   return record;
 }
 
-/** Where ICP ends from random starts, and after how many iterations. */
-RunRecord
-monteCarloRun(const RunSettings& settings)
-{
-  const Scans scans = makeScans(settings.is_nudged);
-  MonteCarloIcpOptions options;
-  options.half_range.setConstant(0.05);
-  options.num_runs = 20;
-  options.num_threads = settings.num_threads;
-  const KdTree tree(scans.target.cast<float>(), settings.num_threads);
-  const auto runs = monteCarloIcp(scans.source, tree, options);
-  RunRecord record;
-  PoseMatrix ends(static_cast<Eigen::Index>(runs.size()), 6);
-  for (const MonteCarloIcpRun& run : runs) {
-    ends.row(run.index) = run.end.transpose();
-    record.outcome += (record.outcome.empty() ? "" : " ") +
-                      std::to_string(run.num_iterations) +
-                      (run.has_converged ? "" : "?");
-  }
-  record.tables.push_back({"ends", ends});
-  return record;
-}
-
 /** The runs by their names. */
 std::map<std::string, std::function<RunRecord(const RunSettings&)>>
 allRuns()
@@ -206,7 +181,6 @@ allRuns()
        }},
       {"paper", paperRun},
       {"sgd_icp", stochasticGradientRun},
-      {"monte_carlo_icp", monteCarloRun},
   };
 }
 

@@ -22,35 +22,29 @@ protected:
     options_.half_range.setConstant(0.3);
     // More than one block, and a gate that some starts are beyond.
     options_.num_runs = 130;
-    options_.icp.max_iterations = 20;
-    options_.icp.max_distance = 0.1;
+    options_.max_iterations = 20;
+    options_.max_distance = 0.1;
     options_.num_threads = 2;
-  }
-
-  KdTree
-  tree() const
-  {
-    return KdTree(source_.cast<float>());
   }
 
   std::string
   fileName() const
   {
     return monteCarloFile(
-        (folder_ / "runs").string(), "cube", monteCarloKey(source_, tree(), options_));
+        (folder_ / "runs").string(), "cube", monteCarloKey(source_, source_, options_));
   }
 
   std::vector<MonteCarloIcpRun>
   kept(const std::function<void(const std::string&)>& report = {}) const
   {
-    return keptMonteCarloRuns(source_, tree(), options_, fileName(), report);
+    return keptMonteCarloRuns(source_, source_, options_, fileName(), report);
   }
 
   void
   expectThoseOf(const std::vector<MonteCarloIcpRun>& runs,
                 const MonteCarloIcpOptions& options) const
   {
-    const auto expected = monteCarloIcp(source_, tree(), options);
+    const auto expected = monteCarloIcp(source_, source_, options);
     ASSERT_EQ(runs.size(), expected.size());
     for (std::size_t i = 0; i < runs.size(); ++i) {
       EXPECT_EQ(runs[i].index, expected[i].index);
@@ -121,24 +115,19 @@ TEST_F(MonteCarloRuns, GoOnWhereTheyStopped)
 
 TEST_F(MonteCarloRuns, OtherInputsAreAnotherFile)
 {
-  const auto key = [this] { return monteCarloKey(source_, tree(), options_); };
+  const auto key = [this] { return monteCarloKey(source_, source_, options_); };
   const MonteCarloIcpOptions before = options_;
   const std::uint64_t expected = key();
   options_.num_runs = 1;
   options_.first_run = 3;
   options_.num_threads = 1;
   EXPECT_EQ(key(), expected);
-  const std::function<void()> changes[] = {
-      [&] { options_.seed = 2; },
-      [&] { options_.mean[5] = 1e-9; },
-      [&] { options_.half_range[0] = 1.0; },
-      [&] { options_.icp.max_iterations = 21; },
-      [&] { options_.icp.max_distance = 0.2; },
-      [&] { options_.icp.transformation_epsilon = 1e-9; },
-      [&] { options_.icp.rotation_epsilon = 0.9; },
-      [&] { options_.icp.euclidean_fitness_epsilon = 1e-9; },
-      [&] { options_.icp.absolute_fitness_epsilon = 1e-9; },
-      [&] { source_(0, 0) += 1e-12; }};
+  const std::function<void()> changes[] = {[&] { options_.seed = 2; },
+                                           [&] { options_.mean[5] = 1e-9; },
+                                           [&] { options_.half_range[0] = 1.0; },
+                                           [&] { options_.max_iterations = 21; },
+                                           [&] { options_.max_distance = 0.2; },
+                                           [&] { source_(0, 0) += 1e-12; }};
   for (const auto& change : changes) {
     options_ = before;
     change();

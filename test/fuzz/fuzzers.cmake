@@ -1,9 +1,8 @@
 # The programs fuzz_<name>. Everything of ours in them is instrumented, and so is what
 # PCL, FLANN, Boost and Eigen have in headers. Of the libraries, which the tests use as well,
 # libFuzzer sees which code an input reaches, not what is compared there.
-foreach(library bayesian_icp_core_objects bayesian_icp_baselines)
-  target_compile_options(${library} PRIVATE -fsanitize-coverage=inline-8bit-counters,pc-table)
-endforeach()
+target_compile_options(
+  bayesian_icp_core_objects PRIVATE -fsanitize-coverage=inline-8bit-counters,pc-table)
 
 find_package(nlohmann_json 3 REQUIRED)
 set(apps ${PROJECT_SOURCE_DIR}/apps)
@@ -33,8 +32,7 @@ bayesian_icp_use_internals(fuzz_readers)
 target_include_directories(fuzz_readers PUBLIC ${apps} ${evaluation})
 target_compile_definitions(fuzz_readers PRIVATE BAYESIAN_ICP_VERSION="${PROJECT_VERSION}")
 target_compile_options(fuzz_readers PUBLIC -fsanitize=fuzzer-no-link)
-target_link_libraries(fuzz_readers PUBLIC bayesian_icp_baselines nlohmann_json::nlohmann_json
-                                          pcl_io)
+target_link_libraries(fuzz_readers PUBLIC nlohmann_json::nlohmann_json pcl_io)
 
 add_custom_target(fuzzers)
 foreach(name IN LISTS fuzzers)
@@ -49,11 +47,13 @@ endforeach()
 # The class from its headers, and PCL's ICP and search tree as well; FLANN's need lz4.
 target_sources(
   fuzz_registration PRIVATE registration_by_descent.cpp registration_checks.cpp
-                            registration_input.cpp registration_of_normals.cpp)
+                            registration_input.cpp registration_of_normals.cpp
+                            ${evaluation}/paper/monte_carlo_icp.cpp)
 target_compile_definitions(fuzz_registration PRIVATE PCL_NO_PRECOMPILE)
 target_include_directories(fuzz_registration PRIVATE ${PROJECT_SOURCE_DIR}/include)
 target_link_libraries(fuzz_registration PRIVATE pcl_common pcl_kdtree pcl_search
-                                                pcl_registration lz4)
+                                                pcl_registration lz4
+                                                OpenMP::OpenMP_CXX)
 
 # What belongs to a batch or an evaluation alone.
 find_package(Boost REQUIRED COMPONENTS program_options)

@@ -26,13 +26,12 @@ registerByCore(const fuzz::RegistrationInput& input)
 void
 registerByMonteCarlo(const fuzz::RegistrationInput& input)
 {
-  const KdTree target(input.target.cast<float>(), 1);
-  const MonteCarloIcpOptions& options = input.monte_carlo;
-  const auto runs = monteCarloIcp(input.source, target, options);
+  const evaluate::MonteCarloIcpOptions& options = input.monte_carlo;
+  const auto runs = evaluate::monteCarloIcp(input.source, input.target, options);
   const int max_runs = std::numeric_limits<int>::max() - std::max(0, options.first_run);
   fuzz::require(int(runs.size()) == std::clamp(options.num_runs, 0, max_runs),
                 "every start has a run");
-  for (const MonteCarloIcpRun& run : runs)
+  for (const evaluate::MonteCarloIcpRun& run : runs)
     fuzz::require(!run.has_converged || run.end.allFinite() || !run.start.allFinite(),
                   "ICP converges to a finite pose");
 }

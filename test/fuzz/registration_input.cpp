@@ -244,23 +244,19 @@ descentOf(Bytes& bytes)
   return descent;
 }
 
-MonteCarloIcpOptions
+evaluate::MonteCarloIcpOptions
 monteCarloOf(Bytes& bytes)
 {
-  MonteCarloIcpOptions monte_carlo;
+  evaluate::MonteCarloIcpOptions monte_carlo;
   monte_carlo.seed = bytes.ConsumeIntegral<std::uint8_t>();
   monte_carlo.num_runs = bytes.ConsumeIntegralInRange(-1, 20);
   monte_carlo.num_threads = bytes.PickValueInArray({1, 2});
-  monte_carlo.icp.max_iterations = bytes.ConsumeIntegralInRange(-1, 20);
+  monte_carlo.max_iterations = bytes.ConsumeIntegralInRange(-1, 20);
   FieldChanger change(bytes);
   change(monte_carlo.mean);
   change(monte_carlo.half_range);
   change(monte_carlo.first_run, 0, 100);
-  change(monte_carlo.icp.max_distance);
-  change(monte_carlo.icp.transformation_epsilon);
-  change(monte_carlo.icp.euclidean_fitness_epsilon);
-  change(monte_carlo.icp.rotation_epsilon);
-  change(monte_carlo.icp.absolute_fitness_epsilon);
+  change(monte_carlo.max_distance);
   return monte_carlo;
 }
 

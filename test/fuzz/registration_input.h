@@ -3,7 +3,7 @@
  */
 #pragma once
 
-#include "baselines/monte_carlo_icp.h"
+#include "paper/monte_carlo_icp.h"
 
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/pose.h>
@@ -35,7 +35,7 @@ struct RegistrationInput {
   Options options;
   StochasticGradientIcpOptions descent;
   /** At most 20 runs and as many iterations of each. */
-  MonteCarloIcpOptions monte_carlo;
+  evaluate::MonteCarloIcpOptions monte_carlo;
   /** ICP's maximum correspondence distance [m]. */
   double gate = 1.0;
   int icp_iterations = 5;

@@ -83,7 +83,7 @@ def circle_between_folders(top):
 
 
 def uses_of_evaluation(root):
-    """Lines outside the studies that name a header of theirs; benchmarks may name baselines."""
+    """Lines outside the studies that name a header of theirs."""
     studies = {p.relative_to(root / "evaluation").as_posix() for p in files_in(root, ["evaluation"])}
     if not studies:
         sys.exit(f"no studies in {root}")
@@ -93,7 +93,6 @@ def uses_of_evaluation(root):
         if included in studies
         and not (path.parent / included).exists()
         and not (root / "src" / included).exists()
-        and not (path.is_relative_to(root / "benchmark") and included.startswith("baselines/"))
     ]
 
 

@@ -1,15 +1,26 @@
-// ICP from random starts: reproducible, divisible, stoppable.
-#include "baselines/monte_carlo_icp.h"
+// ICP from random starts: reproducible, divisible, the one of PCL.
 #include "geometry/twist.h"
+#include "paper/monte_carlo_icp.h"
 #include "support/test_support.h"
+
+#include <pcl/registration/icp.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-namespace bayesian_icp {
+namespace bayesian_icp::evaluate {
 namespace {
+
+pcl::PointCloud<pcl::PointXYZ>::Ptr
+cloudOf(const Eigen::Matrix3Xd& points)
+{
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (const auto& point : points.cast<float>().colwise())
+    cloud->push_back({point.x(), point.y(), point.z()});
+  return cloud;
+}
 
 class MonteCarloIcp : public testing::Test {
 protected:
@@ -25,7 +36,7 @@ protected:
   std::vector<MonteCarloIcpRun>
   run(const MonteCarloIcpOptions& options) const
   {
-    return monteCarloIcp(source_, KdTree(target_.cast<float>()), options);
+    return monteCarloIcp(source_, target_, options);
   }
 
   static void
@@ -74,24 +85,70 @@ TEST_F(MonteCarloIcp, APointBeyondFloatHasNoNeighbourAndDoesNoHarm)
   }
 }
 
-TEST_F(MonteCarloIcp, RunsAreIcpFromTheirStarts)
+TEST_F(MonteCarloIcp, NumberOfThreadsChangesNoBit)
 {
-  options_.icp.max_distance = 0.2;
-  const KdTree target(target_.cast<float>());
-  for (const MonteCarloIcpRun& made : run(options_)) {
-    const IcpResult alone =
-        iterativeClosestPoint(source_, target, isometryOf(made.start), options_.icp);
-    EXPECT_EQ(made.end, poseOf(alone.T_target_source.matrix()));
-    EXPECT_EQ(made.num_iterations, alone.num_iterations);
-    EXPECT_EQ(made.stop, alone.stop);
-    EXPECT_EQ(made.mean_squared_distance, alone.mean_squared_distance);
+  options_.num_threads = 1;
+  const auto alone = run(options_);
+  for (const int num_threads : {2, 3, 8}) {
+    options_.num_threads = num_threads;
+    const auto together = run(options_);
+    ASSERT_EQ(together.size(), alone.size());
+    for (std::size_t i = 0; i < alone.size(); ++i)
+      expectSame(together[i], alone[i]);
   }
+}
+
+TEST_F(MonteCarloIcp, RunsArePclsIcpFromTheirStarts)
+{
+  options_.max_distance = 0.2;
+  for (const MonteCarloIcpRun& made : run(options_)) {
+    pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, double> icp;
+    icp.setInputSource(cloudOf(source_));
+    icp.setInputTarget(cloudOf(target_));
+    icp.setMaxCorrespondenceDistance(options_.max_distance);
+    icp.setMaximumIterations(options_.max_iterations);
+    pcl::PointCloud<pcl::PointXYZ> moved;
+    icp.align(moved, matrixOf(made.start));
+    EXPECT_EQ(made.end, poseOf(icp.getFinalTransformation()));
+    EXPECT_EQ(made.has_converged, icp.hasConverged());
+  }
+}
+
+TEST_F(MonteCarloIcp, RunsTellWhatEndedThem)
+{
+  options_.num_runs = 1;
+  const MonteCarloIcpRun complete = run(options_).front();
+  EXPECT_EQ(complete.stop, IcpStop::AbsoluteFitness);
+  EXPECT_TRUE(complete.has_converged);
+  EXPECT_GT(complete.num_iterations, 1);
+
+  options_.max_iterations = 0;
+  const MonteCarloIcpRun one = run(options_).front();
+  EXPECT_EQ(one.stop, IcpStop::MaxIterations);
+  EXPECT_TRUE(one.has_converged);
+  EXPECT_EQ(one.num_iterations, 1);
+  double sum = 0.0;
+  for (const auto& point : source_.colwise())
+    sum += (target_.colwise() - isometryOf(one.start) * Eigen::Vector3d(point))
+               .colwise()
+               .squaredNorm()
+               .minCoeff();
+  EXPECT_NEAR(one.mean_squared_distance, sum / 120.0, 1e-6);
+
+  options_.max_distance = 1e-6;
+  options_.mean.setConstant(0.1);
+  const MonteCarloIcpRun lost = run(options_).front();
+  EXPECT_EQ(lost.stop, IcpStop::TooFewPairs);
+  EXPECT_FALSE(lost.has_converged);
+  EXPECT_EQ(lost.num_iterations, 0);
+  EXPECT_EQ(lost.end, poseOf(matrixOf(lost.start)));
+  EXPECT_TRUE(std::isinf(lost.mean_squared_distance));
 }
 
 TEST_F(MonteCarloIcp, StartsAreUniformInTheirRange)
 {
   options_.num_runs = 600;
-  options_.icp.max_iterations = 1;
+  options_.max_iterations = 1;
   options_.mean << 1.0, -2.0, 3.0, 0.1, -0.2, 0.3;
   options_.half_range << 1.0, 0.5, 0.25, 0.3, 0.2, 0.1;
   const auto runs = run(options_);
@@ -117,4 +174,4 @@ TEST_F(MonteCarloIcp, MakesNoRunWhereNoneIsAskedFor)
   EXPECT_TRUE(run(options_).empty());
 }
 
-} // namespace bayesian_icp
+} // namespace bayesian_icp::evaluate
