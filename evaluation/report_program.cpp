@@ -1,13 +1,8 @@
 #include "commands.h"
-#include "coverage/coverage_summary.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "io/program.h"
 #include "plot/child_program.h"
-#include "samplers/score.h"
-#include "sbc/ranks.h"
-
-#include <nlohmann/json.hpp>
 
 #include <cstdlib>
 #include <filesystem>
@@ -50,21 +45,6 @@ lastLineOf(const std::string& text)
   return lines.empty() ? "the report cannot be made" : std::string(lines.back());
 }
 
-/** The tables of a kind of study, by the names of the files that they are of.
- * \param[in] tablesOf makes them of runs */
-template <typename Run, typename TablesOf>
-nlohmann::json
-tablesIn(const std::string& folder, const TablesOf& tablesOf)
-{
-  auto tables = nlohmann::json::object();
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".csv")
-      if (const auto runs = RunFile<Run>::runsIn(entry.path().string()); !runs.empty())
-        for (const TextTable& table : tablesOf(runs))
-          tables[entry.path().stem().string()].push_back(table.rows());
-  return tables;
-}
-
 void
 printHelp()
 {
@@ -90,20 +70,9 @@ makeReport(const std::string& folder)
               << folder << std::endl;
     return io::BadFile;
   }
-  const nlohmann::json tables = {
-      {"coverage", tablesIn<CoverageRun>(folder, coverageTables)},
-      {"samplers",
-       tablesIn<ScoredRun>(
-           folder, [](const auto& runs) { return std::vector{samplerTable(runs)}; })},
-      {"sbc", tablesIn<RankRun>(folder, [](const auto& runs) {
-         return std::vector{verdictOf(runs).table};
-       })}};
-  // Names of files need not be UTF-8.
-  const std::string input =
-      tables.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   // -B: nothing is written where the program is.
   const plot::ProgramResult result =
-      plot::runChildProgram({python, "-B", reportProgram(), folder}, input);
+      plot::runChildProgram({python, "-B", reportProgram(), folder}, "");
   if (!result.is_good)
     throw io::FileError(folder, lastLineOf(result.errors));
   io::print(result.output);

@@ -2,7 +2,6 @@
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_real.h"
 #include "coverage/coverage_study.h"
-#include "coverage/coverage_summary.h"
 #include "io/cloud_file.h"
 #include "io/command_line.h"
 #include "io/errors.h"
@@ -10,7 +9,6 @@
 #include "register/choices.h"
 #include "study/named.h"
 #include "study/option_values.h"
-#include "study/text_table.h"
 
 #include <boost/algorithm/string/join.hpp>
 
@@ -59,14 +57,15 @@ of the truth (NEES), log score [nats] and energy score in units of the prior's
 standard deviations, probability integral transforms (PIT), errors, standard
 scores and deviations of the six coordinates of a twist about the source's
 centroid, mean displacement of the source's points [m], time,
-nearest-neighbour queries, flags. The table goes to standard output, progress
-to standard error.
+nearest-neighbour queries, flags. A summary goes to standard output: shares and
+means, medians of errors, time and queries; "outside": flagged runs of those
+with the truth outside the 95 % region. Progress goes to standard error.
 For recordings, the prior is the default one about a guess, with the source's
 centroid as its origin. Log scores are in metres and radians, and at least -50
-for a pair. The table counts lost pairs
-(displaced by more than the recording's limit; NEES/6 leaves them out), alarms
-(flags on good pairs: not lost, NEES below 16.812) and misses (bad pairs
-without a flag: lost, or NEES above 27.856).
+for a pair. The summary has the shares of lost pairs (displaced by more than
+the recording's limit; NEES/6 leaves them out), alarms (flags on good pairs:
+not lost, NEES below 16.812) and misses (bad pairs without a flag: lost, or
+NEES above 27.856).
 Rows of the same names but other scans, truths or guesses do not count. Delete
 results of another build of the methods by hand.
 Exit codes: 0 success, 2 usage, 3 a file cannot be read or written, or the
@@ -370,19 +369,6 @@ studyOf(const CoverageOptions& options)
   return study;
 }
 
-void
-reportProgress(const StudyProgress& progress, const CoverageCaseName& last)
-{
-  std::cerr << format("%zu of %zu cases, about %.0f s left (%s, %s, seed %llu)",
-                      progress.num_done,
-                      progress.num_all,
-                      progress.seconds_left,
-                      last.scene.c_str(),
-                      last.condition.c_str(),
-                      static_cast<unsigned long long>(last.seed))
-            << std::endl;
-}
-
 } // namespace
 
 int
@@ -390,15 +376,10 @@ runCoverageCommand(int argc, const char* const* argv)
 {
   const CoverageOptions options = readCoverageOptions(argc, argv);
   io::silencePcl();
-  CoverageStudy study = studyOf(options);
-  study.report = reportProgress;
+  const CoverageStudy study = studyOf(options);
   CoverageFile results(options.result.file);
   runCoverageStudy(study, results);
-  std::cout
-      << "Share of truths within the regions of some probabilities, with its 95 % "
-         "interval\n(which counts a real pair once, for all seeds):\n";
-  for (const TextTable& table : coverageTables(runsOf(study, results)))
-    table.print(std::cout);
+  std::cout << summaryOf(runsOf(study, results));
   return options.result.report();
 }
 

@@ -6,7 +6,6 @@
 
 #include "coverage/coverage_methods.h"
 #include "coverage/coverage_score.h"
-#include "study/parallel_tasks.h"
 #include "study/run_file.h"
 
 #include <functional>
@@ -88,8 +87,6 @@ struct CoverageStudy {
   std::vector<CoverageCaseName> cases;
   std::vector<CoverageMethod> methods;
   CoverageCaseMaker make_case;
-  /** Called after each case by one thread at a time; may be empty. */
-  std::function<void(const StudyProgress&, const CoverageCaseName&)> report;
   int num_threads = 1;
 };
 
@@ -102,5 +99,18 @@ runCoverageStudy(const CoverageStudy& study, CoverageFile& results);
 /** \brief The rows of the study, in its order. */
 std::vector<CoverageRun>
 runsOf(const CoverageStudy& study, const CoverageFile& results);
+
+/** \brief Squared Mahalanobis distances of the truth (NEES) beyond which a Gaussian has
+ * 1 % and 0.01 %. A pair of a recording is good if it is below the first and not lost,
+ * and bad if it is lost or above the second. */
+constexpr double max_good_nees = 16.812;
+constexpr double min_bad_nees = 27.856;
+
+/** \brief A table of means, and of medians of errors, time and queries: a line a method
+ * for each scene and condition, and for several together. Lost pairs have no NEES.
+ * Alarms are doubts of a method about good pairs, misses are bad ones without. Poses
+ * alone are neither. */
+std::string
+summaryOf(const std::vector<CoverageRun>& runs);
 
 } // namespace bayesian_icp::evaluate

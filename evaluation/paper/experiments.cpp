@@ -22,7 +22,7 @@ public:
   ExperimentRuns(const PaperStudy& study,
                  const std::string& name,
                  const std::string& title,
-                 const std::vector<std::string>& columns)
+                 const std::vector<SummaryColumn>& columns)
   : study_(study)
   , name_(name)
   , title_(title)
@@ -63,8 +63,8 @@ public:
   finish(int num_starts = 0) const
   {
     recordExperiment(study_, name_, keys_, num_starts);
-    std::cout << title_ << '\n';
-    medianTable(columns_, numbers).print(std::cout);
+    std::cout << title_ << '\n'
+              << summaryText("medians of the runs of", columns_, numbers);
   }
 
   /** Of all runs, for the medians. */
@@ -73,7 +73,7 @@ public:
 private:
   const PaperStudy& study_;
   std::string name_, title_;
-  std::vector<std::string> columns_;
+  std::vector<SummaryColumn> columns_;
   RunFile<Run> file_;
   std::vector<PairKey> keys_;
   int num_made_ = 0;
@@ -183,10 +183,11 @@ studyVariant(const PaperStudy& study,
 void
 runCurves(const PaperStudy& study, const CurvePlan& plan)
 {
-  ExperimentRuns<CurvePoint> runs(study,
-                                  plan.name,
-                                  plan.name + ": KL(baseline || method) [nats]",
-                                  {"x", "y", "z", "roll", "pitch", "yaw", "6-D"});
+  ExperimentRuns<CurvePoint> runs(
+      study,
+      plan.name,
+      plan.name + ": KL(baseline || method) [nats]",
+      {{"x"}, {"y"}, {"z"}, {"roll"}, {"pitch"}, {"yaw"}, {"6-D"}});
   for (const ScanPair& pair : curvePairs(study)) {
     const ComparedPair compared(study, pair);
     runs.addPair(pair, compared.key);
@@ -244,7 +245,7 @@ distributionExperiment(const PaperStudy& study)
       study,
       "distribution",
       "KL(baseline || method) [nats], and NEES / 6 of the truth",
-      {"x", "y", "z", "roll", "pitch", "yaw", "6-D", "NEES/6"});
+      {{"x"}, {"y"}, {"z"}, {"roll"}, {"pitch"}, {"yaw"}, {"6-D"}, {"NEES/6"}});
   std::vector<ComparedPair> pairs;
   pairs.reserve(study.pairs.size());
   for (const ScanPair& pair : study.pairs) {
@@ -274,7 +275,7 @@ void
 runtimeExperiment(const PaperStudy& study)
 {
   ExperimentRuns<RuntimeRun> runs(
-      study, "runtime", "runtime: seconds per 1000 draws", {"wall [s]", "CPU [s]"});
+      study, "runtime", "runtime: seconds per 1000 draws", {{"wall [s]"}, {"CPU [s]"}});
   std::vector<PaperProblem> problems;
   problems.reserve(study.pairs.size());
   for (const ScanPair& pair : study.pairs) {
@@ -306,7 +307,7 @@ accuracyExperiment(const PaperStudy& study)
 {
   const int num_starts = study.options.is_quick ? 5 : 50;
   ExperimentRuns<AccuracyRun> runs(
-      study, "accuracy", "accuracy: errors of the final pose", {"[mm]", "[mrad]"});
+      study, "accuracy", "accuracy: errors of the final pose", {{"[mm]"}, {"[mrad]"}});
   for (const ScanPair& pair : study.pairs) {
     const PaperProblem problem(pair);
     const std::string key = io::textOfHash(pair.key());

@@ -1,12 +1,9 @@
-"""Usage: python3 evaluation/report FOLDER < TABLES
+"""Usage: python3 evaluation/report FOLDER
 
 Makes report.md, report.html and the figures (SVG and PNG) of all studies whose CSV files
 are in the folder. What a CSV file of a study holds is known by its columns, not its name.
-TABLES is a JSON object of those that pcl_bayesian_icp_evaluate makes: for each kind of study,
-and each file by its name, what page.tables_of() takes.
 """
 
-import json
 import os
 import pathlib
 import sys
@@ -17,16 +14,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from report import coverage, cycles, frames, page, paper, samplers, sbc, trajectories  # noqa: E402
 
 
-def sections_of(output, made):
+def sections_of(output):
     """Of every study that the folder has files of, in a fixed order."""
     files = frames.read_folder(output.folder)
     sections = paper.sections_of(output, files)
     for study in (coverage, sbc, samplers, cycles, trajectories):
-        of_study = made.get(study.__name__.split(".")[-1], {})
         for name, rows in files.items():
             if set(study.COLUMNS) <= set(rows.columns) and len(rows):
-                tables = page.tables_of(of_study.get(name, []))
-                sections.append(study.section_of(output, name, rows, tables))
+                sections.append(study.section_of(output, name, rows))
     return sections
 
 
@@ -35,7 +30,7 @@ def main():
         sys.exit(__doc__)
     output = page.Output(pathlib.Path(sys.argv[1]))
     try:
-        sections = sections_of(output, json.load(sys.stdin))
+        sections = sections_of(output)
         if not sections:
             sys.exit("has no rows of a study, so there is no report")
         page.write(output, sections)

@@ -2,11 +2,15 @@
 
 import numpy as np
 
-from report import page
+from report import frames, page
 
-COLUMNS = ("scene", "condition", "seed", "method", "valid", "nees", "region", "pit_vx")
+COLUMNS = ("scene", "condition", "seed", "method", "valid", "nees", "region", "pit_vx", "lost_displacement_m",
+           "queries")  # fmt: skip
 TWISTS = ("vx", "vy", "vz", "wx", "wy", "wz")
 NUM_BINS = 10
+LEVELS = (0.5, 0.68, 0.9, 0.95)
+# Beyond which a Gaussian has 1 % and 0.01 %.
+MAX_GOOD_NEES, MIN_BAD_NEES = 16.812, 27.856
 
 TEXT = (
     "Truths within 50 %: share of the runs whose true pose is in the posterior's region of that "
@@ -21,6 +25,75 @@ def lost_of(runs):
     """Runs whose pose is beyond the recording's limit, or missing."""
     has_limit = runs.lost_displacement_m.notna()
     return has_limit & ~(runs.displacement_m <= runs.lost_displacement_m)
+
+
+def share_text(is_hit, runs):
+    """Share of the runs for which it is true, with its 95 % interval (Wilson's). Seeds move a real
+    pair and leave its points and their errors as they are, so it counts once."""
+    if not len(is_hit):
+        return "-"
+    is_real = (runs.condition == "real").all()
+    share = is_hit.mean()
+    part = 1.959964**2 / (min(len(is_hit), runs.scene.nunique()) if is_real else len(is_hit))
+    centre = (share + part / 2) / (1 + part)
+    half_width = np.sqrt(share * (1 - share) * part + part**2 / 4) / (1 + part)
+    return f"{share:.2f} [{max(0, centre - half_width):.2f},{min(1, centre + half_width):.2f}]"
+
+
+def cells_of(runs):
+    """What is told of the runs of a method, by its title."""
+    number = frames.number
+    is_lost, is_flagged = lost_of(runs), runs.notes.str.contains("(?:^|;)flag:")
+    posed, placed = runs.displacement_m.notna(), runs[runs.region.notna()]
+    flagged = is_flagged[posed].mean()
+    flagged_outside = is_flagged[posed & (runs.region > 0.95)].mean()
+    cells = {
+        "valid/runs": f"{runs.valid.sum()}/{len(runs)}",
+        "lost": str(is_lost.sum()),
+        "mean NEES/6": number((runs.nees[~is_lost] / 6).mean(), 2),
+    }
+    for level in LEVELS:
+        cells[f"truths within {100 * level:.0f} %"] = share_text(placed.region <= level, runs)
+    # A pose alone is neither good nor bad.
+    judged = (runs.valid == 1) | ~posed
+    is_good = judged & ~is_lost & (runs.nees < MAX_GOOD_NEES)
+    is_bad = judged & (is_lost | (runs.nees > MIN_BAD_NEES))
+    is_doubted = is_flagged | (runs.valid == 0)
+    queries = runs.queries[posed].median()
+    return {
+        **cells,
+        "mean log p": number(runs.log_score.mean(), 2),
+        "energy score": number(runs.energy_score.mean(), 4),
+        "median error [mm]": number(1e3 * runs.translation_error_m.median(), 2),
+        "median error [deg]": number(np.degrees(runs.rotation_error_rad.median()), 2),
+        "flagged [%]": number(100 * flagged, 0),
+        "flagged if outside [%]": number(100 * flagged_outside, 0),
+        "alarms/good": f"{(is_good & is_doubted).sum()}/{is_good.sum()}",
+        "misses/bad": f"{(is_bad & ~is_doubted).sum()}/{is_bad.sum()}",
+        "median time [s]": number(runs.seconds[posed].median(), 3),
+        "median queries": number(queries if queries >= 0 else np.nan, 0),
+    }
+
+
+def table_of(title, runs):
+    rows = {method: cells_of(of_method) for method, of_method in runs.groupby("method", sort=False)}
+    # Nothing is lost or good without a limit.
+    hidden = () if runs.lost_displacement_m.notna().any() else ("lost", "alarms/good", "misses/bad")
+    header = [column for column in next(iter(rows.values())) if column not in hidden]
+    lines = [[method, *(cells[column] for column in header)] for method, cells in rows.items()]
+    return page.Table(title, ["method", *header], lines)
+
+
+def tables_of(runs):
+    """Of each scene and condition, of each that has several of the other, and of all."""
+    tables = [table_of(", ".join(cell), of_cell) for cell, of_cell in runs.groupby(["scene", "condition"], sort=False)]
+    for scene, of_scene in runs.groupby("scene", sort=False):
+        if of_scene.condition.nunique() > 1:
+            tables.append(table_of(f"{scene}, all conditions", of_scene))
+    for condition, of_condition in runs.groupby("condition", sort=False):
+        if of_condition.scene.nunique() > 1 and runs.condition.nunique() > 1:
+            tables.append(table_of(f"all scenes, {condition}", of_condition))
+    return [*tables, table_of("all", runs)] if len(tables) > 1 else tables
 
 
 def plot_regions(output, name, methods):
@@ -68,9 +141,11 @@ def plot_anees(output, name, methods, cells):
     return page.save(output, f"{name}_anees", caption, figure, key_of=axis)
 
 
-def section_of(output, name, runs, tables):
-    blocks = [page.Text(TEXT), *tables]
+def section_of(output, name, runs):
     runs = runs.drop_duplicates(list(COLUMNS[:4]), keep="last")
+    blocks = [page.Text(TEXT)]
+    for _, of_kind in runs.groupby(runs.lost_displacement_m.notna()):
+        blocks += tables_of(of_kind)
     valid = runs[runs.valid == 1]
     if valid.empty:
         return page.Section(f"Coverage ({name}.csv)", blocks)

@@ -29,7 +29,7 @@ def plot_probabilities(output, name, table):
     return page.save(output, f"{name}_probabilities", caption, figure)
 
 
-def section_of(output, name, table, _tables):
+def section_of(output, name, table):
     lengths = sorted(table.length.unique())
     rows = [row_of(f"{length} edges", table[table.length == length]) for length in lengths]
     closures = page.Table(

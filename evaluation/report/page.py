@@ -87,19 +87,6 @@ class Table:
         return f'<div class="scroll"><table><caption>{caption}</caption>\n{body}</table></div>'
 
 
-def tables_of(made):
-    """Tables of the program: of each a header, and titles with the rows below them."""
-    tables = []
-    for header, *rows in made:
-        header = [title.strip().replace("\n", " ") for title in header]
-        for row in rows:
-            if len(row) == 1:
-                tables.append(Table(*row, header, []))
-            else:
-                tables[-1].rows.append(row)
-    return tables
-
-
 @dataclasses.dataclass
 class Figure:
     """A picture that is in the report's folder as NAME.svg and NAME.png."""

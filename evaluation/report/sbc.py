@@ -7,6 +7,10 @@ from report import frames, page
 COLUMNS = ("sampler", "seed", "valid", "rank_x", "rank_yaw")
 NUM_BINS = 10
 NUM_RANKS = 100
+CAPTION = (
+    "Chi-square of ten bins of ranks, of at least 50 runs: uniform ranks are below 27.9 with a "
+    "probability of 99.9 %. calibrated-scans is for information: its likelihood is no model of the scans."
+)
 
 
 def histogram(ranks):
@@ -25,7 +29,23 @@ def plot_ranks(output, name, samplers):
     return page.save(output, f"{name}_ranks", caption, figure)
 
 
-def section_of(output, name, runs, tables):
+def chi_square(ranks):
+    """0 of evenly filled bins."""
+    expected = len(ranks) / NUM_BINS
+    return ((histogram(ranks) - expected) ** 2 / expected).sum() if expected else np.nan
+
+
+def table_of(samplers):
+    lines = []
+    for sampler, runs in samplers:
+        valid = runs[runs.valid == 1]
+        statistics = [frames.number(chi_square(valid[f"rank_{c}"]), 1) for c in frames.COORDINATES]
+        lines.append([sampler, f"{len(valid)}/{len(runs)}", *statistics])
+    return page.Table(CAPTION, ["sampler", "valid/runs", *frames.COORDINATES], lines)
+
+
+def section_of(output, name, runs):
+    runs = runs.drop_duplicates(["sampler", "seed"], keep="last")
     samplers = list(runs.groupby("sampler", sort=False))
     title = f"Simulation-based calibration ({name}.csv)"
-    return page.Section(title, [*tables, plot_ranks(output, name, samplers)])
+    return page.Section(title, [table_of(samplers), plot_ranks(output, name, samplers)])

@@ -70,7 +70,7 @@ def plot_errors(output, name, table):
     return page.save(output, f"{name}_errors", caption, figure, axis)
 
 
-def section_of(output, name, table, _tables):
+def section_of(output, name, table):
     errors = page.Table(
         "Number of registrations that are of use. Root mean square errors over the seeds: positions "
         "after alignment (ATE; *: the smallest of the recording, or within 2 % of it), relative "

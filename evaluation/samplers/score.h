@@ -6,14 +6,12 @@
 
 #include "samplers/sampler_runs.h"
 #include "study/run_file.h"
-#include "study/text_table.h"
 
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/summary.h>
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 namespace bayesian_icp::evaluate {
 
@@ -103,11 +101,5 @@ Score
 scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws);
 
 using ResultFile = RunFile<ScoredRun>;
-
-/** \brief Medians and worst cases, one line for each scene, cell, gold standard and
- * sampler: with other points it is another posterior. Step sizes of a sampler that were
- * only tried with the first seed are left out where another one has more runs. */
-TextTable
-samplerTable(const std::vector<ScoredRun>& runs);
 
 } // namespace bayesian_icp::evaluate

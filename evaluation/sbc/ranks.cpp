@@ -3,6 +3,7 @@
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_methods.h"
 #include "io/coordinates.h"
+#include "io/numbers.h"
 #include "sbc/rank_models.h"
 #include "summary/estimates.h"
 
@@ -127,10 +128,7 @@ verdictOf(const std::vector<RankRun>& runs)
   header.insert(
       header.end(), app::coordinate_names.begin(), app::coordinate_names.end());
   header.emplace_back("verdict");
-  RankVerdict result{TextTable(header)};
-  result.table.addTitle(format("Chi-square of %d bins, uniform if below %g (0.1 %%)",
-                               num_rank_bins,
-                               max_rank_chi_square));
+  RankVerdict result{{header}};
   for (const RankSampler& sampler : rankSamplers()) {
     std::vector<Ranks> ranks; // of good runs
     std::size_t num_runs = 0;
@@ -148,14 +146,14 @@ verdictOf(const std::vector<RankRun>& runs)
     for (int k = 0; k < 6; ++k) {
       const double statistic = ranks.empty() ? std::nan("") : chiSquareOf(ranks, k);
       is_uniform = is_uniform && (!is_enough || statistic < max_rank_chi_square);
-      cells.push_back(numberText(statistic, 1));
+      cells.push_back(ranks.empty() ? "-" : io::fixedTextOf(statistic, 1));
     }
     cells.emplace_back(!sampler.is_well_specified
                            ? "no model of the scans: for information"
                        : !is_uniform ? "NOT UNIFORM"
                        : is_enough   ? "uniform"
                                      : "too few runs");
-    result.table.add(cells);
+    result.rows.push_back(cells);
     result.are_uniform &= is_uniform || !sampler.is_well_specified;
   }
   return result;

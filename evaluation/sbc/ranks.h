@@ -6,13 +6,13 @@
 #pragma once
 
 #include "study/run_file.h"
-#include "study/text_table.h"
 
 #include <bayesian_icp/prior.h>
 
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
@@ -95,9 +95,9 @@ rankSamplers();
 
 /** \brief What the ranks of some runs say. */
 struct RankVerdict {
-  /** A line for each sampler: runs, chi-square statistic of each coordinate, verdict.
-   */
-  TextTable table;
+  /** A line for each sampler: runs, chi-square statistic of each coordinate, verdict;
+   * below a header. */
+  std::vector<std::vector<std::string>> rows;
   /** Whether every well-specified sampler has uniform ranks: all runs good and, of at
    * least min_ranked_runs, every statistic below max_rank_chi_square. */
   bool are_uniform = true;

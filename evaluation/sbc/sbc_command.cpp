@@ -3,6 +3,7 @@
 #include "study/named.h"
 #include "study/option_values.h"
 #include "study/parallel_tasks.h"
+#include "study/text_table.h"
 
 #include <iostream>
 
@@ -104,12 +105,7 @@ runMissing(const SbcOptions& options, RankFile& results)
     const std::optional<Ranks> ranks = missing[i].sampler.run(missing[i].name.seed);
     results.add({missing[i].name, ranks.has_value(), ranks.value_or(Ranks::Zero())});
   };
-  const auto report = [](const StudyProgress& progress, std::size_t) {
-    if (progress.num_done % 50 == 0 || progress.num_done == progress.num_all)
-      std::cerr << progress.num_done << " of " << progress.num_all << " runs"
-                << std::endl;
-  };
-  runTasks(missing.size(), options.num_threads, run, report);
+  runTasks(missing.size(), options.num_threads, "runs", run);
 }
 
 } // namespace
@@ -126,7 +122,10 @@ runSbcCommand(int argc, const char* const* argv)
     for (const RankRun::Name& name : runNamesOf(sampler, options))
       runs.push_back(*results.find(name));
   const RankVerdict verdict = verdictOf(runs);
-  verdict.table.print(std::cout);
+  std::cout << format("Chi-square of %d bins, uniform if below %g (0.1 %%)\n",
+                      num_rank_bins,
+                      max_rank_chi_square)
+            << textOfTable(verdict.rows);
   const int report_code = options.result.report();
   return verdict.are_uniform ? report_code : 1;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace bayesian_icp::evaluate {
 
@@ -132,6 +133,25 @@ median(std::vector<double> values)
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 ? values[middle]
                            : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+double
+mean(std::vector<double> values)
+{
+  return std::accumulate(values.begin(), values.end(), 0.0) /
+         static_cast<double>(values.size());
+}
+
+double
+smallest(std::vector<double> values)
+{
+  return *std::min_element(values.begin(), values.end());
+}
+
+double
+largest(std::vector<double> values)
+{
+  return *std::max_element(values.begin(), values.end());
 }
 
 } // namespace bayesian_icp::evaluate

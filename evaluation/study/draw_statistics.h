@@ -55,8 +55,15 @@ distanceBetween(Eigen::VectorXd a, Eigen::VectorXd b);
 double
 energyScore(const PoseMatrix& draws, const PoseMatrix& outcomes);
 
-/** \brief The middle one of at least one value, or the mean of the middle two. */
+/** \brief Statistics of at least one value; the median of an even number is the mean of
+ * the middle two. */
 double
 median(std::vector<double> values);
+double
+mean(std::vector<double> values);
+double
+smallest(std::vector<double> values);
+double
+largest(std::vector<double> values);
 
 } // namespace bayesian_icp::evaluate

@@ -1,18 +1,19 @@
 #include "study/parallel_tasks.h"
 
 #include "io/clocks.h"
+#include "study/text_table.h"
 #include "threads/for_each_piece.h"
 
+#include <iostream>
 #include <mutex>
 
 namespace bayesian_icp::evaluate {
 
 void
-runTasks(
-    std::size_t size,
-    int num_threads,
-    const std::function<void(std::size_t index)>& run,
-    const std::function<void(const StudyProgress& progress, std::size_t index)>& report)
+runTasks(std::size_t size,
+         int num_threads,
+         const std::string& tasks,
+         const std::function<void(std::size_t index)>& run)
 {
   const double begin = io::wallSeconds();
   std::size_t num_done = 0;
@@ -21,9 +22,16 @@ runTasks(
     run(i);
     const std::lock_guard<std::mutex> lock(mutex);
     ++num_done;
+    if (num_done * 100 / size == (num_done - 1) * 100 / size)
+      return;
     const double seconds_each =
         (io::wallSeconds() - begin) / static_cast<double>(num_done);
-    report({num_done, size, seconds_each * static_cast<double>(size - num_done)}, i);
+    std::cerr << format("%zu of %zu %s, about %.0f s left",
+                        num_done,
+                        size,
+                        tasks.c_str(),
+                        seconds_each * static_cast<double>(size - num_done))
+              << std::endl;
   });
 }
 

@@ -5,26 +5,19 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief How far a study is. */
-struct StudyProgress {
-  std::size_t num_done;
-  std::size_t num_all;
-  double seconds_left;
-};
-
-/** \brief Do tasks that do not depend on each other, each in one thread.
- * \param[in] run does one; called by several threads at once
- * \param[in] report told of each that is done, by one thread at a time
- * \throws what \p run and \p report throw first; tasks that had not begun then are left
- *         out */
+/** \brief Do tasks that do not depend on each other, each in one thread. The standard
+ * error is told how many are done, at most a hundred times, and how long the others
+ * take. \param[in] tasks what they are ("pairs") \param[in] run does one; called by
+ * several threads at once \throws what \p run throws first; tasks that had not begun
+ * then are left out */
 void
 runTasks(std::size_t size,
          int num_threads,
-         const std::function<void(std::size_t index)>& run,
-         const std::function<void(const StudyProgress& progress, std::size_t index)>&
-             report);
+         const std::string& tasks,
+         const std::function<void(std::size_t index)>& run);
 
 } // namespace bayesian_icp::evaluate

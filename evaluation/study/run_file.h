@@ -15,13 +15,10 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <array>
 #include <deque>
-#include <fstream>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -119,22 +116,21 @@ rowOf(Run run)
 }
 
 /** \brief Read a row.
- * \param[in] header of its file; columns that it does not have are as in a new run
  * \throws std::runtime_error if the line is not a row */
 template <typename Run>
 Run
-runOf(const std::string& line, const std::string& header = headerOf<Run>())
+runOf(const std::string& line)
 {
   const std::vector<std::string_view> fields = io::splitAt(',', line);
-  const std::vector<std::string_view> titles = io::splitAt(',', header);
-  if (fields.size() != titles.size())
-    throw std::runtime_error("not as many fields as there are titles");
+  std::size_t place = 0;
   Run run;
-  run.columns([&](const std::string& title, auto& value) {
-    const auto found = std::find(titles.begin(), titles.end(), title);
-    if (found != titles.end())
-      detail::readField(fields[std::size_t(found - titles.begin())], value);
+  run.columns([&](const std::string&, auto& value) {
+    if (place == fields.size())
+      throw std::runtime_error("too few fields");
+    detail::readField(fields[place++], value);
   });
+  if (place < fields.size())
+    throw std::runtime_error("too many fields");
   return run;
 }
 
@@ -171,35 +167,16 @@ public:
    * \throws io::FileError if the file exists and has another header or a bad row, or
    *         cannot be written, or is in use by another process */
   explicit RunFile(const std::string& file)
+  : file_(file, [&, has_header = false](const std::string& line) mutable {
+    if (!has_header && line != headerOf<Run>())
+      throw io::FileError(file, "is not a file of results of this version");
+    if (has_header)
+      read(line, file);
+    return has_header = true;
+  })
   {
-    file_.emplace(file, [&, has_header = false](const std::string& line) mutable {
-      if (!has_header && line != headerOf<Run>())
-        throw io::FileError(file, "is not a file of results of this version");
-      if (has_header)
-        read(line, headerOf<Run>(), file);
-      return has_header = true;
-    });
-    if (file_->isNew())
-      file_->add(headerOf<Run>());
-  }
-
-  /** \brief The runs of a file that others may write meanwhile, of any version that has
-   * the columns of the name; none of another file.
-   * \throws io::FileError of a bad row */
-  static std::vector<Run>
-  runsIn(const std::string& file)
-  {
-    RunFile found;
-    std::ifstream stream(file);
-    std::string header, line;
-    std::getline(stream, header);
-    const std::string ours = headerOf<Run>();
-    const auto same_end =
-        std::mismatch(header.begin(), header.end(), ours.begin(), ours.end()).first;
-    if (std::count(header.begin(), same_end, ',') >= Run::num_name_columns)
-      while (std::getline(stream, line) && !stream.eof())
-        found.read(line, header, file);
-    return found.runs();
+    if (file_.isNew())
+      file_.add(headerOf<Run>());
   }
 
   /** \brief The run of this name, or null; valid as long as this object. */
@@ -218,7 +195,7 @@ public:
   add(const Run& run)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    file_->add(rowOf(run));
+    file_.add(rowOf(run));
     return keep(run);
   }
 
@@ -240,13 +217,11 @@ public:
   }
 
 private:
-  RunFile() = default;
-
   void
-  read(const std::string& line, const std::string& header, const std::string& file)
+  read(const std::string& line, const std::string& file)
   {
     try {
-      keep(runOf<Run>(line, header));
+      keep(runOf<Run>(line));
     }
     catch (const std::exception&) {
       throw io::FileError(file, "bad line '" + line + "'");
@@ -279,7 +254,7 @@ private:
   std::deque<Run> runs_;
   std::map<std::string, std::size_t> places_;
   mutable std::mutex mutex_;
-  std::optional<io::LineFile> file_;
+  io::LineFile file_;
 };
 
 } // namespace bayesian_icp::evaluate

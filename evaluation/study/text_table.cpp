@@ -1,81 +1,80 @@
 #include "study/text_table.h"
 
 #include "io/numbers.h"
-#include "study/draw_statistics.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ostream>
+#include <map>
 
 namespace bayesian_icp::evaluate {
 
-void
-TextTable::print(std::ostream& stream) const
+namespace {
+
+/** The statistic of the numbers that are known. */
+std::string
+cellOf(const SummaryColumn& column, const std::vector<double>& numbers)
 {
-  std::vector<std::string> first, second;
-  for (const std::string& cell : rows_[0]) {
-    const std::size_t end = std::min(cell.find('\n'), cell.size());
-    first.push_back(cell.substr(0, end));
-    second.push_back(cell.substr(std::min(end + 1, cell.size())));
-  }
-  auto rows = rows_;
-  rows[0] = first;
-  if (second != std::vector<std::string>(second.size()))
-    rows.insert(rows.begin() + 1, second);
-  std::vector<std::size_t> widths(first.size(), 0);
+  constexpr int num_digits = 4;
+  std::vector<double> known;
+  for (const double number : numbers)
+    if (!std::isnan(number))
+      known.push_back(number);
+  if (known.empty())
+    return "-";
+  const std::string cell = io::textOf(column.statistic(known), num_digits);
+  return known.size() == numbers.size()
+             ? cell
+             : cell + " (of " + std::to_string(known.size()) + ')';
+}
+
+} // namespace
+
+std::string
+textOfTable(const std::vector<std::vector<std::string>>& rows)
+{
+  std::vector<std::size_t> widths(rows[0].size(), 0);
   for (const auto& row : rows)
-    for (std::size_t k = 0; k < row.size() && row.size() > 1; ++k)
+    for (std::size_t k = 0; k < row.size(); ++k)
       widths[k] = std::max(widths[k], row[k].size());
+  std::string text;
   for (const auto& row : rows) {
-    if (row.size() == 1) {
-      stream << row[0] << '\n';
-      continue;
-    }
     for (std::size_t k = 0; k < row.size(); ++k) {
       const std::string space(widths[k] - row[k].size(), ' ');
-      stream << "  " << (k == 0 ? row[k] + space : space + row[k]);
+      text += "  " + (k == 0 ? row[k] + space : space + row[k]);
     }
-    stream << '\n';
+    text += '\n';
   }
+  return text;
 }
 
 std::string
-numberText(double value, int num_decimals)
-{
-  if (std::isnan(value))
-    return "-";
-  return std::abs(value) < (num_decimals > 0 ? 1e4 : 1e7)
-             ? format("%.*f", num_decimals, value)
-             : format("%.1e", value);
-}
-
-TextTable
-medianTable(const std::vector<std::string>& columns,
+summaryText(const std::string& title,
+            const std::vector<SummaryColumn>& columns,
             const std::vector<GroupedNumbers>& runs)
 {
-  constexpr int num_digits = 4;
-  std::vector<std::string> header = {"medians of the runs of", "runs"}, groups;
-  header.insert(header.end(), columns.begin(), columns.end());
-  TextTable table(header);
-  for (const auto& [name, numbers] : runs)
-    if (std::find(groups.begin(), groups.end(), name) == groups.end())
-      groups.push_back(name);
-  for (const std::string& group : groups) {
-    const auto num_runs = std::count_if(
-        runs.begin(), runs.end(), [&](const auto& run) { return run.first == group; });
-    std::vector<std::string> cells = {group, std::to_string(num_runs)};
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      std::vector<double> known;
-      for (const auto& [name, numbers] : runs)
-        if (name == group && !std::isnan(numbers[k]))
-          known.push_back(numbers[k]);
-      cells.push_back(known.empty() ? "-" : io::textOf(median(known), num_digits));
-      if (!known.empty() && known.size() < std::size_t(num_runs))
-        cells.back() += " (of " + std::to_string(known.size()) + ')';
-    }
-    table.add(cells);
+  std::vector<std::vector<std::string>> rows = {{title, "runs"}};
+  std::map<std::string, std::vector<const std::vector<double>*>> members;
+  for (const auto& [group, numbers] : runs) {
+    if (members.count(group) == 0)
+      rows.push_back({group});
+    members[group].push_back(&numbers);
   }
-  return table;
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    rows[i].push_back(std::to_string(members[rows[i][0]].size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    if (std::all_of(runs.begin(), runs.end(), [k](const auto& run) {
+          return std::isnan(run.second[k]);
+        }))
+      continue;
+    rows[0].push_back(columns[k].title);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      std::vector<double> numbers;
+      for (const std::vector<double>* run : members[rows[i][0]])
+        numbers.push_back((*run)[k]);
+      rows[i].push_back(cellOf(columns[k], numbers));
+    }
+  }
+  return textOfTable(rows);
 }
 
 } // namespace bayesian_icp::evaluate

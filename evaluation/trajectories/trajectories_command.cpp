@@ -153,15 +153,11 @@ registerMissing(const std::vector<PairOfScans>& pairs,
       if (isMissing(edge))
         results.add(registeredEdge(edge, source, target, guess));
   };
-  const std::string name =
-      registered.recording.name + ", seed " + io::textOf(registered.seed);
   runTasks(missing.size(),
            num_threads,
-           run,
-           [&name](const StudyProgress& progress, std::size_t) {
-             std::cerr << name + ": " + io::textOf(progress.num_done) + " of " +
-                              io::textOf(progress.num_all) + " pairs registered\n";
-           });
+           "pairs of " + registered.recording.name + ", seed " +
+               io::textOf(registered.seed),
+           run);
 }
 
 /** Register what is not in the file, and take all edges from there. */
@@ -178,34 +174,28 @@ registerAll(const TrajectoriesOptions& options,
 }
 
 std::string
-tableOf(const std::vector<TrajectoryRun>& runs)
+summaryOf(const std::vector<TrajectoryRun>& runs)
 {
-  std::string text = format("%-30s %-5s %-11s %-11s %5s %8s %8s %8s %8s %7s %7s\n",
-                            "recording (seed)",
-                            "of",
-                            "means",
-                            "covariances",
-                            "edges",
-                            "ATE mm",
-                            "RPE mm",
-                            "RPE deg",
-                            "drift mm",
-                            "NEES/6",
-                            "cycles");
+  std::vector<GroupedNumbers> numbers;
   for (const TrajectoryRun& run : runs)
-    text += format("%-30s %-5s %-11s %-11s %5d %8.2f %8.2f %8.3f %8.2f %7.2f %7.2f\n",
-                   (run.recording + " (" + io::textOf(run.seed) + ')').c_str(),
-                   run.quality.c_str(),
-                   run.means.c_str(),
-                   run.covariances.c_str(),
-                   run.num_edges,
-                   milli * run.score.ate,
-                   milli * run.score.rpe_translation,
-                   app::degrees_per_radian * run.score.rpe_rotation,
-                   milli * run.score.drift_translation,
-                   run.score.nees_per_degree,
-                   run.cycle_nees_per_degree);
-  return text;
+    numbers.push_back({run.recording + " (" + run.quality + "), " + run.means + " + " +
+                           run.covariances,
+                       {static_cast<double>(run.num_edges),
+                        milli * run.score.ate,
+                        milli * run.score.rpe_translation,
+                        app::degrees_per_radian * run.score.rpe_rotation,
+                        milli * run.score.drift_translation,
+                        run.score.nees_per_degree,
+                        run.cycle_nees_per_degree}});
+  return summaryText("medians of the means + covariances of",
+                     {{"edges"},
+                      {"ATE [mm]"},
+                      {"RPE [mm]"},
+                      {"RPE [deg]"},
+                      {"drift [mm]"},
+                      {"NEES/6"},
+                      {"cycles"}},
+                     numbers);
 }
 
 std::string
@@ -231,11 +221,11 @@ coverage --real. All methods start at the true pose with errors of 0.1 m and
 (the closed form keeps its wide prior). The guess is a separate odometry edge
 from each scan to the next, the same for all methods.
 
-The table has the error of positions after alignment (ATE), of relative poses
-of neighbours (RPE), of the last pose (drift), the normalised squared error of
-all poses per degree of freedom (NEES/6) and that of closures of cycles of up
-to four edges (1 if covariances are right).
-Errors include those of the true poses ("of": exact, or quality A, B, C), and
+The summary has medians over the seeds: the error of positions after alignment
+(ATE), of relative poses of neighbours (RPE), of the last pose (drift), the
+normalised squared error of all poses per degree of freedom (NEES/6) and that
+of closures of cycles of up to four edges (1 if covariances are right).
+Errors include those of the true poses (exact, or quality A, B, C), and
 NEES/6 has their accuracy. Poses of quality C are of the same scans, so they
 have no NEES/6. The constant covariance needs other recordings.
 
@@ -300,7 +290,7 @@ runTrajectoriesCommand(int argc, const char* const* argv)
     rows += rowOf(run) + '\n';
   folder.add(std::filesystem::path(options.result.file).filename().string(), rows);
   folder.commit();
-  io::print(tableOf(runs));
+  io::print(summaryOf(runs));
   const auto isConstant = [](const auto& run) { return run.covariances == "constant"; };
   const auto num_constant = std::count_if(runs.begin(), runs.end(), isConstant);
   if (num_constant < 2 * static_cast<std::ptrdiff_t>(recordings.size()))

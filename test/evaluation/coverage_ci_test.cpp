@@ -9,7 +9,7 @@
 #include "coverage/coverage_cases.h"
 #include "coverage/coverage_methods.h"
 #include "coverage/coverage_score.h"
-#include "coverage/coverage_summary.h"
+#include "evaluation/coverage_test_support.h"
 #include "io/numbers.h"
 #include "study/draw_statistics.h"
 
@@ -106,18 +106,19 @@ TEST(CoverageOfCalibrated, IsRightOnTheTunedScenes)
 {
   const std::vector<ControlledRun> runs =
       runAll(tunedScenes(), {"same", "moved", "correlated"}, 12);
-  const CoverageSummary pooled = summaryOf(select(runs, &ControlledRun::calibrated));
-  EXPECT_EQ(pooled.num_valid, pooled.num_runs);
+  const std::vector<CoverageRun> pooled = select(runs, &ControlledRun::calibrated);
+  EXPECT_EQ(meanOf(pooled, &CoverageScore::is_valid), 1.0);
+  const double coverage_50 = coverageOf(pooled, 0.5),
+               coverage_95 = coverageOf(pooled, 0.95);
   // For --gtest_output=xml.
-  RecordProperty("anees", io::textOf(pooled.anees));
-  RecordProperty("coverage_50", io::textOf(pooled.coverage.front().value));
-  RecordProperty("coverage_95", io::textOf(pooled.coverage.back().value));
-  EXPECT_NEAR(pooled.anees, 1.0, 4 * 0.04);
-  EXPECT_NEAR(pooled.coverage.front().value, 0.5, 4 * 0.034);
-  EXPECT_NEAR(pooled.coverage.back().value, 0.95, 4 * 0.015);
+  RecordProperty("anees", io::textOf(aneesOf(pooled)));
+  RecordProperty("coverage_50", io::textOf(coverage_50));
+  RecordProperty("coverage_95", io::textOf(coverage_95));
+  EXPECT_NEAR(aneesOf(pooled), 1.0, 4 * 0.04);
+  EXPECT_NEAR(coverage_50, 0.5, 4 * 0.034);
+  EXPECT_NEAR(coverage_95, 0.95, 4 * 0.015);
   for (const std::string& scene : tunedScenes()) {
-    const double anees =
-        summaryOf(select(runs, &ControlledRun::calibrated, scene)).anees;
+    const double anees = aneesOf(select(runs, &ControlledRun::calibrated, scene));
     RecordProperty("anees_" + scene, io::textOf(anees));
     EXPECT_LT(anees, 1.8) << scene;
   }
@@ -133,10 +134,10 @@ TEST(CoverageOfCalibrated, IsRightOnTheTunedScenes)
   EXPECT_GE(share_of_prior("table_top", 0), 0.8);
 
   // The positive control: were this test blind, it would pass this, too.
-  const CoverageSummary control = summaryOf(select(runs, &ControlledRun::independent));
-  EXPECT_EQ(control.num_valid, control.num_runs);
-  RecordProperty("coverage_95_of_control", io::textOf(control.coverage.back().value));
-  EXPECT_LT(control.coverage.back().value, 0.5);
+  const std::vector<CoverageRun> control = select(runs, &ControlledRun::independent);
+  EXPECT_EQ(meanOf(control, &CoverageScore::is_valid), 1.0);
+  RecordProperty("coverage_95_of_control", io::textOf(coverageOf(control, 0.95)));
+  EXPECT_LT(coverageOf(control, 0.95), 0.5);
 }
 
 TEST(CoverageOfCalibrated, HasRegionsOfStudentsTInTheDirectionsThatTheDataHold)
@@ -162,9 +163,9 @@ TEST(CoverageOfCalibrated, IsNotTooSureOfWhatFewRingsSee)
   for (const auto& [scene, condition] :
        {std::pair("tunnel", "lidar16"), std::pair("bare_ground", "lidar32")}) {
     const std::vector<ControlledRun> runs = runAll({scene}, {condition}, num_seeds);
-    const CoverageSummary pooled = summaryOf(select(runs, &ControlledRun::calibrated));
-    EXPECT_EQ(pooled.num_valid, num_seeds) << scene;
-    EXPECT_LT(pooled.anees, limit) << scene;
+    const std::vector<CoverageRun> pooled = select(runs, &ControlledRun::calibrated);
+    EXPECT_EQ(meanOf(pooled, &CoverageScore::is_valid), 1.0) << scene;
+    EXPECT_LT(aneesOf(pooled), limit) << scene;
   }
 }
 

@@ -299,7 +299,7 @@ TEST_F(SequencesTest, TheCommandCountsLostPairs)
   const CommandResult result = run("--methods calibrated,gicp,icp --output a.csv");
   ASSERT_EQ(result.exit_code, 0) << result.output;
   for (const char* piece :
-       {"  not lost  ", "\nhall, B step 1 guess-sd 0.1 0.03 seed 1\n"})
+       {"  lost  ", "\n  hall, B step 1 guess-sd 0.1 0.03 seed 1, calibrated  "})
     expectIn(result.output, piece);
   const Rows rows = rowsOf(folder_ / "a.csv");
   ASSERT_EQ(rows.size(), 10u);

@@ -1,7 +1,6 @@
 // Scores of the coverage study: posteriors that are right by construction score as the
 // closed forms say.
 #include "coverage/coverage_score.h"
-#include "coverage/coverage_summary.h"
 #include "evaluation/coverage_test_support.h"
 
 #include <gtest/gtest.h>
@@ -90,17 +89,13 @@ expectEnergyScoreOfRightOnes(const std::vector<CoverageRun>& runs)
 TEST(CoverageScore, RightGaussianIsCalibrated)
 {
   const auto runs = scoredRuns(1500, 0);
-  const CoverageSummary summary = summaryOf(runs);
   // Variance of chi-square with 6 degrees of freedom: 12.
-  EXPECT_NEAR(6.0 * summary.anees, 6.0, fourErrors(12.0, runs.size()));
-  for (std::size_t i = 0; i < coverage_levels.size(); ++i) {
-    const double level = coverage_levels[i];
-    EXPECT_NEAR(summary.coverage[i].value,
-                level,
-                fourErrors(level * (1.0 - level), runs.size()));
-  }
+  EXPECT_NEAR(6.0 * aneesOf(runs), 6.0, fourErrors(12.0, runs.size()));
+  for (const double level : {0.5, 0.68, 0.9, 0.95})
+    EXPECT_NEAR(
+        coverageOf(runs, level), level, fourErrors(level * (1.0 - level), runs.size()));
   // -log((2 pi)^3 width^6) - NEES / 2; the variance of the latter is 12 / 4.
-  EXPECT_NEAR(summary.mean_log_score,
+  EXPECT_NEAR(meanOf(runs, &CoverageScore::log_score),
               -3.0 * std::log(2.0 * pi) - 6.0 * std::log(relative_width) - 3.0,
               fourErrors(3.0, runs.size()));
   expectUniformPit(runs);
@@ -114,9 +109,8 @@ TEST(CoverageScore, RightDrawsAreCalibrated)
   // Hotelling: the moments are those of 400 draws.
   const double n = num_draws;
   const double factor = (1.0 + 1.0 / n) * (n - 1.0) / (n - 8.0);
-  EXPECT_NEAR(6.0 * summaryOf(runs).anees,
-              6.0 * factor,
-              1.1 * factor * fourErrors(12.0, runs.size()));
+  EXPECT_NEAR(
+      6.0 * aneesOf(runs), 6.0 * factor, 1.1 * factor * fourErrors(12.0, runs.size()));
   expectUniformPit(runs);
   expectEnergyScoreOfRightOnes(runs);
 }
@@ -284,96 +278,6 @@ TEST(CoverageScore, OfAPoseAloneHasErrorsOnly)
   EXPECT_NEAR(score.translation_error, 0.2, 1e-9);
   EXPECT_TRUE(std::isnan(score.nees));
   EXPECT_TRUE(std::isnan(score.log_score));
-}
-
-TEST(CoverageSummary, CountsAlarmsAndMisses)
-{
-  // NEES, displacement, flagged: good, an alarm, neither, bad but told, lost and
-  // missed, without a result.
-  std::vector<CoverageRun> runs(6);
-  const double nees[] = {1.0, 16.8, 20.0, 28.0, 1.0, std::nan("")};
-  const double displacement[] = {0.1, 0.1, 0.1, 0.1, 0.3, std::nan("")};
-  const bool is_flagged[] = {false, true, false, true, false, false};
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    CoverageScore& score = runs[i].score;
-    score.lost_displacement = 0.2;
-    score.nees = nees[i];
-    score.displacement = displacement[i];
-    score.is_valid = !std::isnan(nees[i]);
-    score.notes = is_flagged[i] ? "flag:misfit" : "";
-  }
-  CoverageRun pose_only;
-  pose_only.score.lost_displacement = 0.2;
-  pose_only.score.displacement = 0.3;
-  runs.push_back(pose_only);
-  const CoverageSummary summary = summaryOf(runs);
-  EXPECT_EQ(summary.num_lost, 3u);
-  EXPECT_EQ(summary.num_good, 2u);
-  EXPECT_EQ(summary.num_alarms, 1u);
-  EXPECT_EQ(summary.num_bad, 3u);
-  EXPECT_EQ(summary.num_misses, 1u);
-  EXPECT_DOUBLE_EQ(summary.anees, (1.0 + 16.8 + 20.0 + 28.0) / 24.0);
-}
-
-TEST(CoverageSummary, IntervalIsWilsons)
-{
-  // Newcombe (1998), table I, method 3: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
-  const auto expectShare =
-      [](std::size_t hits, std::size_t trials, double low, double high) {
-        const Share share = shareOf(hits, trials);
-        EXPECT_NEAR(share.low, low, 5e-5);
-        EXPECT_NEAR(share.high, high, 5e-5);
-      };
-  expectShare(81, 263, 0.2553, 0.3662);
-  expectShare(15, 148, 0.0624, 0.1605);
-  expectShare(0, 20, 0.0, 0.1611);
-  expectShare(1, 29, 0.0061, 0.1718);
-  EXPECT_TRUE(std::isnan(shareOf(0, 0).value));
-}
-
-TEST(CoverageSummary, IntervalsCountAPairOfRealScansOnce)
-{
-  // All ten seeds of one of two pairs are outside.
-  std::vector<CoverageRun> runs(20);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    runs[i].name.condition = real_pair;
-    runs[i].name.scene = i < 10 ? "one" : "two";
-    runs[i].score.region = i < 10 ? 0.3 : 0.99;
-  }
-  const Share one_of_two = shareOf(1, 2);
-  const Share share = summaryOf(runs).coverage.back();
-  EXPECT_EQ(share.value, 0.5);
-  EXPECT_EQ(share.low, one_of_two.low);
-  EXPECT_EQ(share.high, one_of_two.high);
-  for (CoverageRun& run : runs)
-    run.name.condition = "clean";
-  EXPECT_EQ(summaryOf(runs).coverage.back().low, shareOf(10, 20).low);
-}
-
-TEST(CoverageSummary, CountsFlagsAmongRunsOutside)
-{
-  std::vector<CoverageRun> runs(5);
-  for (CoverageRun& run : runs) {
-    run.score.is_valid = true;
-    run.score.nees = 1.0;
-    run.score.region = 0.1;
-    run.score.displacement = 0.0;
-  }
-  runs[0].score.nees = 13.0;
-  runs[0].score.region = 0.97;
-  runs[0].score.notes = "prior_only=1;flag:misfit";
-  runs[1].score.nees = 12.6;
-  runs[1].score.region = 0.9501;
-  runs[2].score.notes = "flag:few_patches";
-  runs[3].score.notes = "no flag:here";
-  runs[4].score = CoverageScore();
-  const CoverageSummary summary = summaryOf(runs);
-  EXPECT_EQ(summary.num_runs, 5u);
-  EXPECT_EQ(summary.num_valid, 4u);
-  EXPECT_DOUBLE_EQ(summary.anees, (13.0 + 12.6 + 2.0) / 24.0);
-  EXPECT_DOUBLE_EQ(summary.coverage.back().value, 0.5);
-  EXPECT_DOUBLE_EQ(summary.flagged.value, 0.5);
-  EXPECT_DOUBLE_EQ(summary.flagged_outside.value, 0.5);
 }
 
 TEST(CoverageRegion, OfAGaussianIsChiSquares)

@@ -1,6 +1,5 @@
 // The coverage study: rows that come back, runs that are not made again.
 #include "coverage/coverage_study.h"
-#include "coverage/coverage_summary.h"
 #include "evaluation/coverage_test_support.h"
 #include "evaluation/csv_rows.h"
 #include "io/errors.h"
@@ -12,7 +11,6 @@
 
 #include <atomic>
 #include <new>
-#include <sstream>
 
 using namespace bayesian_icp;
 using namespace bayesian_icp::evaluate;
@@ -123,37 +121,20 @@ TEST_F(CoverageStudyTest, LackOfMemoryIsNoResult)
   EXPECT_EQ(count("\n", contentOf(file_)), 1) << "only the header";
 }
 
-TEST_F(CoverageStudyTest, AnExceptionOfTheReportEndsTheStudy)
-{
-  CoverageFile results(file_);
-  CoverageStudy failing = study(2, 2);
-  failing.report = [](const StudyProgress&, const CoverageCaseName&) {
-    throw std::bad_alloc();
-  };
-  EXPECT_THROW(runCoverageStudy(failing, results), std::bad_alloc);
-}
-
-TEST_F(CoverageStudyTest, TableHasEveryCellAndThePools)
+TEST(CoverageSummary, HasEveryCellAndThePools)
 {
   std::vector<CoverageRun> runs;
   for (const char* scene : {"box", "can"})
-    for (const char* condition : {"same", "moved"}) {
-      const RightPosterior right = rightPosterior(1, 0);
-      runs.push_back({{scene, condition, 1, "right"},
-                      coverageScoreOf(right.problem, right.result)});
-    }
-  std::ostringstream table;
-  for (const TextTable& made : coverageTables(runs))
-    made.print(table);
-  for (const char* title : {"\nbox, same\n",
-                            "\ncan, moved\n",
-                            "\nbox, all conditions\n",
-                            "\nall scenes, moved\n",
-                            "\nall\n"})
-    expectIn(table.str(), title);
+    for (const char* condition : {"same", "moved"})
+      runs.push_back({{scene, condition, 1, "right"}, {}});
+  for (const char* group : {"\n  box, same, right ",
+                            "\n  can, moved, right ",
+                            "\n  all scenes, moved, right  ",
+                            "\n  all, right "})
+    expectIn(summaryOf(runs), group);
 }
 
-TEST(CoverageTables, TellOfTenRuns)
+TEST(CoverageSummary, TellsOfTenRuns)
 {
   std::vector<CoverageRun> runs;
   for (std::uint64_t k = 0; k < 10; ++k) {
@@ -171,29 +152,44 @@ TEST(CoverageTables, TellOfTenRuns)
     score.notes = k < 2 ? "flag:modes" : "";
     runs.back().name = {"can", "same", k, "a"};
   }
-  // 5, 7, 9 and 10 of 10 regions are within the levels.
-  const std::vector<std::string> cells = {"a",
-                                          "10/10",
-                                          "1.50",
-                                          "0.50 [0.24,0.76]",
-                                          "0.70 [0.40,0.89]",
-                                          "0.90 [0.60,0.98]",
-                                          "1.00 [0.72,1.00]",
-                                          "2.00",
-                                          "0.5000",
-                                          "5.50",
-                                          "5.73",
-                                          "20",
-                                          "-",
-                                          "0.250",
-                                          "1000"};
-  EXPECT_EQ(coverageTables(runs).at(0).rows().at(2), cells);
+  // 5, 7, 9 and 10 of 10 regions are within the levels, and none is outside of them.
+  EXPECT_EQ(
+      summaryOf(runs),
+      "  runs of       runs  valid  NEES/6  in 50 %  in 68 %  in 90 %  in 95 %  log p"
+      "  energy  [mm]  [deg]  flagged   [s]  queries\n"
+      "  can, same, a    10      1     1.5      0.5      0.7      0.9        1      2"
+      "     0.5   5.5   5.73      0.2  0.25     1000\n");
   for (CoverageRun& run : runs)
     run.score.num_queries = -1;
-  EXPECT_EQ(coverageTables(runs).at(0).rows().at(2).back(), "-");
-  runs.push_back(runs[0]);
-  runs.back().score.lost_displacement = 0.1;
-  EXPECT_EQ(coverageTables(runs).size(), 2u) << "recordings have other columns";
+  EXPECT_EQ(count("queries", summaryOf(runs)), 0);
+}
+
+TEST(CoverageSummary, TellsWhatIsLostFalselyDoubtedAndMissed)
+{
+  // NEES, displacement, flagged: good, an alarm, neither, bad but told, lost and
+  // missed, without a result.
+  std::vector<CoverageRun> runs(7);
+  const double nees[] = {1.0, 16.8, 20.0, 28.0, 1.0, std::nan("")};
+  const double displacement[] = {0.1, 0.1, 0.1, 0.1, 0.3, std::nan("")};
+  const bool is_flagged[] = {false, true, false, true, false, false};
+  for (std::size_t i = 0; i < 6; ++i) {
+    CoverageScore& score = runs[i].score;
+    score.nees = nees[i];
+    score.displacement = displacement[i];
+    score.is_valid = !std::isnan(nees[i]);
+    score.notes = is_flagged[i] ? "prior_only=1;flag:misfit" : "no flag:here";
+  }
+  runs[6].score.displacement = 0.3; // a pose alone
+  for (CoverageRun& run : runs) {
+    run.score.lost_displacement = 0.2;
+    run.name = {"hall", "A", 1, "a"};
+  }
+  EXPECT_EQ(
+      summaryOf(runs),
+      "  runs of     runs   valid    lost         NEES/6         flagged      alarms"
+      "         misses\n"
+      "  hall, A, a     7  0.7143  0.4286  2.742 (of 4)  0.3333 (of 6)  0.5 (of 2)"
+      "  0.3333 (of 3)\n");
 }
 
 MethodResult

@@ -4,12 +4,15 @@
  */
 #pragma once
 
+#include "coverage/coverage_study.h"
 #include "geometry/twist.h"
-#include "study/coverage_case.h"
 
 #include <bayesian_icp/random.h>
 
 #include <Eigen/Geometry>
+
+#include <functional>
+#include <vector>
 
 namespace bayesian_icp::evaluate {
 
@@ -51,6 +54,32 @@ rightPosterior(std::uint64_t seed, Eigen::Index num_draws)
   for (Eigen::Index i = 0; i < num_draws; ++i)
     result.draws.row(i) = poseOf(draw().matrix()).transpose();
   return right;
+}
+
+/** Of a number of the scores that all runs have. */
+template <typename Number>
+double
+meanOf(const std::vector<CoverageRun>& runs, const Number& number)
+{
+  double sum = 0.0;
+  for (const CoverageRun& run : runs)
+    sum += static_cast<double>(std::invoke(number, run.score));
+  return sum / static_cast<double>(runs.size());
+}
+
+/** Mean of nees / 6. */
+inline double
+aneesOf(const std::vector<CoverageRun>& runs)
+{
+  return meanOf(runs, &CoverageScore::nees) / 6.0;
+}
+
+/** Share of the truths within the regions of a probability. */
+inline double
+coverageOf(const std::vector<CoverageRun>& runs, double level)
+{
+  return meanOf(runs,
+                [=](const CoverageScore& score) { return score.region <= level; });
 }
 
 } // namespace bayesian_icp::evaluate

@@ -1,7 +1,6 @@
 // The evaluation app's own pieces: distances against closed forms, scores of good and
 // bad draws, and the gold standard, Metropolis runs on densities whose moments are
 // known.
-#include "evaluation/csv_rows.h"
 #include "samplers/score.h"
 #include "study/draw_statistics.h"
 #include "support/test_support.h"
@@ -13,7 +12,6 @@
 #include <Eigen/Cholesky>
 
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 using namespace bayesian_icp;
@@ -192,33 +190,6 @@ TEST(Score, JudgesGoodAndBadDraws)
   particles.chains.chains.resize(1);
   particles.chains.chains[0].draws = gaussianDraws(gaussian, min_particles, 2);
   EXPECT_TRUE(std::isfinite(scoreOf(particles, gold).kl));
-}
-
-TEST(ResultTable, ShowsMediansAndWorstOfTheBestStepSize)
-{
-  std::vector<ScoredRun> runs;
-  for (const double kl : {0.3, 0.1, 0.2}) {
-    ScoredRun run;
-    run.name = {"can", 0.0015, 1000.0, "paper 1e-05", runs.size() + 1, ""};
-    run.score.kl = kl;
-    run.score.status = "ok";
-    run.score.seconds = 1.0;
-    runs.push_back(run);
-  }
-  runs.push_back(runs[0]);
-  runs.back().name.sampler = "paper 0.001"; // only tried once
-  std::ostringstream table;
-  samplerTable(runs).print(table);
-  for (const char* line :
-       {"can, sigma 0.0015 m, N 1000\n", "\n  paper 1e-05     3  0.2000  0.3000  "})
-    expectIn(table.str(), line);
-  EXPECT_EQ(count("paper 0.001", table.str()), 0);
-  // Of other points or a longer gold standard.
-  runs.push_back(runs[0]);
-  runs.back().name.gold_key = "other";
-  std::ostringstream both;
-  samplerTable(runs).print(both);
-  expectIn(both.str(), ", gold standard other\n  paper 1e-05     1  0.3000");
 }
 
 TEST(MetropolisRuns, WalkAndMalaReachTheMomentsOfAGaussian)

@@ -296,22 +296,27 @@ TEST(DrawCurves, DivergencesAreClosedForms)
   EXPECT_EQ(curveDivergences(PoseMatrix::Zero(5, 6), baseline)[6], infinity);
 }
 
-TEST(MedianTable, LeavesOutWhatIsUnknownAndKeepsTheOrder)
+TEST(SummaryText, LeavesOutWhatIsUnknownAndKeepsTheOrder)
 {
-  std::ostringstream text;
-  medianTable({"[mm]", "[mrad]"},
-              {{"b", {3.0, infinity}},
-               {"a", {0.25, std::nan("")}},
-               {"b", {1.0, 2.0}},
-               {"b", {12345.678, 4.0}},
-               {"c", {1.0, 2.0}},
-               {"c", {3.0, std::nan("")}}})
-      .print(text);
-  EXPECT_EQ(text.str(),
-            "  medians of the runs of  runs  [mm]    [mrad]\n"
-            "  b                          3     3         4\n"
-            "  a                          1  0.25         -\n"
-            "  c                          2     2  2 (of 1)\n");
+  const double unknown = std::nan("");
+  const std::vector<SummaryColumn> columns = {{"[mm]"},
+                                              {"[mrad]"},
+                                              {"none"},
+                                              {"mean", mean},
+                                              {"most", largest},
+                                              {"least", smallest}};
+  EXPECT_EQ(summaryText("medians of",
+                        columns,
+                        {{"b", {3.0, infinity, unknown, 1.0, 1.0, 1.0}},
+                         {"a", {0.25, unknown, unknown, 0.0, 7.0, 7.0}},
+                         {"b", {1.0, 2.0, unknown, 1.0, 3.0, 3.0}},
+                         {"b", {12345.678, 4.0, unknown, 0.0, 2.0, 2.0}},
+                         {"c", {1.0, 2.0, unknown, 1.0, 4.0, 4.0}},
+                         {"c", {3.0, unknown, unknown, 0.0, 5.0, 5.0}}}),
+            "  medians of  runs  [mm]    [mrad]    mean  most  least\n"
+            "  b              3     3         4  0.6667     3      1\n"
+            "  a              1  0.25         -       0     7      7\n"
+            "  c              2     2  2 (of 1)     0.5     5      4\n");
 }
 
 TEST(AccuracyMethods, FindThePoseFromNearby)

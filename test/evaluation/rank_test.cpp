@@ -169,13 +169,13 @@ TEST(Ranks, VerdictIsOfGoodRunsAlone)
       runs.push_back({{sampler, k}, true, Ranks::Constant(static_cast<int>(2 * k))});
   const RankVerdict good = verdictOf(runs);
   EXPECT_TRUE(good.are_uniform);
-  EXPECT_EQ(good.table.rows().at(2).at(1), "50/50");
-  EXPECT_EQ(good.table.rows().at(2).back(), "uniform");
-  EXPECT_EQ(good.table.rows().at(3).back(), "no model of the scans: for information");
+  EXPECT_EQ(good.rows.at(1).at(1), "50/50");
+  EXPECT_EQ(good.rows.at(1).back(), "uniform");
+  EXPECT_EQ(good.rows.at(2).back(), "no model of the scans: for information");
   // Of 49 runs, less than five are expected in each of ten bins.
   const RankVerdict few = verdictOf({runs.begin() + 2, runs.end()});
   EXPECT_TRUE(few.are_uniform);
-  EXPECT_EQ(few.table.rows().at(2).back(), "too few runs");
+  EXPECT_EQ(few.rows.at(1).back(), "too few runs");
   runs[1].is_valid = false;
   EXPECT_TRUE(verdictOf(runs).are_uniform);
   runs[0].is_valid = false;

@@ -17,6 +17,7 @@ from report import (
     frames,
     page,
     paper,
+    samplers,
     sbc,
     table_one,
     trajectories,
@@ -100,7 +101,7 @@ class Trajectories(FolderTest):
              ["street (exact)", "calibrated + constant", "39", "4.20", "1.00", "0.573",
               "20.0", "-", "0.50"]],
         )  # fmt: skip
-        section = trajectories.section_of(self.output, "drives", rows, [])
+        section = trajectories.section_of(self.output, "drives", rows)
         self.assertEqual(section.title, "Trajectories (drives.csv)")
         self.assertIn(b"</svg>", self.output.files["drives_errors.svg"])
 
@@ -111,7 +112,7 @@ class Trajectories(FolderTest):
             "rpe_m": 0.001, "rpe_rad": 0.01, "drift_m": 0.02, "nees_per_degree": 1.0,
             "cycle_nees_per_degree": 0.5,
         })  # fmt: skip
-        trajectories.section_of(self.output, "some", rows, [])
+        trajectories.section_of(self.output, "some", rows)
         self.assertIn(b"</svg>", self.output.files["some_errors.svg"])
 
 
@@ -134,23 +135,106 @@ class Coverage(FolderTest):
         runs = coverage_rows(lost_displacement_m=0.1)
         runs.loc[5:, ["nees", "displacement_m"]] = np.nan
         runs.loc[5:, ["region", "valid"]] = [1.0, 0]
-        coverage.section_of(self.output, "c", runs, [])
+        coverage.section_of(self.output, "c", runs)
         whole = self.output.files["c_regions.svg"]
         coverage.plot_regions(self.output, "c", [("a", runs)])
         self.assertEqual(self.output.files["c_regions.svg"], whole)
 
     def test_figures_are_drawn(self):
-        table = page.Table("can, same", ["method"], [["a"]])
-        section = coverage.section_of(self.output, "c", coverage_rows(), [table])
+        section = coverage.section_of(self.output, "c", coverage_rows())
         for block in section.blocks[:3]:
             self.assertIn(b"</svg>", self.output.files[f"{block.name}.svg"])
             self.assertEqual(self.output.files[f"{block.name}.png"][1:4], b"PNG")
-        self.assertEqual(section.blocks[-1], table)
         # Of the rows of one name the last one counts.
         whole = self.output.files["c_anees.svg"]
         replaced = coverage_rows(num_rows=1, nees=1e6)
-        coverage.section_of(self.output, "c", pd.concat([replaced, coverage_rows()]), [])
+        again = coverage.section_of(self.output, "c", pd.concat([replaced, coverage_rows()]))
         self.assertEqual(self.output.files["c_anees.svg"], whole)
+        self.assertEqual(again.blocks, section.blocks)
+
+    def test_table_tells_of_ten_runs(self):
+        (table,) = coverage.tables_of(coverage_rows())
+        self.assertEqual((table.caption, len(table.header)), ("can, same", 15))
+        # 5, 7, 9 and 10 of 10 regions are within the levels.
+        self.assertEqual(
+            table.rows,
+            [["a", "10/10", "1.50", "0.50 [0.24,0.76]", "0.70 [0.40,0.89]", "0.90 [0.60,0.98]",
+              "1.00 [0.72,1.00]", "2.00", "0.5000", "5.50", "5.73", "20", "-", "0.250", "1000"]],
+        )  # fmt: skip
+        (uncounted,) = coverage.tables_of(coverage_rows(queries=-1))
+        self.assertEqual(uncounted.rows[0][-1], "-")
+
+    def test_tables_are_of_every_cell_and_of_the_pools(self):
+        runs = [coverage_rows(scene=s, condition=c) for s in ("box", "can") for c in ("same", "moved")]
+        titles = [table.caption for table in coverage.tables_of(pd.concat(runs))]
+        for title in ("box, same", "can, moved", "box, all conditions", "all scenes, moved", "all"):
+            self.assertEqual(titles.count(title), 1, title)
+        recorded = coverage_rows(scene="hall", lost_displacement_m=0.1)
+        section = coverage.section_of(self.output, "c", pd.concat([*runs, recorded]))
+        self.assertEqual(section.blocks[-1].caption, "hall, same")
+        self.assertIn("alarms/good", section.blocks[-1].header)
+        self.assertNotIn("alarms/good", section.blocks[-2].header)
+
+    def test_intervals_are_wilsons(self):
+        # Newcombe (1998), table I, method 3.
+        for hits, trials, low, high in ((81, 263, 0.26, 0.37), (15, 148, 0.06, 0.16), (0, 20, 0, 0.16), (1, 29, 0.01, 0.17)):
+            text = coverage.share_text(pd.Series(np.arange(trials) < hits), coverage_rows(trials))
+            self.assertEqual(text, f"{hits / trials:.2f} [{low:.2f},{high:.2f}]")
+        self.assertEqual(coverage.share_text(pd.Series([], dtype=bool), coverage_rows(0)), "-")
+
+    def test_intervals_count_a_pair_of_real_scans_once(self):
+        # All ten seeds of one of two pairs are outside.
+        runs = coverage_rows(20, scene=["one"] * 10 + ["two"] * 10, condition="real")
+        is_hit = runs.scene == "one"
+        one_of_two = coverage.share_text(pd.Series([True, False]), coverage_rows(2))
+        self.assertEqual(coverage.share_text(is_hit, runs), one_of_two)
+        self.assertNotEqual(coverage.share_text(is_hit, runs.assign(condition="clean")), one_of_two)
+
+    def test_alarms_and_misses_are_counted(self):
+        # Good, an alarm, neither, bad but told, lost and missed, without a result, a pose alone.
+        runs = coverage_rows(
+            7, nees=[1.0, 16.8, 20.0, 28.0, 1.0, np.nan, np.nan], lost_displacement_m=0.2,
+            displacement_m=[0.1, 0.1, 0.1, 0.1, 0.3, np.nan, 0.3], valid=[1, 1, 1, 1, 1, 0, 0],
+            notes=["", "flag:misfit", "", "flag:misfit", "", "", ""],
+        )  # fmt: skip
+        cells = coverage.cells_of(runs)
+        self.assertEqual([cells[c] for c in ("lost", "alarms/good", "misses/bad")], ["3", "1/2", "1/3"])
+        self.assertEqual(cells["mean NEES/6"], f"{(1.0 + 16.8 + 20.0 + 28.0) / 24.0:.2f}")
+
+    def test_flags_are_counted_among_runs_outside(self):
+        runs = coverage_rows(
+            5, nees=[13.0, 12.6, 1.0, 1.0, np.nan], region=[0.97, 0.9501, 0.1, 0.1, np.nan],
+            displacement_m=[0, 0, 0, 0, np.nan], valid=[1, 1, 1, 1, 0],
+            notes=["prior_only=1;flag:misfit", "", "flag:few_patches", "no flag:here", ""],
+        )  # fmt: skip
+        cells = coverage.cells_of(runs)
+        self.assertEqual(cells["valid/runs"], "4/5")
+        self.assertEqual(cells["mean NEES/6"], "1.15")
+        self.assertEqual(cells["truths within 95 %"][:4], "0.50")
+        self.assertEqual((cells["flagged [%]"], cells["flagged if outside [%]"]), ("50", "50"))
+
+
+class Samplers(FolderTest):
+    def test_medians_and_worst_of_the_best_step_size(self):
+        columns = {f"{kind}_{c}": 0.01 for kind in ("kl", "w1", "ks") for c in frames.COORDINATES}
+        rows = pd.DataFrame({
+            "gold_key": "g", "scene": "can", "sigma": 0.0015, "effective_points": 1000.0,
+            "sampler": ["paper 1e-05"] * 3 + ["paper 0.001"], "seed": [1, 2, 3, 1], "status": "ok",
+            "kl": [0.3, 0.1, 0.2, 0.3], **columns, "rhat": [1.0, 1.2, 1.1, 1.0],
+            "bulk_ess": 400.0, "tail_ess": 300.0, "seconds": 2.0, "min_ess_per_second": 200.0,
+        })  # fmt: skip
+        rows.loc[:2, "ks_x"] = [0.07, 0.05, 0.05]
+        (table,) = samplers.section_of(self.output, "s", rows).blocks
+        self.assertEqual(table.caption, "can, sigma 0.0015 m, N 1000")
+        self.assertEqual(
+            table.rows,
+            [["paper 1e-05", "3", "0.2000", "0.3000", "0.0100", "0.010", "94", "1.200", "400", "300", "200.0",
+              "2.000", "3"]],
+        )  # fmt: skip
+        # Of other points or a longer gold standard.
+        both = samplers.section_of(self.output, "s", pd.concat([rows, rows[:1].assign(gold_key="other")])).blocks
+        self.assertEqual(both[1].caption, "can, sigma 0.0015 m, N 1000, gold standard other")
+        self.assertEqual(both[1].rows[0][:3], ["paper 1e-05", "1", "0.3000"])
 
 
 class Ranks(FolderTest):
@@ -159,9 +243,16 @@ class Ranks(FolderTest):
         self.assertEqual(list(counts), [2, 1, 0, 0, 0, 0, 0, 0, 0, 1])
         columns = {f"rank_{c}": range(5, 100, 10) for c in frames.COORDINATES}
         rows = pd.DataFrame({"sampler": "s", "seed": range(10), "valid": 1, **columns})
-        section = sbc.section_of(self.output, "sbc", rows, [])
+        # All in one bin of ten: 9 n.
+        rows = pd.concat([rows, rows.assign(sampler="narrow", rank_yaw=99)])
+        rows.iloc[0, rows.columns.get_loc("valid")] = 0
+        section = sbc.section_of(self.output, "sbc", rows)
         self.assertIn("sbc_ranks.png", self.output.files)
-        self.assertEqual(len(section.blocks), 1)
+        self.assertEqual(
+            section.blocks[0].rows,
+            [["s", "9/10", *["1.0"] * 6], ["narrow", "10/10", *["0.0"] * 5, "90.0"]],
+        )
+        self.assertEqual(sbc.table_of([("none", rows[:1])]).rows, [["none", "0/1", *["-"] * 6]])
 
 
 def distribution_rows(pair="can", methods=("bayesian-icp", "online-icp"), num_runs=2):
@@ -288,12 +379,6 @@ class Page(FolderTest):
         figures = [page.Figure("one", "first"), page.Figure("two", "second")]
         return [page.Section("One & two", [page.Text("p < q"), page.Code("run --it"), table, *figures])]
 
-    def test_tables_of_the_program(self):
-        made = [[["\nmethod", "mean\nNEES/6"], ["can"], ["a", "1.00"], ["all"], ["a", "2.00"]]]
-        header = ["method", "mean NEES/6"]
-        expected = [page.Table("can", header, [["a", "1.00"]]), page.Table("all", header, [["a", "2.00"]])]
-        self.assertEqual(page.tables_of(made), expected)
-
     def test_markdown(self):
         self.assertEqual(
             page.markdown_of("A < B", self.sections()),
@@ -331,10 +416,10 @@ class Page(FolderTest):
 
 
 class Program(FolderTest):
-    def run_report(self, tables="{}"):
+    def run_report(self):
         program = pathlib.Path(report.__file__).parent
         words = [sys.executable, "-B", program, self.folder]
-        return subprocess.run(words, input=tables, capture_output=True, text=True, check=False)
+        return subprocess.run(words, capture_output=True, text=True, check=False)
 
     def test_report_of_a_folder(self):
         coverage_rows().to_csv(self.folder / "mine.csv", index=False)
@@ -343,13 +428,12 @@ class Program(FolderTest):
                   "pairs": [{"name": "can", "key": "k"}]}  # fmt: skip
         study = {"versions": {"PCL": "1.13.0"}, "experiments": {"distribution": record}}
         (self.folder / "study.json").write_text(json.dumps(study))
-        tables = {"coverage": {"mine": [[["method", "runs"], ["can"], ["a", "10/10"]]]}}
-        result = self.run_report(json.dumps(tables))
+        result = self.run_report()
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertEqual(result.stdout, f"{self.folder}/report.html\n")
         text = (self.folder / "report.md").read_text()
         for piece in ("## Distribution (Table I)", "2 pairs could not be read", "with --quick",
-                      "```\nmake it\n```", "| PCL | 1.13.0 |", "## Coverage (mine.csv)", "| a | 10/10 |",
+                      "```\nmake it\n```", "| PCL | 1.13.0 |", "## Coverage (mine.csv)", "| a | 10/10 | 1.50 |",
                       "| Bayesian ICP | 1.000 |"):  # fmt: skip
             self.assertIn(piece, text)
 

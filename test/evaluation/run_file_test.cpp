@@ -73,21 +73,6 @@ TEST_F(RunFiles, RowsComeBackAsTheyWent)
       std::isnan(runOf<SomeRun>(rowOf(SomeRun{{}, false, std::nan(""), ""})).number));
 }
 
-TEST_F(RunFiles, FilesOfOtherVersionsAreReadByTheirTitles)
-{
-  const std::string name = (folder_ / "former.csv").string();
-  writeFile(name, "word,seed,more,number\na,1,x,0.5\na,2,x,1\na,1,x,2\na,3");
-  const std::vector<SomeRun> runs = RunFile<SomeRun>::runsIn(name);
-  ASSERT_EQ(runs.size(), 2u);
-  EXPECT_EQ(runs[0].name.word, "a");
-  EXPECT_EQ(runs[0].number, 2.0);
-  EXPECT_FALSE(runs[0].is_valid);
-  writeFile(name, "word,number\na,0.5\n");
-  EXPECT_TRUE(RunFile<SomeRun>::runsIn(name).empty());
-  writeFile(name, "word,seed,number\na,1\n");
-  EXPECT_THROW(RunFile<SomeRun>::runsIn(name), io::FileError);
-}
-
 TEST_F(RunFiles, ARowThatWasCutOffIsMadeAgain)
 {
   {

@@ -290,8 +290,7 @@ TEST_F(TrajectoriesCommand, GoesOnWhereItStopped)
   expectIn(first.output, "2 of 2 pairs");
   const std::string rows = contentOf(folder_ / "r/a.csv");
   expectIn(rows, "office_floor,exact,1,calibrated,closed-form,3,");
-  expectIn(first.output,
-           "office_floor (1)               exact calibrated  calibrated ");
+  expectIn(first.output, "\n  office_floor (exact), calibrated + closed-form  ");
   EXPECT_EQ(count("note: rows of a constant covariance are left out", first.output), 1);
   const CommandResult other = run("--recordings office_floor --scans 2 --span 1 "
                                   "--output r/a.csv");
