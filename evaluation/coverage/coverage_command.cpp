@@ -211,12 +211,11 @@ Offer
 simulatedOffer(const std::vector<std::uint64_t>& seeds)
 {
   Offer offer;
-  for (const std::string& name : tunedScenes())
-    offer.scenes.push_back(
-        {name, "tuned", coverage_conditions, further_conditions, seeds});
-  for (const std::string& name : newScenes())
-    offer.scenes.push_back(
-        {name, "new", coverage_conditions, further_conditions, seeds});
+  for (const auto& [set, names] :
+       {std::pair("tuned", tunedScenes()), std::pair("new", newScenes())})
+    for (const std::string& name : names)
+      offer.scenes.push_back(
+          {name, set, coverage_conditions, further_conditions, seeds});
   for (const std::string& name : lidar_scenes)
     offer.scenes.push_back(
         {name, lidar_set, lidar_conditions, further_lidar_conditions, seeds});

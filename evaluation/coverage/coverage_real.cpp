@@ -70,34 +70,24 @@ RealPairs::names() const
   return namesOf(entries_);
 }
 
-std::shared_ptr<const ScanPair>
-RealPairs::pairOf(const ManifestEntry& entry) const
-{
-  const std::lock_guard<std::mutex> lock(mutex_);
-  auto& pair = pairs_[entry.name];
-  if (!pair)
-    pair = std::make_shared<const ScanPair>(readScanPair(folder_, entry));
-  return pair;
-}
-
 CoverageCase
 RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
 {
   const ManifestEntry* const entry = findNamed(entries_, name);
   if (entry == nullptr)
     throw io::FileError(folder_, "has no pair " + io::inQuotes(name));
-  const auto pair = pairOf(*entry);
+  const ScanPair pair = readScanPair(folder_, *entry);
   // Cases of one seed share no random numbers.
   Random random(seed, io::hashOf(name));
   CoverageCase made;
   made.scene = name;
   made.condition = real_pair;
   made.seed = seed;
-  made.target = pair->target;
+  made.target = pair.target;
   made.prior_sd = entry->prior_sd->vector();
   made.truth_sd = entry->truth_sd;
-  const auto part = randomChoice(pair->source.cols(), max_source_points, random);
-  made.source = pair->truth * pair->source(Eigen::all, part);
+  const auto part = randomChoice(pair.source.cols(), max_source_points, random);
+  made.source = pair.truth * pair.source(Eigen::all, part);
   displaceSource(random, made);
   return made;
 }

@@ -8,14 +8,12 @@
 #include "study/scan_pairs.h"
 
 #include <map>
-#include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 namespace bayesian_icp::evaluate {
 
-/** \brief The pairs of a folder; a pair is read when it is first needed. */
+/** \brief The pairs of a folder. */
 class RealPairs {
 public:
   /** \brief Read FOLDER/manifest.json, which has a prior of each pair.
@@ -33,13 +31,8 @@ public:
   makeCase(const std::string& name, std::uint64_t seed) const;
 
 private:
-  std::shared_ptr<const ScanPair>
-  pairOf(const ManifestEntry& entry) const;
-
   std::string folder_;
   std::vector<ManifestEntry> entries_;
-  mutable std::mutex mutex_;
-  mutable std::map<std::string, std::shared_ptr<const ScanPair>> pairs_;
 };
 
 /** \brief Which pairs, and from which guesses. */

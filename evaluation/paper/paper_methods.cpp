@@ -119,22 +119,16 @@ priorOf(Preset preset)
 }
 
 AccuracyMethod
-bayesianMean(const char* name, Preset preset)
+bayesianMean(const char* name, Preset kind)
 {
-  return {name, [preset](const PaperProblem& problem, const DrawPlan& plan) {
-            Options options;
-            options.preset = preset;
-            options.prior = priorOf(preset);
-            options.chains.seed = plan.seed;
-            options.chains.num_threads = plan.num_threads;
-            options.paper.num_burn_in = num_burn_in;
-            const PosteriorEstimate estimate = estimatePosterior(
-                problem.pair.source, problem.tree, plan.start, options);
-            AccuracyEstimate result{estimate.summary.mean,
-                                    toString(estimate.summary.status)};
-            if (estimate.samples.rows() == 0)
-              result.pose.setConstant(std::numeric_limits<double>::quiet_NaN());
-            return result;
+  const PaperMethod method = preset(name, [kind](Options& options) {
+    options.preset = kind;
+    options.prior = priorOf(kind);
+    options.paper.num_burn_in = num_burn_in;
+  });
+  return {name, [method](const PaperProblem& problem, const DrawPlan& plan) {
+            const SamplerRun run = method.run(problem, plan);
+            return AccuracyEstimate{run.summary->mean, run.status};
           }};
 }
 

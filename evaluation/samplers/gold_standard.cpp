@@ -1,17 +1,17 @@
 #include "samplers/gold_standard.h"
 
 #include "io/clocks.h"
+#include "io/picture_numbers.h"
 #include "study/draw_statistics.h"
+#include "study/text_table.h"
 
 #include <bayesian_icp/diagnostics.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <limits>
 #include <memory>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 namespace bayesian_icp::evaluate {
@@ -227,28 +227,6 @@ judge(const std::vector<GoldRun>& runs, const GoldOptions& options, GoldStandard
                        std::min(gold.bulk_ess, gold.tail_ess) >= options.min_ess;
 }
 
-std::string
-describe(const GoldStandard& gold)
-{
-  std::ostringstream text;
-  text << std::fixed << std::setprecision(4) << "R-hat " << gold.rhat
-       << ", KL between runs " << gold.kl_between_runs << std::setprecision(0)
-       << ", ESS bulk " << gold.bulk_ess << " tail " << gold.tail_ess << ", "
-       << std::setprecision(1) << gold.seconds << " s";
-  return text.str();
-}
-
-/** Every k-th draw, so that at most max_kept_draws are left. */
-PoseMatrix
-thinned(const PoseMatrix& draws)
-{
-  const Eigen::Index stride = (draws.rows() + max_kept_draws - 1) / max_kept_draws;
-  PoseMatrix kept(draws.rows() / stride, 6);
-  for (Eigen::Index row = 0; row < kept.rows(); ++row)
-    kept.row(row) = draws.row(row * stride);
-  return kept;
-}
-
 } // namespace
 
 GoldStandard
@@ -272,10 +250,15 @@ sampleGold(const GoldTarget& target,
       run.sample();
     judge(runs, options, gold);
     gold.seconds = io::cpuSeconds() - begin;
-    report(describe(gold));
+    report(format("R-hat %.4f, KL between runs %.4f, ESS bulk %.0f tail %.0f, %.1f s",
+                  gold.rhat,
+                  gold.kl_between_runs,
+                  gold.bulk_ess,
+                  gold.tail_ess,
+                  gold.seconds));
   }
   for (PoseMatrix& chain : gold.chains)
-    chain = thinned(chain);
+    chain = chain(io::evenlySpaced(chain.rows(), max_kept_draws), Eigen::all).eval();
   return gold;
 }
 

@@ -197,29 +197,139 @@ nameWith(const std::string& sampler, double number)
 struct ProblemStudy {
   using Sampler = std::function<SamplerRun(std::uint64_t seed)>;
 
-  /** Make the gold standard or read it, and run what is missing.
-   * \return whether the gold standard has converged */
-  bool
-  run();
+  void
+  report(const std::string& line) const
+  {
+    std::cerr << problem.name()
+              << format(", sigma %g m, N %g: ",
+                        problem.cell().sigma,
+                        problem.cell().effective_points)
+              << line << std::endl;
+  }
 
   /** One run, from the file if it is there. */
   Score
-  runOnce(const std::string& name, std::uint64_t seed, const Sampler& sampler);
+  runOnce(const std::string& name, std::uint64_t seed, const Sampler& sampler)
+  {
+    ScoredRun run;
+    run.name = {problem.name(),
+                problem.cell().sigma,
+                problem.cell().effective_points,
+                name,
+                seed,
+                gold_key};
+    const ScoredRun& kept = results.findOrMake(run.name, [&] {
+      const SamplerRun made = sampler(seed);
+      run.score = scoreOf(made, gold_draws);
+      report(name + ", seed " + std::to_string(seed) +
+             format(": KL %.3g, %.3g s, ", run.score.kl, run.score.seconds) +
+             run.score.status + ' ' + made.message);
+      return run;
+    });
+    return kept.score;
+  }
 
   void
-  runAllSeeds(const std::string& name, const Sampler& sampler);
+  runAllSeeds(const std::string& name, const Sampler& sampler)
+  {
+    for (int seed = 1; seed <= options.num_seeds; ++seed)
+      runOnce(name, static_cast<std::uint64_t>(seed), sampler);
+  }
 
-  /** At the step sizes that were asked for, and smaller ones as long as they are
-   * better; all seeds at the best one. */
+  /** At these step sizes, and smaller ones as long as they are better; all seeds at the
+   * best one.
+   * \param[in] sampler of a step size
+   * \param[in] quality of a run; larger is better */
   void
-  runPaperSteps();
+  runSteps(const std::string& name,
+           const std::set<double>& steps,
+           const std::function<Sampler(double step)>& sampler,
+           const std::function<double(const Score& score)>& quality)
+  {
+    double best_step = *steps.begin();
+    double best = -std::numeric_limits<double>::infinity();
+    const auto tryStep = [&](double step) {
+      const double of_step = quality(runOnce(nameWith(name, step), 1, sampler(step)));
+      const bool is_best = of_step > best;
+      if (is_best) {
+        best = of_step;
+        best_step = step;
+      }
+      return is_best;
+    };
+    for (const double step : steps)
+      tryStep(step);
+    if (best_step == *steps.begin())
+      while (tryStep(0.1 * best_step)) {
+      }
+    runAllSeeds(nameWith(name, best_step), sampler(best_step));
+  }
 
-  /** At several step sizes; all seeds at the one of the highest rate. */
   void
-  runMalaSteps(const Oracle& oracle);
+  runPaperSteps()
+  {
+    std::set<double> steps;
+    for (const double step : {1e-3, 1e-4, 1e-5, 1e-6}) {
+      steps.insert(step);
+      steps.insert(step * paper_weight / problem.energy().weight());
+    }
+    const auto sampler = [this](double step) {
+      return [this, step](std::uint64_t seed) {
+        return runPaper(problem, seed, options.num_threads, step);
+      };
+    };
+    runSteps("paper", steps, sampler, [](const Score& score) { return -score.kl; });
+  }
 
   void
-  report(const std::string& line) const;
+  runMalaSteps(const Oracle& oracle)
+  {
+    const auto sampler = [&](double step) {
+      return [this, &oracle, step](std::uint64_t seed) {
+        return runOracleMala(problem, oracle, seed, step);
+      };
+    };
+    runSteps("mala", {0.25, 0.5, 1.0}, sampler, &Score::essPerSecond);
+  }
+
+  /** Make the gold standard or read it, and run what is missing.
+   * \return whether the gold standard has converged */
+  bool
+  run()
+  {
+    const GoldStandard gold =
+        cachedGold(problem,
+                   options.gold,
+                   io::folderOf(options.result.file),
+                   [this](const std::string& line) { report(line); });
+    if (!gold.has_converged)
+      report("the gold standard has NOT converged");
+    gold_draws = pooled(gold.chains);
+    gold_key = rowKey(problem, options.gold, gold);
+    const Oracle oracle = oracleOf(problem, gold);
+    for (const auto& [name, steps] :
+         {std::pair("exact", ExactSteps::Automatic),
+          std::pair("exact-metropolis", ExactSteps::Metropolis)})
+      if (options.wants(name))
+        runAllSeeds(name, [&, of_run = steps](std::uint64_t seed) {
+          return runExact(problem, seed, options.num_threads, of_run);
+        });
+    for (const auto steps : {ExactSteps::SteinGradient, ExactSteps::SteinNewton})
+      if (options.wants(toString(steps)))
+        for (const int particles : options.particles)
+          runAllSeeds(nameWith(toString(steps), particles), [&](std::uint64_t seed) {
+            return runExact(problem, seed, options.num_threads, steps, particles);
+          });
+    if (options.wants("paper"))
+      runPaperSteps();
+    if (options.wants("walk"))
+      runAllSeeds("walk", [&](std::uint64_t seed) {
+        return runOracleWalk(problem, oracle, seed);
+      });
+    if (options.wants("mala"))
+      runMalaSteps(oracle);
+    return gold.has_converged;
+  }
 
   const Problem& problem;
   const SamplersOptions& options;
@@ -227,136 +337,6 @@ struct ProblemStudy {
   PoseMatrix gold_draws = PoseMatrix();
   std::string gold_key = std::string();
 };
-
-void
-ProblemStudy::report(const std::string& line) const
-{
-  std::cerr << problem.name()
-            << format(", sigma %g m, N %g: ",
-                      problem.cell().sigma,
-                      problem.cell().effective_points)
-            << line << std::endl;
-}
-
-Score
-ProblemStudy::runOnce(const std::string& name,
-                      std::uint64_t seed,
-                      const Sampler& sampler)
-{
-  ScoredRun run;
-  run.name = {problem.name(),
-              problem.cell().sigma,
-              problem.cell().effective_points,
-              name,
-              seed,
-              gold_key};
-  const ScoredRun& kept = results.findOrMake(run.name, [&] {
-    const SamplerRun made = sampler(seed);
-    run.score = scoreOf(made, gold_draws);
-    report(name + ", seed " + std::to_string(seed) +
-           format(": KL %.3g, %.3g s, ", run.score.kl, run.score.seconds) +
-           run.score.status + ' ' + made.message);
-    return run;
-  });
-  return kept.score;
-}
-
-void
-ProblemStudy::runAllSeeds(const std::string& name, const Sampler& sampler)
-{
-  for (int seed = 1; seed <= options.num_seeds; ++seed)
-    runOnce(name, static_cast<std::uint64_t>(seed), sampler);
-}
-
-void
-ProblemStudy::runPaperSteps()
-{
-  std::set<double> steps;
-  for (const double step : {1e-3, 1e-4, 1e-5, 1e-6}) {
-    steps.insert(step);
-    steps.insert(step * paper_weight / problem.energy().weight());
-  }
-  const auto sampler = [this](double step) {
-    return [this, step](std::uint64_t seed) {
-      return runPaper(problem, seed, options.num_threads, step);
-    };
-  };
-  double best_step = *steps.begin();
-  double best_kl = std::numeric_limits<double>::infinity();
-  const auto tryStep = [&](double step) {
-    const double kl = runOnce(nameWith("paper", step), 1, sampler(step)).kl;
-    const bool is_best = kl < best_kl;
-    if (is_best) {
-      best_kl = kl;
-      best_step = step;
-    }
-    return is_best;
-  };
-  for (const double step : steps)
-    tryStep(step);
-  // The range given may end above the best one.
-  if (best_step == *steps.begin())
-    while (tryStep(0.1 * best_step)) {
-    }
-  runAllSeeds(nameWith("paper", best_step), sampler(best_step));
-}
-
-void
-ProblemStudy::runMalaSteps(const Oracle& oracle)
-{
-  const auto sampler = [&](double step) {
-    return [this, &oracle, step](std::uint64_t seed) {
-      return runOracleMala(problem, oracle, seed, step);
-    };
-  };
-  double best_step = 0.0, best_rate = -1.0;
-  for (const double step : {0.25, 0.5, 1.0}) {
-    const double rate =
-        runOnce(nameWith("mala", step), 1, sampler(step)).essPerSecond();
-    if (rate > best_rate) {
-      best_rate = rate;
-      best_step = step;
-    }
-  }
-  runAllSeeds(nameWith("mala", best_step), sampler(best_step));
-}
-
-bool
-ProblemStudy::run()
-{
-  const GoldStandard gold =
-      cachedGold(problem,
-                 options.gold,
-                 io::folderOf(options.result.file),
-                 [this](const std::string& line) { report(line); });
-  if (!gold.has_converged)
-    report("the gold standard has NOT converged");
-  gold_draws = pooled(gold.chains);
-  gold_key = rowKey(problem, options.gold, gold);
-  const Oracle oracle = oracleOf(problem, gold);
-  for (const auto& [name, steps] :
-       {std::pair("exact", ExactSteps::Automatic),
-        std::pair("exact-metropolis", ExactSteps::Metropolis)})
-    if (options.wants(name))
-      runAllSeeds(name, [&, of_run = steps](std::uint64_t seed) {
-        return runExact(problem, seed, options.num_threads, of_run);
-      });
-  for (const auto steps : {ExactSteps::SteinGradient, ExactSteps::SteinNewton})
-    if (options.wants(toString(steps)))
-      for (const int particles : options.particles)
-        runAllSeeds(nameWith(toString(steps), particles), [&](std::uint64_t seed) {
-          return runExact(problem, seed, options.num_threads, steps, particles);
-        });
-  if (options.wants("paper"))
-    runPaperSteps();
-  if (options.wants("walk"))
-    runAllSeeds("walk", [&](std::uint64_t seed) {
-      return runOracleWalk(problem, oracle, seed);
-    });
-  if (options.wants("mala"))
-    runMalaSteps(oracle);
-  return gold.has_converged;
-}
 
 /** Kolmogorov-Smirnov distance below which a marginal counts as right. */
 constexpr double good_ks = 0.06;
