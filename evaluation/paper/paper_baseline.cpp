@@ -1,6 +1,5 @@
 #include "paper/paper_baseline.h"
 
-#include "io/clocks.h"
 #include "io/errors.h"
 #include "io/numbers.h"
 #include "io/text_hash.h"
@@ -109,35 +108,19 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
 {
   KeptRuns runs(file);
   const int end = options.first_run + options.num_runs;
-  const auto isMissing = [&runs](int index) { return runs.find({index}) == nullptr; };
-  std::vector<int> missing;
-  for (int index = options.first_run; index < end; ++index)
-    if (isMissing(index))
-      missing.push_back(index);
-  const double begin = io::wallSeconds();
-  std::size_t num_done = 0;
-  while (num_done < missing.size()) {
-    // The next ones without a gap.
-    MonteCarloIcpOptions block = options;
-    block.first_run = missing[num_done];
-    block.num_runs = 1;
-    while (block.num_runs < block_size && block.first_run + block.num_runs < end &&
-           isMissing(block.first_run + block.num_runs))
-      ++block.num_runs;
-    for (const MonteCarloIcpRun& run : monteCarloIcp(source, target, block))
-      runs.add({{run.index}, run});
-    num_done += static_cast<std::size_t>(block.num_runs);
-    const double seconds_each =
-        (io::wallSeconds() - begin) / static_cast<double>(num_done);
-    const auto num_left = static_cast<double>(missing.size() - num_done);
-    if (report)
-      report(io::textOf(num_done) + " of " + io::textOf(missing.size()) +
-             " runs of ICP, about " + io::fixedTextOf(seconds_each * num_left, 0) +
-             " s left");
-  }
   std::vector<MonteCarloIcpRun> asked;
-  for (int index = options.first_run; index < end; ++index)
+  for (int index = options.first_run; index < end; ++index) {
+    if (runs.find({index}) == nullptr) {
+      MonteCarloIcpOptions block = options;
+      block.first_run = index;
+      block.num_runs = std::min(block_size, end - index);
+      for (const MonteCarloIcpRun& run : monteCarloIcp(source, target, block))
+        runs.findOrMake({run.index}, [&run] { return KeptRun{{run.index}, run}; });
+      report(io::textOf(index + block.num_runs) + " of " + io::textOf(end) +
+             " runs of ICP");
+    }
     asked.push_back(runs.find({index})->run);
+  }
   return asked;
 }
 

@@ -33,7 +33,7 @@ monteCarloFile(const std::string& folder, const std::string& pair, std::uint64_t
  * hundred at a time, so that an interrupted study goes on where it stopped. Bit for bit
  * the result of monteCarloIcp().
  * \param[in] file made, with its folder, if it is missing
- * \param[in] report gets a line of progress now and then; may be empty
+ * \param[in] report gets a line of progress now and then
  * \throws io::FileError if the file cannot be written, or has a bad row */
 std::vector<MonteCarloIcpRun>
 keptMonteCarloRuns(const Eigen::Matrix3Xd& source,

@@ -35,9 +35,10 @@ protected:
   }
 
   std::vector<MonteCarloIcpRun>
-  kept(const std::function<void(const std::string&)>& report = {}) const
+  kept() const
   {
-    return keptMonteCarloRuns(source_, source_, options_, fileName(), report);
+    return keptMonteCarloRuns(
+        source_, source_, options_, fileName(), [](const std::string&) {});
   }
 
   void
