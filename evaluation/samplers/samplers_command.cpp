@@ -102,10 +102,10 @@ samplerOf(const std::string& name)
 int
 numParticlesOf(const std::string& text)
 {
-  const double number = positiveNumberOf(text);
-  if (number != std::floor(number) || number < min_particles || number > 10000.0)
-    io::refuseValue(text, "a whole number from 8 to 10000");
-  return static_cast<int>(number);
+  int number = 0;
+  io::readValue(text, number);
+  requireWithin(number, min_particles, 10000);
+  return number;
 }
 
 constexpr char samplers_help[] = R"(Usage: pcl_bayesian_icp_evaluate samplers [options]

@@ -55,32 +55,22 @@ readFirstScans(const std::string& folder, std::size_t max_scans)
 std::vector<RegisteredRecording>
 recordingsOf(const TrajectoriesOptions& options, const std::string& folder)
 {
-  std::vector<RegisteredRecording> all;
   const auto num_scans = static_cast<std::size_t>(options.num_scans);
   std::vector<Recording> real;
   if (!folder.empty())
     real = readFirstScans(folder, num_scans);
-  for (int k = 0; k < options.num_seeds; ++k) {
-    const auto seed = static_cast<std::uint64_t>(options.first_seed + k);
-    if (folder.empty())
-      for (const std::string& name : driveNames())
-        all.push_back({makeDrive(name, seed, num_scans), seed, {}});
-    else
-      for (const Recording& recording : real)
-        all.push_back({recording, seed, {}});
-  }
-  if (options.names.empty())
-    return all;
-  io::readOption("recordings", [&] {
-    requireKnown(options.names, folder.empty() ? driveNames() : namesOf(real));
-  });
-  std::vector<RegisteredRecording> chosen;
-  for (const std::string& name : options.names)
-    std::copy_if(all.begin(),
-                 all.end(),
-                 std::back_inserter(chosen),
-                 [&](const auto& one) { return one.recording.name == name; });
-  return chosen;
+  const std::vector<std::string> known = folder.empty() ? driveNames() : namesOf(real);
+  io::readOption("recordings", [&] { requireKnown(options.names, known); });
+  std::vector<RegisteredRecording> all;
+  for (int k = 0; k < options.num_seeds; ++k)
+    for (const std::string& name : options.names.empty() ? known : options.names) {
+      const auto seed = static_cast<std::uint64_t>(options.first_seed + k);
+      all.push_back(
+          {folder.empty() ? makeDrive(name, seed, num_scans) : *findNamed(real, name),
+           seed,
+           {}});
+    }
+  return all;
 }
 
 /** Two scans, and their registrations, one for each method. */
