@@ -37,11 +37,11 @@ int
 runTrajectoriesCommand(int argc, const char* const* argv);
 
 /** \brief Have report.md, report.html and figures made of the CSV files in a folder,
- * and print the name of the page. Python makes them. Without Python, pandas or
- * matplotlib the standard error says what is missing. Python is what the environment
- * variable PCL_BAYESIAN_ICP_PYTHON names, or python3, or Debian's. \return the exit
- * code: 0, or 3 without a report \throws io::FileError if the folder has no study, or
- * cannot be written to */
+ * and print the name of the page. Python makes them: what the environment variable
+ * PCL_BAYESIAN_ICP_PYTHON names, or python3, or Debian's. Without Python, pandas or
+ * matplotlib the standard error says what is missing.
+ * \return the exit code: 0, or 3 without a report
+ * \throws io::FileError if the folder has no study, or cannot be written to */
 int
 makeReport(const std::string& folder);
 

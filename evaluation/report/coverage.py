@@ -27,17 +27,23 @@ def lost_of(runs):
     return has_limit & ~(runs.displacement_m <= runs.lost_displacement_m)
 
 
+def interval_of(share, number):
+    """The 95 % interval (Wilson's) of a share of this number of runs."""
+    part = 1.959964**2 / number
+    centre = (share + part / 2) / (1 + part)
+    half_width = np.sqrt(share * (1 - share) * part + part**2 / 4) / (1 + part)
+    return max(0, centre - half_width), min(1, centre + half_width)
+
+
 def share_text(is_hit, runs):
-    """Share of the runs for which it is true, with its 95 % interval (Wilson's). Seeds move a real
-    pair and leave its points and their errors as they are, so it counts once."""
+    """Share of the runs for which it is true, with its interval. Seeds move a real pair and leave
+    its points and their errors as they are, so it counts once."""
     if not len(is_hit):
         return "-"
     is_real = (runs.condition == "real").all()
-    share = is_hit.mean()
-    part = 1.959964**2 / (min(len(is_hit), runs.scene.nunique()) if is_real else len(is_hit))
-    centre = (share + part / 2) / (1 + part)
-    half_width = np.sqrt(share * (1 - share) * part + part**2 / 4) / (1 + part)
-    return f"{share:.2f} [{max(0, centre - half_width):.2f},{min(1, centre + half_width):.2f}]"
+    number = min(len(is_hit), runs.scene.nunique()) if is_real else len(is_hit)
+    low, high = interval_of(is_hit.mean(), number)
+    return f"{is_hit.mean():.2f} [{low:.2f},{high:.2f}]"
 
 
 def cells_of(runs):

@@ -9,11 +9,11 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief Do tasks that do not depend on each other, each in one thread. The standard
- * error is told how many are done, at most a hundred times, and how long the others
- * take. \param[in] tasks what they are ("pairs") \param[in] run does one; called by
- * several threads at once \throws what \p run throws first; tasks that had not begun
- * then are left out */
+/** \brief Do tasks that do not depend on each other, each in one thread, and tell the
+ * standard error how many are done: each of them, or each hundredth part.
+ * \param[in] tasks what they are ("pairs")
+ * \param[in] run does one; called by several threads at once
+ * \throws what \p run throws first; tasks that had not begun then are left out */
 void
 runTasks(std::size_t size,
          int num_threads,
