@@ -228,12 +228,12 @@ simulatedOffer(const std::vector<std::uint64_t>& seeds)
 Offer
 realOffer(const std::string& folder, const std::vector<std::uint64_t>& seeds)
 {
-  const auto pairs = std::make_shared<const RealPairs>(folder);
+  const std::vector<ManifestEntry> pairs = readManifest(folder);
   Offer offer;
-  for (const std::string& name : pairs->names())
-    offer.scenes.push_back({name, "", {real_pair}, {}, seeds});
-  offer.make_case = [pairs](const CoverageCaseName& name) {
-    return pairs->makeCase(name.scene, name.seed);
+  for (const ManifestEntry& pair : pairs)
+    offer.scenes.push_back({pair.name, "", {real_pair}, {}, seeds});
+  offer.make_case = [folder, pairs](const CoverageCaseName& name) {
+    return makeRealCase(folder, *findNamed(pairs, name.scene), name.seed);
   };
   return offer;
 }

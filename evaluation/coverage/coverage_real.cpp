@@ -53,39 +53,22 @@ randomPoses(const Isometry3d& T_target_sensor,
 
 } // namespace
 
-RealPairs::RealPairs(const std::string& folder)
-: folder_(folder)
-, entries_(readManifest(folder))
-{
-  for (const ManifestEntry& entry : entries_)
-    if (!entry.prior_sd)
-      throw io::FileError(folder_ + "/" + manifest_name,
-                          "has no suggested_prior_sigma of " +
-                              io::inQuotes(entry.name));
-}
-
-std::vector<std::string>
-RealPairs::names() const
-{
-  return namesOf(entries_);
-}
-
 CoverageCase
-RealPairs::makeCase(const std::string& name, std::uint64_t seed) const
+makeRealCase(const std::string& folder, const ManifestEntry& entry, std::uint64_t seed)
 {
-  const ManifestEntry* const entry = findNamed(entries_, name);
-  if (entry == nullptr)
-    throw io::FileError(folder_, "has no pair " + io::inQuotes(name));
-  const ScanPair pair = readScanPair(folder_, *entry);
+  if (!entry.prior_sd)
+    throw io::FileError(folder + "/" + manifest_name,
+                        "has no suggested_prior_sigma of " + io::inQuotes(entry.name));
+  const ScanPair pair = readScanPair(folder, entry);
   // Cases of one seed share no random numbers.
-  Random random(seed, io::hashOf(name));
+  Random random(seed, io::hashOf(entry.name));
   CoverageCase made;
-  made.scene = name;
+  made.scene = entry.name;
   made.condition = real_pair;
   made.seed = seed;
   made.target = pair.target;
-  made.prior_sd = entry->prior_sd->vector();
-  made.truth_sd = entry->truth_sd;
+  made.prior_sd = entry.prior_sd->vector();
+  made.truth_sd = entry.truth_sd;
   const auto part = randomChoice(pair.source.cols(), max_source_points, random);
   made.source = pair.truth * pair.source(Eigen::all, part);
   displaceSource(random, made);

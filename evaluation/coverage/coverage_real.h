@@ -13,27 +13,11 @@
 
 namespace bayesian_icp::evaluate {
 
-/** \brief The pairs of a folder. */
-class RealPairs {
-public:
-  /** \brief Read FOLDER/manifest.json, which has a prior of each pair.
-   * \throws io::FileError */
-  explicit RealPairs(const std::string& folder);
-
-  /** \brief In the order of the manifest. */
-  std::vector<std::string>
-  names() const;
-
-  /** \brief A case whose source is a random part of the pair's, 2000 points at most,
-   * displaced by a pose drawn from the prior. May be called by several threads.
-   * \throws io::FileError if the pair's files cannot be read */
-  CoverageCase
-  makeCase(const std::string& name, std::uint64_t seed) const;
-
-private:
-  std::string folder_;
-  std::vector<ManifestEntry> entries_;
-};
+/** \brief A case whose source is a random part of the pair's, 2000 points at most,
+ * displaced by a pose drawn from the pair's prior.
+ * \throws io::FileError if it has no prior, or its files cannot be read */
+CoverageCase
+makeRealCase(const std::string& folder, const ManifestEntry& entry, std::uint64_t seed);
 
 /** \brief Which pairs, and from which guesses. */
 struct SequenceOptions {

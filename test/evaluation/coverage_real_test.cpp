@@ -5,6 +5,7 @@
 #include "evaluation/paper_pairs.h"
 #include "io/errors.h"
 #include "simulate/simulate_helpers.h"
+#include "study/named.h"
 
 #include <bayesian_icp/options.h>
 #include <bayesian_icp/random.h>
@@ -377,12 +378,15 @@ TEST_F(SequencesTest, BadOptionsOfTheCommandExitWithTwo)
 TEST_F(RealPairsTest, RealPosesAreDrawnFromThePrior)
 {
   writePair(folder_);
-  const RealPairs pairs(folder_.string());
-  ASSERT_EQ(pairs.names(), std::vector<std::string>{"pair"});
+  const std::vector<ManifestEntry> pairs = readManifest(folder_.string());
+  ASSERT_EQ(namesOf(pairs), std::vector<std::string>{"pair"});
+  const auto makeCase = [&](std::uint64_t seed) {
+    return makeRealCase(folder_.string(), pairs[0], seed);
+  };
   constexpr int num_cases = 400;
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= num_cases; ++seed) {
-    const CoverageCase made = pairs.makeCase("pair", seed);
+    const CoverageCase made = makeCase(seed);
     sum += priorOf(made)
                .deviation(poseOf(made.truth.matrix()))
                .cwiseQuotient(made.prior_sd)
@@ -395,19 +399,19 @@ TEST_F(RealPairsTest, RealPosesAreDrawnFromThePrior)
   }
   // Chi-square with 6 degrees of freedom: mean 6, variance 12; 4 standard errors.
   EXPECT_NEAR(sum / num_cases, 6.0, 4.0 * std::sqrt(12.0 / num_cases));
-  const CoverageCase made = pairs.makeCase("pair", 1);
+  const CoverageCase made = makeCase(1);
   EXPECT_NEAR(made.truth_sd.translation, 0.3 / std::sqrt(3.0), 1e-12);
   EXPECT_NEAR(
       made.truth_sd.rotation, 9.0 * std::acos(-1.0) / 180.0 / std::sqrt(3.0), 1e-12);
-  EXPECT_EQ(made.source, pairs.makeCase("pair", 1).source);
+  EXPECT_EQ(made.source, makeCase(1).source);
 }
 
 TEST_F(RealPairsTest, BadFoldersOfPairsAreNamed)
 {
-  EXPECT_THROW(RealPairs((folder_ / "none").string()), io::FileError);
+  EXPECT_THROW(readManifest((folder_ / "none").string()), io::FileError);
   const auto refuseManifest = [&](const std::string& manifest) {
     writeFile((folder_ / "manifest.json").string(), manifest);
-    EXPECT_THROW(RealPairs(folder_.string()), io::FileError) << manifest;
+    EXPECT_THROW(readManifest(folder_.string()), io::FileError) << manifest;
   };
   refuseManifest(R"([{"name": "pair"}])");
   writePair(folder_);
@@ -420,5 +424,6 @@ TEST_F(RealPairsTest, BadFoldersOfPairsAreNamed)
   refuseManifest(boost::replace_all_copy(good, "0.2", "-0.2"));
   writePair(folder_);
   writeFile((folder_ / "pair/truth.txt").string(), "1 0 0 0\n0 1 0 0\n");
-  EXPECT_THROW(RealPairs(folder_.string()).makeCase("pair", 1), io::FileError);
+  EXPECT_THROW(makeRealCase(folder_.string(), readManifest(folder_.string())[0], 1),
+               io::FileError);
 }
