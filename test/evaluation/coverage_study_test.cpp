@@ -186,7 +186,7 @@ TEST(CoverageSummary, TellsWhatIsLostFalselyDoubtedAndMissed)
   }
   EXPECT_EQ(
       summaryOf(runs),
-      "  runs of     runs   valid    lost         NEES/6         flagged      alarms"
+      "  runs of     runs   valid    lost        NEES/6        flagged      alarms"
       "         misses\n"
       "  hall, A, a     7  0.7143  0.4286  2.742 (of 4)  0.3333 (of 6)  0.5 (of 2)"
       "  0.3333 (of 3)\n");
