@@ -1,7 +1,6 @@
 #include "samplers/gold_standard.h"
 
 #include "io/clocks.h"
-#include "io/picture_numbers.h"
 #include "study/draw_statistics.h"
 #include "study/text_table.h"
 
@@ -227,6 +226,17 @@ judge(const std::vector<GoldRun>& runs, const GoldOptions& options, GoldStandard
                        std::min(gold.bulk_ess, gold.tail_ess) >= options.min_ess;
 }
 
+/** Every k-th draw, so that at most max_kept_draws are left. */
+PoseMatrix
+thinned(const PoseMatrix& draws)
+{
+  const Eigen::Index stride = (draws.rows() + max_kept_draws - 1) / max_kept_draws;
+  PoseMatrix kept(draws.rows() / stride, 6);
+  for (Eigen::Index row = 0; row < kept.rows(); ++row)
+    kept.row(row) = draws.row(row * stride);
+  return kept;
+}
+
 } // namespace
 
 GoldStandard
@@ -258,7 +268,7 @@ sampleGold(const GoldTarget& target,
                   gold.seconds));
   }
   for (PoseMatrix& chain : gold.chains)
-    chain = chain(io::evenlySpaced(chain.rows(), max_kept_draws), Eigen::all).eval();
+    chain = thinned(chain);
   return gold;
 }
 
