@@ -611,6 +611,35 @@ TEST(SurfaceModel, TheLevelsOfAQuantisedSensorAreNotExact)
   EXPECT_LT(model.medianSigma(), 0.002);
 }
 
+TEST(SurfaceModel, DepthInCoarseLevelsIsASurfaceWithNoise)
+{
+  // A camera looks down on the ground at 45 degrees, 1.2 m above it, and rounds to
+  // whole disparities. Many neighbouring pixels are on one level, which faces the
+  // camera.
+  const Vector3d normal = Vector3d(0.0, 1.0, 1.0).normalized();
+  constexpr Index width = 200, height = 150;
+  constexpr double focal_length = 150.0, disparity_at_1_m = 31.5;
+  Matrix3Xd points(3, width * height);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Vector3d ray(double(i % width - width / 2) / focal_length,
+                       double(i / width - height / 2) / focal_length,
+                       1.0);
+    const double depth = 1.2 / normal.dot(ray);
+    points.col(i) = disparity_at_1_m / std::round(disparity_at_1_m / depth) * ray;
+  }
+  const Eigen::Matrix3d turn = rotationOf(Vector6d(0.0, 0.0, 0.0, 0.4, -0.3, 0.7));
+  const SurfaceModel model(turn * points);
+  const Vector3d turned = turn * normal;
+  std::vector<double> cosines;
+  for (const SurfacePatch& patch : model.patches())
+    cosines.push_back(std::abs(projectionOf(model, patch).normal.dot(turned)));
+  EXPECT_GT(medianOf(cosines), 0.99);
+  // Levels are 40 mm (near) to 370 mm (far) apart. Rounding and spreading are uniform
+  // within a step.
+  EXPECT_GT(model.medianSigma(), 0.01);
+  EXPECT_LT(model.medianSigma(), 0.1);
+}
+
 TEST(SurfaceModel, ASmallNoisyObjectIsNotOneNeighbourhood)
 {
   // 3.75 times the noise would ask for 560 neighbours, and those of 480 are too wide

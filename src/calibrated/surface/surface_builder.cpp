@@ -5,6 +5,8 @@
 #include "sampler/median.h"
 #include "threads/for_each_piece.h"
 
+#include <bayesian_icp/random.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -75,6 +77,85 @@ isQuadric(const SurfacePatch& patch)
   return patch.kind == PatchKind::Quadric;
 }
 
+/** A cloud of rounded readings lies on at least so many levels, with as many points on
+ * each of them, on average, as a neighbourhood has. CAD models have fewer parallel
+ * faces, or other points between them. */
+constexpr std::size_t min_levels = 6;
+/** Levels are further apart than this fraction of spreadOf() the points, which is more
+ * than the rounding of coordinates. */
+constexpr double min_step_to_spread = 1e-5;
+/** Cosine between the normals of patches that lie in levels. */
+constexpr double min_parallelism = 1.0 - 1e-6;
+
+/** Mean normal of the largest set of parallel patches, if these are more than half of
+ * \p patches. */
+std::optional<Vector3d>
+commonNormal(const std::vector<SurfacePatch>& patches)
+{
+  std::size_t most = patches.size() / 2;
+  std::optional<Vector3d> common;
+  for (const SurfacePatch& patch : patches) {
+    const Vector3d normal = patch.axes.col(2);
+    Vector3d sum = Vector3d::Zero();
+    std::size_t count = 0;
+    for (const SurfacePatch& other : patches) {
+      const double cosine = normal.dot(other.axes.col(2));
+      if (std::abs(cosine) < min_parallelism)
+        continue;
+      sum += std::copysign(1.0, cosine) * other.axes.col(2);
+      ++count;
+    }
+    if (count <= most)
+      continue;
+    most = count;
+    common = sum.normalized();
+  }
+  return common;
+}
+
+/** Distance from the level of a place to the nearer one of the levels next to it [m].
+ * \param[in] levels the lowest place of each level, ascending */
+double
+stepAt(double place, const std::vector<double>& levels)
+{
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const auto above = std::upper_bound(levels.begin(), levels.end(), place);
+  const auto own = above - 1;
+  return std::min(own == levels.begin() ? none : *own - *(own - 1),
+                  above == levels.end() ? none : *above - *own);
+}
+
+/** The points without the rounding of their readings, if exact patches show that the
+ * cloud consists of parallel levels, as depth from integer disparities does: each point
+ * moves across its level, at random, at most half of the way to the nearer level next
+ * to it. */
+std::optional<Matrix3Xf>
+spreadLevels(const Matrix3Xf& points,
+             const std::vector<SurfacePatch>& exact,
+             int num_neighbors)
+{
+  const std::optional<Vector3d> axis = commonNormal(exact);
+  if (!axis)
+    return std::nullopt;
+  std::vector<double> places(static_cast<std::size_t>(points.cols()));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = axis->dot(points.col(static_cast<Index>(i)).cast<double>());
+  std::vector<double> levels = places;
+  std::sort(levels.begin(), levels.end());
+  const double min_step = min_step_to_spread * spreadOf(points);
+  const auto isSame = [min_step](double a, double b) { return b - a < min_step; };
+  levels.erase(std::unique(levels.begin(), levels.end(), isSame), levels.end());
+  if (levels.size() < min_levels ||
+      levels.size() * static_cast<std::size_t>(num_neighbors) > places.size())
+    return std::nullopt;
+  Random random(0, 0);
+  Matrix3Xf spread = points;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    spread.col(static_cast<Index>(i)) +=
+        ((random.uniform() - 0.5) * stepAt(places[i], levels) * *axis).cast<float>();
+  return spread;
+}
+
 /** Fits a patch to every chosen point of a target, and corrects patches with the help
  * of their neighbours. Call each stage once, in the order below. All stages are
  * parallel and give the same bits for every number of threads. */
@@ -112,6 +193,8 @@ public:
                  max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
     if (!plane_normal_)
       adaptToExactCloud(cloud, max_radius);
+    if (spread_)
+      return;
     const auto fitAt = [&](std::uint32_t point, PatchFitWorkspace& workspace) {
       const std::uint32_t patch = patch_of_[point];
       if (patch == KdTree::none)
@@ -202,6 +285,13 @@ public:
   /** Median of the pooled noise [m]. */
   double median_sigma = 0.0;
 
+  /** The points without their levels, if they have any. */
+  const std::optional<Matrix3Xf>&
+  spread() const
+  {
+    return spread_;
+  }
+
 private:
   /** Number of patches over which noise is pooled, and among which a point without a
    * quadric looks for one to take over. */
@@ -224,17 +314,25 @@ private:
     double spacing;
     const std::size_t step =
         std::max<std::size_t>(1, columns_.size() / num_exact_trials);
-    double num_trials = 0.0, num_exact = 0.0;
-    for (std::size_t j = 0; j < columns_.size(); j += step, ++num_trials)
-      num_exact += isExactQuadric(fitPatch(cloud,
-                                           points_.col(columns_[j]),
-                                           nullptr,
-                                           max_radius,
-                                           exact,
-                                           workspace,
-                                           spacing));
-    is_exact_ = num_exact > min_share_of_exact * num_trials;
+    double num_trials = 0.0;
+    std::vector<SurfacePatch> exact_patches;
+    for (std::size_t j = 0; j < columns_.size(); j += step, ++num_trials) {
+      const SurfacePatch patch = fitPatch(cloud,
+                                          points_.col(columns_[j]),
+                                          nullptr,
+                                          max_radius,
+                                          exact,
+                                          workspace,
+                                          spacing);
+      if (isExactQuadric(patch))
+        exact_patches.push_back(patch);
+    }
+    is_exact_ =
+        static_cast<double>(exact_patches.size()) > min_share_of_exact * num_trials;
     if (!is_exact_)
+      return;
+    spread_ = spreadLevels(points_, exact_patches, options_.num_neighbors);
+    if (spread_)
       return;
     options_ = exact;
     options_.num_neighbors = options_.num_exact_neighbors;
@@ -329,6 +427,7 @@ private:
   std::vector<NearestPatches> neighbors_;
   std::vector<double> spacings_;
   bool is_exact_ = false;
+  std::optional<Matrix3Xf> spread_;
 };
 
 } // namespace
@@ -340,6 +439,8 @@ SurfaceModel::build(const Matrix3Xf& points,
 {
   SurfaceBuilder builder(points, plane_normal_, options, num_threads);
   builder.fitPatches();
+  if (builder.spread())
+    return build(*builder.spread(), options, num_threads);
   builder.poolNoise();
   if (options.takeover_radius > 0.0)
     builder.takeOver();
