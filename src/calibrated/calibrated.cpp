@@ -26,6 +26,42 @@ isCancelled(const ProgressCallback& progress)
   return progress && !progress({0, 0, 0, 0});
 }
 
+/** Points of the target are not compared with patches of a source that are more than
+ * this many times as wide as the target's, if a motion is held without them alone. */
+constexpr double max_width_to_target = 2.0;
+
+/** A posterior's modes, and the points that they come from. */
+struct ModesOfPoints {
+  SurfaceScorer scorer;
+  std::vector<CalibratedMode> modes;
+
+  /** Number of motions whose information is rather signal than noise, at most 6. */
+  Eigen::Index
+  numHeld() const
+  {
+    return (modes.front().estimate.keep.array() >= min_observed_share_above_noise)
+        .count();
+  }
+};
+
+/** 3 to 7, in estimateCalibrated() for each mode. Wide patches of a sparse source have
+ * the roughness of the scene. What the target's points say of them hides what the
+ * source's points say of the target's patches. */
+ModesOfPoints
+modesOf(const SurfaceScorer& scorer,
+        double width_to_target,
+        const HeldPrior& held,
+        const ModeSearchOptions& search)
+{
+  ModesOfPoints of_both = {scorer, calibratedModes(scorer, held, search)};
+  if (scorer.targetPoints().cols() == 0 || width_to_target <= max_width_to_target ||
+      of_both.numHeld() == 6)
+    return of_both;
+  const SurfaceScorer source = scorer.ofFirst(scorer.sourcePoints().cols());
+  ModesOfPoints of_source = {source, calibratedModes(source, held, search)};
+  return of_source.numHeld() > of_both.numHeld() ? of_source : of_both;
+}
+
 /** Why there is no density to draw from; empty if there is one. */
 std::string
 complaintAbout(const CalibratedEstimate& estimate)
@@ -71,7 +107,8 @@ whatThePriorHolds(const std::vector<DataDirection>& directions,
 }
 
 PosteriorEstimate
-estimateAndDraw(const SurfaceScorer& scorer,
+estimateAndDraw(const SurfaceScorer& of_clouds,
+                double width_to_target,
                 const Prior& prior,
                 const HeldPrior& held,
                 const Options& options,
@@ -81,9 +118,9 @@ estimateAndDraw(const SurfaceScorer& scorer,
   search.seed = options.chains.seed;
   search.estimate.num_mode_points = options.calibrated.num_mode_points;
   search.estimate.num_threads = options.chains.num_threads;
-  // 3 to 7, in estimateCalibrated() for each mode.
-  std::vector<CalibratedMode> modes = calibratedModes(scorer, held, search);
-  CalibratedEstimate& heaviest = modes.front().estimate;
+  ModesOfPoints found = modesOf(of_clouds, width_to_target, held, search);
+  const SurfaceScorer& scorer = found.scorer;
+  CalibratedEstimate& heaviest = found.modes.front().estimate;
   const std::string complaint = complaintAbout(heaviest);
   if (!complaint.empty())
     return failure(Status::TooFewCorrespondences, complaint);
@@ -91,8 +128,12 @@ estimateAndDraw(const SurfaceScorer& scorer,
     return failure(Status::Cancelled, "interrupted before the first draw");
 
   // 8: draws.
-  ChainSet chains = sampleCalibrated(
-      scoresOf(scorer), held, modes, options.calibrated, options.chains, progress);
+  ChainSet chains = sampleCalibrated(scoresOf(scorer),
+                                     held,
+                                     found.modes,
+                                     options.calibrated,
+                                     options.chains,
+                                     progress);
   if (held.plane) {
     addMotionOutOfPlane(prior, held, options.chains.seed, chains);
     setPrior(prior, heaviest);
@@ -158,12 +199,13 @@ estimateCalibratedPosterior(const PreparedCloud& source,
                options.chains.seed,
                num_threads,
                reachOf(source_points, source_surface.columns, prior));
-  PosteriorEstimate result =
-      estimateAndDraw(scorer,
-                      prior,
-                      heldInPlane(prior, source_surface.model, target_surface.model),
-                      options,
-                      progress);
+  PosteriorEstimate result = estimateAndDraw(
+      scorer,
+      source_surface.model.medianRadius() / target_surface.model.medianRadius(),
+      prior,
+      heldInPlane(prior, source_surface.model, target_surface.model),
+      options,
+      progress);
   if (result.summary.num_draws > 0)
     addDoubts(doubtsAboutTilt(prior, source_surface.model, target_surface.model),
               result.summary);
