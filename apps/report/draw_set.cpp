@@ -107,8 +107,11 @@ kernelWidth(const DrawSet& draws, int coordinate)
   for (const ChainDraws& chain : draws.chains)
     sum_of_squares += squaresOf(chain.errors.col(coordinate));
   const Eigen::VectorXd errors = pooledErrors(draws, coordinate);
-  if (sum_of_squares == 0.0)
-    sum_of_squares = squaresOf(errors);
+  // The mean of equal numbers is rounded.
+  constexpr double rounding = 1e-20;
+  const double of_all = squaresOf(errors);
+  if (sum_of_squares <= rounding * of_all)
+    sum_of_squares = of_all;
   const auto num = static_cast<double>(errors.size());
   return silverman * std::sqrt(sum_of_squares / num) * std::pow(num, -0.2);
 }

@@ -92,7 +92,7 @@ visitSensor(SensorT& sensor, const Visitor& visit)
         lidar.ring_offset);
   visit({Group::Errors, "sensor-seed", "N",
          "Lidar: seed of these offsets, 0 to 2^64-1. (default 1)", {},
-         lidar.ring_offset > 0.0 ? no_lidar : "without --ring-offset"},
+         is_camera || lidar.ring_offset > 0.0 ? no_lidar : "without --ring-offset"},
         lidar.sensor_seed);
   visit({Group::Sensor, "min-range", "M",
          "Nearest reading [m]. (default 0.3; lidar16 to lidar128 1)", positive},

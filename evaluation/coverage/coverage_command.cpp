@@ -230,8 +230,12 @@ realOffer(const std::string& folder, const std::vector<std::uint64_t>& seeds)
 {
   const std::vector<ManifestEntry> pairs = readManifest(folder);
   Offer offer;
-  for (const ManifestEntry& pair : pairs)
+  for (const ManifestEntry& pair : pairs) {
+    if (!pair.prior_sd)
+      throw io::FileError(folder + "/" + manifest_name,
+                          "has no suggested_prior_sigma of " + io::inQuotes(pair.name));
     offer.scenes.push_back({pair.name, "", {real_pair}, {}, seeds});
+  }
   offer.make_case = [folder, pairs](const CoverageCaseName& name) {
     return makeRealCase(folder, *findNamed(pairs, name.scene), name.seed);
   };

@@ -1,7 +1,6 @@
 #include "coverage/coverage_real.h"
 
 #include "coverage/coverage_cases.h"
-#include "io/errors.h"
 #include "io/numbers.h"
 #include "io/text_hash.h"
 #include "methods/baseline_problem.h"
@@ -56,9 +55,6 @@ randomPoses(const Isometry3d& T_target_sensor,
 CoverageCase
 makeRealCase(const std::string& folder, const ManifestEntry& entry, std::uint64_t seed)
 {
-  if (!entry.prior_sd)
-    throw io::FileError(folder + "/" + manifest_name,
-                        "has no suggested_prior_sigma of " + io::inQuotes(entry.name));
   const ScanPair pair = readScanPair(folder, entry);
   // Cases of one seed share no random numbers.
   Random random(seed, io::hashOf(entry.name));

@@ -5,6 +5,7 @@
 #include "study/text_table.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace bayesian_icp::evaluate {
@@ -110,20 +111,20 @@ runsOf(const CoverageStudy& study, const CoverageFile& results)
 std::string
 summaryOf(const std::vector<CoverageRun>& runs)
 {
-  std::set<std::string> scenes, conditions, cells;
+  std::map<std::string, std::set<std::string>> scenes; // of each condition
+  std::set<std::string> cells;
   std::vector<GroupedNumbers> numbers;
   const auto add = [&](const std::string& title, const CoverageRun& run) {
     numbers.push_back({title + ", " + run.name.method, numbersOf(run.score)});
   };
   for (const CoverageRun& run : runs) {
     const std::string cell = run.name.scene + ", " + run.name.condition;
-    scenes.insert(run.name.scene);
-    conditions.insert(run.name.condition);
+    scenes[run.name.condition].insert(run.name.scene);
     cells.insert(cell);
     add(cell, run);
   }
   for (const CoverageRun& run : runs)
-    if (scenes.size() > 1 && conditions.size() > 1)
+    if (scenes.size() > 1 && scenes[run.name.condition].size() > 1)
       add("all scenes, " + run.name.condition, run);
   for (const CoverageRun& run : runs)
     if (cells.size() > 1)

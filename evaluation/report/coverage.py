@@ -14,7 +14,8 @@ MAX_GOOD_NEES, MIN_BAD_NEES = 16.812, 27.856
 
 TEXT = (
     "Truths within 50 %: share of the runs whose true pose is in the posterior's region of that "
-    "probability, with its 95 % interval. Errors are of the source's centroid and of the rotation. "
+    "probability, with its 95 % interval, which counts a real pair once, for all its seeds. NEES/6 "
+    "leaves lost pairs out. Errors are of the source's centroid and of the rotation. "
     "Flagged: share of the poses that the method itself doubts, of all and of those with the truth "
     "outside the 95 % region. Of recordings, a good pair is not lost and has an NEES below 16.812; "
     "a bad one is lost, or above 27.856. Alarms are flags on good pairs, misses are bad ones without."
@@ -71,7 +72,7 @@ def cells_of(runs):
         "mean log p": number(runs.log_score.mean(), 2),
         "energy score": number(runs.energy_score.mean(), 4),
         "median error [mm]": number(1e3 * runs.translation_error_m.median(), 2),
-        "median error [deg]": number(np.degrees(runs.rotation_error_rad.median()), 2),
+        "median error [deg]": number(np.degrees(runs.rotation_error_rad.median()), 4),
         "flagged [%]": number(100 * flagged, 0),
         "flagged if outside [%]": number(100 * flagged_outside, 0),
         "alarms/good": f"{(is_good & is_doubted).sum()}/{is_good.sum()}",

@@ -177,7 +177,7 @@ summaryOf(const std::vector<TrajectoryRun>& runs)
                         milli * run.score.drift_translation,
                         run.score.nees_per_degree,
                         run.cycle_nees_per_degree}});
-  return summaryText("medians of the means + covariances of",
+  return summaryText("medians of recording, means + covariances",
                      {{"edges"},
                       {"ATE [mm]"},
                       {"RPE [mm]"},

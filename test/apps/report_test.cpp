@@ -287,8 +287,10 @@ TEST(DrawSet, KernelIsAsNarrowAsTheChainsAreNotAsTheirDistance)
   EXPECT_NEAR(kernelWidth(near, 5), kernelWidth(far, 5), 1e-9);
   EXPECT_GT(kernelWidth(near, 5), 0.0);
   EXPECT_EQ(kernelWidth(near, 0), 0.0);
-  // Chains of one draw have a distance only.
-  EXPECT_GT(kernelWidth(drawSetOf(resultWith({{0.0}, {0.1}})), 5), 0.0);
+  // Chains that do not move have a distance only.
+  EXPECT_GT(kernelWidth(drawSetOf(resultWith({{0.0}, {0.1}})), 5), 1e-6);
+  EXPECT_GT(kernelWidth(drawSetOf(resultWith({{0.1, 0.1, 0.1}, {0.3, 0.3, 0.3}})), 5),
+            1e-6);
 }
 
 /** The numbers of a block of data of a picture's script. */

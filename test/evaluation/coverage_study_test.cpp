@@ -132,6 +132,9 @@ TEST(CoverageSummary, HasEveryCellAndThePools)
                             "\n  all scenes, moved, right  ",
                             "\n  all, right "})
     expectIn(summaryOf(runs), group);
+  // A pool of one scene would be that scene again.
+  runs.push_back({{"can", "other", 1, "right"}, {}});
+  EXPECT_EQ(summaryOf(runs).find("all scenes, other"), std::string::npos);
 }
 
 TEST(CoverageSummary, TellsOfTenRuns)

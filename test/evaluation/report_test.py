@@ -159,7 +159,7 @@ class Coverage(FolderTest):
         self.assertEqual(
             table.rows,
             [["a", "10/10", "1.50", "0.50 [0.24,0.76]", "0.70 [0.40,0.89]", "0.90 [0.60,0.98]",
-              "1.00 [0.72,1.00]", "2.00", "0.5000", "5.50", "5.73", "20", "-", "0.250", "1000"]],
+              "1.00 [0.72,1.00]", "2.00", "0.5000", "5.50", "5.7296", "20", "-", "0.250", "1000"]],
         )  # fmt: skip
         (uncounted,) = coverage.tables_of(coverage_rows(queries=-1))
         self.assertEqual(uncounted.rows[0][-1], "-")
