@@ -118,6 +118,8 @@ constexpr DataFlag data_flags[] = {{"wrong_basin", &DataFlags::wrong_basin},
                                    {"misfit", &DataFlags::misfit},
                                    {"no_information", &DataFlags::no_information},
                                    {"prior_conflict", &DataFlags::prior_conflict}};
+static_assert(sizeof(data_flags) == sizeof(DataFlags) * sizeof(DataFlag),
+              "data_flags has every flag");
 
 /** \brief The report of preset `calibrated`. If there are several modes, it describes
  * the heaviest one. */
@@ -134,9 +136,9 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   double effective_patches = std::numeric_limits<double>::quiet_NaN();
   /** Share of the source points that lie on the target's surface, in [0, 1]. */
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
-  /** Share of the target points that lie on the source's surface, in [0, 1]; 0 if the
-   * source has no usable surface. Points further away than the prior allows do not
-   * count. */
+  /** Share of the target points that lie on the source's surface, in [0, 1]; 0 if they
+   * are not compared, because the source has no usable surface or is so sparse that its
+   * own points say more. Points further away than the prior allows do not count. */
   double active_fraction_of_target = std::numeric_limits<double>::quiet_NaN();
   /** kappa_inf: factor by which correlation between neighbouring points inflates the
    * covariance of the score. */

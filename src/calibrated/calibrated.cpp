@@ -26,8 +26,8 @@ isCancelled(const ProgressCallback& progress)
   return progress && !progress({0, 0, 0, 0});
 }
 
-/** Points of the target are not compared with patches of a source that are more than
- * this many times as wide as the target's, if a motion is held without them alone. */
+/** If the source's patches are more than this many times as wide as the target's, the
+ * target's points are left out where more motions are held without them. */
 constexpr double max_width_to_target = 2.0;
 
 /** A posterior's modes, and the points that they come from. */
@@ -55,11 +55,13 @@ modesOf(const SurfaceScorer& scorer,
 {
   ModesOfPoints of_both = {scorer, calibratedModes(scorer, held, search)};
   if (scorer.targetPoints().cols() == 0 || width_to_target <= max_width_to_target ||
-      of_both.numHeld() == 6)
+      of_both.numHeld() == (held.plane ? 3 : 6))
     return of_both;
   const SurfaceScorer source = scorer.ofFirst(scorer.sourcePoints().cols());
   ModesOfPoints of_source = {source, calibratedModes(source, held, search)};
-  return of_source.numHeld() > of_both.numHeld() ? of_source : of_both;
+  if (of_source.numHeld() > of_both.numHeld())
+    return of_source;
+  return of_both;
 }
 
 /** Why there is no density to draw from; empty if there is one. */

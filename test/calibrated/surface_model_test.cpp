@@ -640,6 +640,20 @@ TEST(SurfaceModel, DepthInCoarseLevelsIsASurfaceWithNoise)
   EXPECT_LT(model.medianSigma(), 0.1);
 }
 
+TEST(SurfaceModel, ALargeFaceOfACadModelIsNotALevelOfDepth)
+{
+  // A plate with a few posts on it, whose points have as many heights.
+  Random random(63, 0);
+  Matrix3Xd points(3, 30000);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double x = 10.0 * random.uniform(), y = 8.0 * random.uniform();
+    points.col(i) = Vector3d(x, y, 0.0);
+    if (i % 40 == 0)
+      points.col(i) = Vector3d(1.0 + double(i % 3), 0.1 * y, 0.8 * random.uniform());
+  }
+  EXPECT_LT(SurfaceModel(points).medianSigma(), 1e-4);
+}
+
 TEST(SurfaceModel, ASmallNoisyObjectIsNotOneNeighbourhood)
 {
   // 3.75 times the noise would ask for 560 neighbours, and those of 480 are too wide

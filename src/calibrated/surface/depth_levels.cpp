@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 namespace bayesian_icp {
 
@@ -17,13 +19,18 @@ using Eigen::Vector3d;
 
 namespace {
 
-/** A cloud of rounded readings lies on at least so many levels, with as many points on
- * each of them, on average, as a neighbourhood has. CAD models have fewer parallel
- * faces, or other points between them. */
+/** The exact patches of rounded readings lie on at least so many levels (8 to 21 in
+ * simulated scans), with as many points on each level of the cloud, on average, as a
+ * neighbourhood has. CAD models have fewer parallel faces, or other points between
+ * them.
+ */
 constexpr std::size_t min_levels = 6;
 /** Levels are further apart than this fraction of spreadOf() the points, which is more
  * than the rounding of coordinates. */
 constexpr double min_step_to_spread = 1e-5;
+/** Random stream of the places of points on their levels; those of chains count from 0.
+ */
+constexpr std::uint64_t level_stream = std::uint64_t(1) << 42;
 /** Cosine between the normals of patches that lie in levels. */
 constexpr double min_parallelism = 1.0 - 1e-6;
 
@@ -65,6 +72,16 @@ stepAt(double place, const std::vector<double>& levels)
                   above == levels.end() ? none : *above - *own);
 }
 
+/** The lowest of the places on each level, ascending. */
+std::vector<double>
+levelsOf(std::vector<double> places, double min_step)
+{
+  std::sort(places.begin(), places.end());
+  const auto isSame = [min_step](double a, double b) { return b - a < min_step; };
+  places.erase(std::unique(places.begin(), places.end(), isSame), places.end());
+  return places;
+}
+
 } // namespace
 
 std::optional<Matrix3Xf>
@@ -78,15 +95,17 @@ spreadLevels(const Matrix3Xf& points,
   std::vector<double> places(static_cast<std::size_t>(points.cols()));
   for (std::size_t i = 0; i < places.size(); ++i)
     places[i] = axis->dot(points.col(static_cast<Index>(i)).cast<double>());
-  std::vector<double> levels = places;
-  std::sort(levels.begin(), levels.end());
+  // One large face may have most points of a CAD model.
+  std::vector<double> places_of_patches;
+  for (const SurfacePatch& patch : exact)
+    if (std::abs(axis->dot(patch.axes.col(2))) >= min_parallelism)
+      places_of_patches.push_back(axis->dot(patch.centre));
   const double min_step = min_step_to_spread * spreadOf(points);
-  const auto isSame = [min_step](double a, double b) { return b - a < min_step; };
-  levels.erase(std::unique(levels.begin(), levels.end(), isSame), levels.end());
-  if (levels.size() < min_levels ||
+  const std::vector<double> levels = levelsOf(places, min_step);
+  if (levelsOf(std::move(places_of_patches), min_step).size() < min_levels ||
       levels.size() * static_cast<std::size_t>(num_neighbors) > places.size())
     return std::nullopt;
-  Random random(0, 0);
+  Random random(0, level_stream);
   Matrix3Xf spread = points;
   for (std::size_t i = 0; i < places.size(); ++i)
     spread.col(static_cast<Index>(i)) +=

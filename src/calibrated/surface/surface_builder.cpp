@@ -102,8 +102,9 @@ public:
       patch_of_[static_cast<std::size_t>(columns_[j])] = static_cast<std::uint32_t>(j);
   }
 
+  /** \param[in] may_be_exact whether to look for signs of a cloud without noise */
   void
-  fitPatches()
+  fitPatches(bool may_be_exact)
   {
     const PointNeighbors cloud(points_);
     const auto num_points = static_cast<double>(points_.cols());
@@ -111,7 +112,7 @@ public:
         spreadOf(points_) *
         std::max(max_radius_to_extent,
                  max_radius_of_few * std::sqrt(options_.num_neighbors / num_points));
-    if (!plane_normal_)
+    if (may_be_exact && !plane_normal_)
       adaptToExactCloud(cloud, max_radius);
     if (spread_)
       return;
@@ -355,12 +356,13 @@ private:
 void
 SurfaceModel::build(const Matrix3Xf& points,
                     const SurfaceModelOptions& options,
-                    int num_threads)
+                    int num_threads,
+                    bool may_be_exact)
 {
   SurfaceBuilder builder(points, plane_normal_, options, num_threads);
-  builder.fitPatches();
+  builder.fitPatches(may_be_exact);
   if (builder.spread())
-    return build(*builder.spread(), options, num_threads);
+    return build(*builder.spread(), options, num_threads, false);
   builder.poolNoise();
   if (options.takeover_radius > 0.0)
     builder.takeOver();

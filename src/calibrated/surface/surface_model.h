@@ -35,7 +35,7 @@ struct SurfacePatch {
   Eigen::Matrix3d axes;
   /** a0 ... a5 [m, 1, 1, 1/m, 1/m, 1/m]. */
   std::array<double, 6> quadric;
-  /** The cloud point that the patch represents [m]. It is the origin, unless the
+  /** The cloud point that the patch represents, after spreadLevels() [m]. It is the origin, unless the
    * quadric was taken over from a neighbour. */
   Eigen::Vector3d centre;
   /** In-plane (x, y) radius of the neighbourhood that was fitted [m]. */
@@ -220,7 +220,8 @@ private:
   void
   build(const Eigen::Matrix3Xf& points,
         const SurfaceModelOptions& options,
-        int num_threads);
+        int num_threads,
+        bool may_be_exact = true);
 
   Eigen::Vector3d origin_;
   std::optional<Eigen::Vector3d> plane_normal_;
