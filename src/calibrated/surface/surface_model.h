@@ -35,8 +35,8 @@ struct SurfacePatch {
   Eigen::Matrix3d axes;
   /** a0 ... a5 [m, 1, 1, 1/m, 1/m, 1/m]. */
   std::array<double, 6> quadric;
-  /** The cloud point that the patch represents, after spreadLevels() [m]. It is the origin, unless the
-   * quadric was taken over from a neighbour. */
+  /** The cloud point that the patch represents, after spreadLevels() [m]. It is the
+   * origin, unless the quadric was taken over from a neighbour. */
   Eigen::Vector3d centre;
   /** In-plane (x, y) radius of the neighbourhood that was fitted [m]. */
   double radius;
