@@ -23,7 +23,6 @@ constexpr std::size_t direction_width = 11;
 constexpr std::size_t holder_width = 7;
 constexpr double millimetres = 1e3;
 constexpr double milliradians = 1e3;
-constexpr double percent = 100.0;
 
 /** At least one blank, and \p text, \p width characters or more. */
 std::string
@@ -124,11 +123,8 @@ dataText(const DataReport& report)
          io::fixedTextOf(report.effective_patches, 0) +
          " independent ones, correlation factor " +
          io::fixedTextOf(report.correlation_factor, 2) +
-         "\nSupport: " + io::fixedTextOf(percent * report.active_fraction, 0) +
-         " % of the source points lie on the target's surface, " +
-         io::fixedTextOf(percent * report.active_fraction_of_target, 0) +
-         " % of the target's on the source's\nFlags:   " +
-         (flags.empty() ? "none" : flags) + '\n';
+         "\nSupport: " + describeSupport(report) +
+         "\nFlags:   " + (flags.empty() ? "none" : flags) + '\n';
 }
 
 } // namespace

@@ -189,16 +189,13 @@ cloudSection(const Run& run)
 std::string
 dataSummary(const DataReport& data)
 {
-  constexpr double percent = 100.0, millimetres = 1e3;
+  constexpr double millimetres = 1e3;
   return "Noise: " + io::textOf(millimetres * data.noise_scale, 4) +
          " mm from the surface, " + io::fixedTextOf(data.residual_scale, 2) +
          " times the target's own. About " +
          io::fixedTextOf(data.effective_patches, 0) +
-         " independent patches of surface hold the pose. " +
-         io::fixedTextOf(percent * data.active_fraction, 0) +
-         " % of the source points lie on the target's surface, and " +
-         io::fixedTextOf(percent * data.active_fraction_of_target, 0) +
-         " % of the target's on the source's.";
+         " independent patches of surface hold the pose. " + describeSupport(data) +
+         '.';
 }
 
 Section

@@ -136,9 +136,10 @@ struct BAYESIAN_ICP_EXPORT DataReport {
   double effective_patches = std::numeric_limits<double>::quiet_NaN();
   /** Share of the source points that lie on the target's surface, in [0, 1]. */
   double active_fraction = std::numeric_limits<double>::quiet_NaN();
-  /** Share of the target points that lie on the source's surface, in [0, 1]; 0 if they
-   * are not compared, because the source has no usable surface or is so sparse that its
-   * own points say more. Points further away than the prior allows do not count. */
+  /** Share of the target points that lie on the source's surface, in [0, 1]; NaN if
+   * they are not compared, because the source has no usable surface or is so sparse
+   * that its own points say more. Points further away than the prior allows do not
+   * count. */
   double active_fraction_of_target = std::numeric_limits<double>::quiet_NaN();
   /** kappa_inf: factor by which correlation between neighbouring points inflates the
    * covariance of the score. */
@@ -185,6 +186,11 @@ flagsOf(const DataReport& report);
  * \param[in] centre of the twist, target frame [m] */
 BAYESIAN_ICP_EXPORT std::string
 describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre);
+
+/** \brief Describe how much of each cloud lies on the surface of the other one, and
+ * that the target's points were not compared if they were not. */
+BAYESIAN_ICP_EXPORT std::string
+describeSupport(const DataReport& report);
 
 /** \brief Describe the raised flags, each with its number and threshold. Empty if none
  * is raised. */

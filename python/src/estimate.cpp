@@ -197,9 +197,9 @@ bindSummary(py::module_& module)
       .def_readonly(
           "active_fraction_of_target",
           &R::active_fraction_of_target,
-          "Share of the target points on the source's surface, 0 to 1; 0 if "
-          "they are not compared, because the source has no usable surface or "
-          "is so sparse that its own points say more.")
+          "Share of the target points on the source's surface, 0 to 1; NaN "
+          "if they are not compared, because the source has no usable surface "
+          "or is so sparse that its own points say more.")
       .def_readonly("correlation_factor",
                     &R::correlation_factor,
                     "Factor by which correlation between neighbouring points inflates "

@@ -110,7 +110,7 @@ flagsOf(const DataReport& report)
   flags.wrong_basin = !(report.basin_distance <= max_basin_distance ||
                         report.other_cost_ratio > max_other_cost_ratio);
   flags.low_support =
-      !(std::max(report.active_fraction, report.active_fraction_of_target) >=
+      !(std::fmax(report.active_fraction, report.active_fraction_of_target) >=
         min_active_fraction);
   flags.few_patches = !(report.effective_patches >= leastPatches(report));
   flags.misfit = !(report.residual_scale >= min_residual_scale &&
@@ -139,6 +139,18 @@ describeTwist(const Vector6d& twist, const Eigen::Vector3d& centre)
   return "screw about " + axis + formatted(" with a pitch of %.3f m/rad", pitch);
 }
 
+std::string
+describeSupport(const DataReport& report)
+{
+  const std::string source =
+      formatted("%.0f %% of the source points lie on the target's surface",
+                100.0 * report.active_fraction);
+  return std::isnan(report.active_fraction_of_target)
+             ? source + ", the target's points are not compared"
+             : source + formatted(", %.0f %% of the target's on the source's",
+                                  100.0 * report.active_fraction_of_target);
+}
+
 std::vector<std::string>
 describeFlags(const DataReport& report)
 {
@@ -154,12 +166,9 @@ describeFlags(const DataReport& report)
                   report.other_cost_ratio,
                   max_other_cost_ratio));
   if (report.flags.low_support)
-    texts.push_back(formatted(
-        "only %.0f %% of the source points lie on the target's surface, and %.0f %% of "
-        "the target's on the source's (at least %.0f %% of either)",
-        100.0 * report.active_fraction,
-        100.0 * report.active_fraction_of_target,
-        100.0 * min_active_fraction));
+    texts.push_back("only " + describeSupport(report) +
+                    formatted("; at least %.0f %% of one cloud are needed",
+                              100.0 * min_active_fraction));
   if (report.flags.few_patches)
     texts.push_back(formatted(
         "the pose is held by about %.0f independent patches of surface (at least %.0f)",

@@ -299,7 +299,7 @@ TEST(Calibrated, ASparseSourceIsKnownOnADenseTarget)
 {
   // The target's points, against patches as wide as several boxes, hide motions of
   // four of these five sources.
-  int num_known = 0;
+  int num_known = 0, num_of_source_alone = 0;
   for (const std::uint64_t seed : {101, 103, 105, 107, 109}) {
     const Summary summary = estimatePosterior(boxesOnATable(seed, 2000),
                                               boxesOnATable(seed + 1, 60000),
@@ -307,6 +307,7 @@ TEST(Calibrated, ASparseSourceIsKnownOnADenseTarget)
                                               calibratedOptions())
                                 .summary;
     EXPECT_LT(test::squaredErrorOf(summary, Vector6d::Zero()), test::chi_square_9999);
+    num_of_source_alone += std::isnan(summary.data.active_fraction_of_target);
     const auto& directions = summary.data.directions;
     num_known += std::all_of(
         directions.begin(), directions.end(), [](const DataDirection& direction) {
@@ -314,6 +315,7 @@ TEST(Calibrated, ASparseSourceIsKnownOnADenseTarget)
         });
   }
   EXPECT_GE(num_known, 4);
+  EXPECT_GE(num_of_source_alone, 4);
 }
 
 /** A cloud and three more pieces of surface beside it. */

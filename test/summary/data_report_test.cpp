@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <limits>
+
 namespace bayesian_icp {
 namespace {
 
@@ -115,6 +117,23 @@ TEST(DescribeFlags, NameNumberAndThreshold)
   for (std::size_t i = 0; i < 5; ++i)
     for (const char* part : parts[i])
       EXPECT_NE(texts[i].find(part), std::string::npos) << texts[i];
+}
+
+TEST(DescribeSupport, SaysThatTheTargetIsNotCompared)
+{
+  DataReport report = goodReport();
+  EXPECT_EQ(
+      describeSupport(report),
+      "90 % of the source points lie on the target's surface, 80 % of the target's "
+      "on the source's");
+  report.active_fraction_of_target = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(
+      describeSupport(report),
+      "90 % of the source points lie on the target's surface, the target's points "
+      "are not compared");
+  EXPECT_FALSE(flagsOf(report).low_support);
+  report.active_fraction = 0.1;
+  EXPECT_TRUE(flagsOf(report).low_support);
 }
 
 } // namespace
