@@ -274,7 +274,9 @@ boxesOnATable(std::uint64_t seed, Eigen::Index num_points)
   for (auto point : points.colwise()) {
     const auto box = static_cast<double>(random.index(num_boxes));
     const Eigen::Vector2d corner(-0.45 + 0.032 * box, 0.2 * std::sin(2.0 * box));
-    Eigen::Vector2d place(random.uniform(), random.uniform());
+    Eigen::Vector2d place;
+    for (const Eigen::Index i : {1, 0})
+      place[i] = random.uniform();
     const double part = random.uniform();
     point.z() = height;
     if (part < 0.7) {
@@ -290,7 +292,8 @@ boxesOnATable(std::uint64_t seed, Eigen::Index num_points)
       place = corner + size * place;
     }
     point.head<2>() = place;
-    point += 0.001 * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    for (const Eigen::Index i : {2, 1, 0})
+      point[i] += 0.001 * random.normal();
   }
   return points;
 }
