@@ -189,8 +189,7 @@ dataReportOf(const CalibratedEstimate& estimate, double noise)
       num_smallest_clusters * std::max(1.0, estimate.kappa_48) / estimate.kappa_inf;
   const ActiveShares active = activeSharesOf(estimate.scores);
   report.active_fraction = active.source;
-  if (estimate.scores.residuals.size() > estimate.scores.num_source_points)
-    report.active_fraction_of_target = active.target;
+  report.active_fraction_of_target = active.target;
   report.correlation_factor = estimate.kappa_inf;
   report.degrees_of_freedom = estimate.degrees_of_freedom;
   report.other_cost_ratio = estimate.other_cost_ratio;

@@ -3,6 +3,7 @@
 #include "search/point_neighbors.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -115,7 +116,7 @@ bool
 isPart(const CalibratedMode& mode)
 {
   const ActiveShares active = activeSharesOf(mode.estimate.scores);
-  return std::max(active.source, active.target) > least_of_a_part;
+  return std::fmax(active.source, active.target) > least_of_a_part;
 }
 
 } // namespace

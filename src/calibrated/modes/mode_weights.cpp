@@ -94,8 +94,8 @@ cloudFactors(const std::vector<CalibratedMode>& modes)
   double source = 0.0, target = 0.0;
   for (const auto& mode : modes) {
     const ActiveShares active = activeSharesOf(mode.estimate.scores);
-    source = std::max(source, active.source);
-    target = std::max(target, active.target);
+    source = std::fmax(source, active.source);
+    target = std::fmax(target, active.target);
   }
   const auto factorOf = [](double share, double other) {
     const double is_part = std::clamp((other - no_part) / (part - no_part), 0.0, 1.0);

@@ -189,7 +189,7 @@ ActiveShares
 activeSharesOf(const SurfaceScores& scores)
 {
   const auto shareOf = [](int num_active, Eigen::Index num_points) {
-    return num_active / std::max(1.0, static_cast<double>(num_points));
+    return num_active / static_cast<double>(num_points);
   };
   return {shareOf(scores.num_active_of_source, scores.num_source_points),
           shareOf(scores.num_active - scores.num_active_of_source,

@@ -53,7 +53,7 @@ struct SurfaceScores {
   Eigen::Index num_source_points = 0;
 };
 
-/** \brief Shares of the active points of each cloud, in [0, 1]; 0 if no points of it
+/** \brief Shares of the active points of each cloud, in [0, 1]; NaN if no points of it
  * are compared. */
 struct ActiveShares {
   double source, target;
