@@ -48,7 +48,7 @@ class Usage(ToolTest):
 
     def test_scripts_refuse_words_that_they_do_not_know(self):
         for line in """analyze src nowhere; bootstrap --demo word; coverage word; demo word; make-data a b c
-            make-doc-images a b; measure-sgd-icp a b; sanitize address --quick word; sanitize thread --quick
+            make-doc-images a b; measure-sgd-icp a b; sanitize address --fuzzers word; sanitize thread --fuzzers
             test --all word; test-on --all""".replace("\n", ";").split(";"):
             with self.subTest(line=line):
                 script, *words = line.split()

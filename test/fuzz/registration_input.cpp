@@ -98,7 +98,8 @@ pointOfShape(int shape, Random& random)
 Eigen::Matrix3Xd
 cloudOf(Bytes& bytes, int max_num_points)
 {
-  const int num_points = bytes.ConsumeIntegralInRange(0, max_num_points);
+  const int num_points =
+      max_num_points - bytes.ConsumeIntegralInRange(0, max_num_points);
   const int shape = bytes.ConsumeIntegralInRange(0, 6);
   Random random(bytes.ConsumeIntegral<std::uint8_t>(), 0);
   const double noise = bytes.ConsumeBool() ? 0.01 : 0.0;
@@ -179,8 +180,8 @@ optionsOf(Bytes& bytes)
   options.exact.residual.residual = choiceOf<Residual>(bytes, 3);
   options.exact.residual.regularization = choiceOf<CovarianceRegularization>(bytes, 3);
   options.exact.residual.kernel = choiceOf<RobustKernel>(bytes, 3);
-  options.chains.num_chains = bytes.ConsumeIntegralInRange(0, 5);
-  options.chains.num_draws = bytes.ConsumeIntegralInRange(0, 60);
+  options.chains.num_chains = bytes.PickValueInArray({2, 1, 3, 4, 5, 0});
+  options.chains.num_draws = 400 - bytes.ConsumeIntegralInRange(0, 400);
   options.chains.seed = bytes.ConsumeIntegral<std::uint8_t>();
   options.chains.num_threads = 1;
   FieldChanger change(bytes);
@@ -294,7 +295,7 @@ registrationInputOf(const std::uint8_t* data, std::size_t size)
     input.gate = oddNumber(bytes);
   if (bytes.ConsumeBool())
     input.guess = oddVector(bytes);
-  input.max_num_steps = bytes.PickValueInArray({50, 200, 1000});
+  input.max_num_steps = bytes.PickValueInArray({5000, 50, 200});
   const int max_num_points = input.options.preset == Preset::Calibrated ? 80 : 40;
   input.target = cloudOf(bytes, max_num_points);
   input.source = bytes.ConsumeBool() ? input.target : cloudOf(bytes, max_num_points);

@@ -1,0 +1,46 @@
+/** \file
+ * \brief Gives a fuzzer the files of a folder, in the order of their names, where it is
+ * built without libFuzzer.
+ */
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+#include <string>
+
+extern "C" int
+LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+// A fuzzer may have none.
+extern "C" __attribute__((weak)) int
+LLVMFuzzerInitialize(int* argc, char*** argv);
+
+int
+main(int argc, char** argv)
+{
+  if (argc != 2 || !std::filesystem::is_directory(argv[1])) {
+    std::cerr << "Usage: " << argv[0] << " FOLDER\n";
+    return EXIT_FAILURE;
+  }
+  std::set<std::filesystem::path> inputs;
+  for (const auto& entry : std::filesystem::directory_iterator(argv[1]))
+    inputs.insert(entry.path());
+  if (inputs.empty()) {
+    std::cerr << "no input in " << argv[1] << '\n';
+    return EXIT_FAILURE;
+  }
+  if (LLVMFuzzerInitialize != nullptr)
+    LLVMFuzzerInitialize(&argc, &argv);
+  for (const std::filesystem::path& input : inputs) {
+    std::cout << input.filename().string()
+              << std::endl; // the last one is that of a crash
+    std::ifstream stream(input, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                           bytes.size());
+  }
+  return EXIT_SUCCESS;
+}
