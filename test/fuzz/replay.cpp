@@ -35,8 +35,8 @@ main(int argc, char** argv)
   if (LLVMFuzzerInitialize != nullptr)
     LLVMFuzzerInitialize(&argc, &argv);
   for (const std::filesystem::path& input : inputs) {
-    std::cout << input.filename().string()
-              << std::endl; // the last one is that of a crash
+    // The last name is that of a crash.
+    std::cout << input.filename().string() << std::endl;
     std::ifstream stream(input, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()),
