@@ -1,9 +1,9 @@
-# Compiles abi_report against the installed library in several ways, and fails unless each
-# prints what the project's own build of it prints.
-# Arguments: prefix, folder of the sources, own build of the report, work folder, then ways:
+# Compiles the consumer by what pkg-config says in several ways, and fails unless each finds
+# the true pose and prints the report of the consumer that CMake has built.
+# Arguments: prefix, folder of the sources, consumer built by CMake, work folder, then ways:
 # compiler:standard:flags, with commas between flags.
 set -euo pipefail
-prefix=$1 sources=$2 own=$3 work=$4
+prefix=$1 sources=$2 consumer=$3 work=$4
 shift 4
 rm -rf "$work"
 mkdir -p "$work"
@@ -25,20 +25,21 @@ compare() {
   fi
 }
 
-"$own" >"$work/expected" 2>"$work/messages"
-"$own" --layout >"$work/layout"
+"$consumer" --report >"$work/expected" 2>"$work/messages"
+"$consumer" --layout >"$work/layout"
 for way in "$@"; do
   IFS=: read -r compiler standard flags <<<"$way"
   IFS=, read -ra flags <<<"$flags"
-  for part in main own_point_type; do
+  for part in main own_point_type report; do
     "${launcher[@]}" "$compiler" "-std=$standard" "${flags[@]}" "${includes[@]}" \
       -c "$sources/$part.cpp" -o "$work/$part.o"
   done
-  "$compiler" "$work/main.o" "$work/own_point_type.o" -o "$work/report" "${libraries[@]}" \
+  "$compiler" "$work"/{main,own_point_type,report}.o -o "$work/consumer" "${libraries[@]}" \
     -llz4 "-Wl,-rpath,$libdir"
-  "$work/report" --layout >"$work/found_layout"
+  "$work/consumer"
+  "$work/consumer" --layout >"$work/found_layout"
   compare "$way: the layout" "$work/layout" "$work/found_layout"
-  "$work/report" >"$work/found" 2>"$work/messages"
+  "$work/consumer" --report >"$work/found" 2>"$work/messages"
   compare "$way: the report" "$work/expected" "$work/found"
-  echo "$way: $(grep -c . "$work/found") lines as the library's own"
+  echo "$way: $(grep -c . "$work/found") lines as those of the first consumer"
 done

@@ -1,22 +1,15 @@
-# Builds and runs the consumers' main programs by what pkg-config says.
-# Arguments: prefix, folder of the consumers, work folder, PCL's standard, compiler (and its
+# Builds and runs the core consumer's main program by what pkg-config says. packaging.abi does
+# so for the class. Arguments: prefix, folder of the consumers, work folder, compiler (and its
 # launcher).
 set -euo pipefail
-prefix=$1 consumers=$2 work=$3 pcl_standard=$4
-shift 4
+prefix=$1 consumers=$2 work=$3
+shift 3
 mkdir -p "$work"
-libdir=$(dirname "$(find "$prefix" -name pcl_bayesian_icp.pc)")/..
+libdir=$(dirname "$(find "$prefix" -name pcl_bayesian_icp_core.pc)")/..
 export PKG_CONFIG_PATH=$libdir/pkgconfig
-
-# check <package> <source> <name> <standard>
-check() {
-  local flags libraries
-  read -ra flags < <(pkg-config --cflags "$1")
-  read -ra libraries < <(pkg-config --libs "$1")
-  echo "$1: ${flags[*]} ${libraries[*]}"
-  "${@:5}" -std="$4" "${flags[@]}" -c "$2" -o "$work/$3.o"
-  "${@:5}" "$work/$3.o" -o "$work/$3" "${libraries[@]}" "-Wl,-rpath,$libdir"
-  "$work/$3"
-}
-check pcl_bayesian_icp_core "$consumers/core_consumer/main.cpp" core c++14 "$@"
-check pcl_bayesian_icp "$consumers/consumer/main.cpp" pcl "$pcl_standard" "$@"
+read -ra flags < <(pkg-config --cflags pcl_bayesian_icp_core)
+read -ra libraries < <(pkg-config --libs pcl_bayesian_icp_core)
+echo "${flags[*]} ${libraries[*]}"
+"$@" -std=c++14 "${flags[@]}" -c "$consumers/core_consumer/main.cpp" -o "$work/main.o"
+"$@" "$work/main.o" -o "$work/core" "${libraries[@]}" "-Wl,-rpath,$libdir"
+"$work/core"

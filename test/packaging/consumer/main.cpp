@@ -1,4 +1,6 @@
-// Uses the class as a program does that had pcl::IterativeClosestPoint before.
+// Uses the class as a program does that had pcl::IterativeClosestPoint before, or
+// prints the report (--report, --layout).
+#include "report.h"
 #include "surface.h"
 
 #include <pcl/registration/bayesian_icp.h>
@@ -7,11 +9,10 @@
 #include <Eigen/Eigenvalues>
 
 #include <memory>
+#include <string>
 
-#ifdef WITH_OWN_POINT_TYPE
 bool
 registersOwnPointType();
-#endif
 
 using Registration = pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
 
@@ -68,11 +69,14 @@ replacesIterativeClosestPoint()
 }
 
 int
-main()
+main(int argc, char** argv)
 {
-  bool all_well = replacesIterativeClosestPoint();
-#ifdef WITH_OWN_POINT_TYPE
-  all_well = registersOwnPointType() && all_well;
-#endif
-  return all_well ? 0 : 1;
+  const std::string option = argc == 2 ? argv[1] : "";
+  if (option == "--layout")
+    reportLayout();
+  else if (option == "--report")
+    reportResults();
+  else
+    return registersOwnPointType() && replacesIterativeClosestPoint() ? 0 : 1;
+  return 0;
 }

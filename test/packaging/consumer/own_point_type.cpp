@@ -1,17 +1,24 @@
 // Uses the class with a point type that PCL has never heard of.
 #define PCL_NO_PRECOMPILE
 
+// PCL_ADD_POINT4D has anonymous structs.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpedantic"
 #include "echo_point.h"
+#pragma GCC diagnostic pop
+#include "report.h"
 #include "surface.h"
 
 #include <pcl/registration/bayesian_icp.h>
+
+using Registration = pcl::BayesianIterativeClosestPoint<EchoPoint, EchoPoint, double>;
 
 bool
 registersOwnPointType()
 {
   const ScanPair<EchoPoint> scans;
   scans.source->front().echo = 3;
-  pcl::BayesianIterativeClosestPoint<EchoPoint, EchoPoint, double> registration;
+  Registration registration;
   registration.setInputSource(scans.source);
   registration.setInputTarget(scans.target);
   registration.setMaximumIterations(50);
@@ -25,4 +32,22 @@ registersOwnPointType()
                 "the true pose, own point type") &&
          expect(output.front().echo == 3, "own fields are kept") &&
          expect(registration.getSamples().rows() == 100, "100 draws");
+}
+
+void
+reportOwnPointType()
+{
+  const auto source = scan<EchoPoint>(1, 300), target = scan<EchoPoint>(2, 1200);
+  source->back().echo = 7;
+  Registration registration;
+  registration.setInputSource(source);
+  registration.setInputTarget(target);
+  pcl::PointCloud<EchoPoint> output;
+  using bayesian_icp::Preset;
+  for (const auto preset : {Preset::Calibrated, Preset::Exact, Preset::Paper}) {
+    registration.setOptions(reportOptions(preset));
+    registration.align(output);
+    std::cout << "own point type, echo " << output.back().echo << '\n';
+    printPosterior(toString(preset), registration);
+  }
 }

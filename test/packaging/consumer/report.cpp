@@ -1,6 +1,5 @@
 // Prints what has to be the same on both sides of the library's border: the layout of
-// what is passed over it (--layout), or results. Whoever compiles it, and how, the text
-// is one.
+// what is passed over it, and results. Whoever compiles it, and how, the text is one.
 #include "report.h"
 
 #include <bayesian_icp/draws.h>
@@ -12,7 +11,6 @@
 #include <pcl/point_types.h>
 
 #include <cstddef>
-#include <cstring>
 #include <memory>
 
 using namespace bayesian_icp;
@@ -143,18 +141,19 @@ reportDeletion()
     std::cout << "on the heap: " << icp->getClassName() << '\n';
 }
 
-int
-main(int argc, char** argv)
+void
+reportLayout()
 {
-  if (argc == 2 && std::strcmp(argv[1], "--layout") == 0) {
-    reportOptionsLayout();
-    reportResultsLayout();
-    reportClassesLayout();
-    return 0;
-  }
+  reportOptionsLayout();
+  reportResultsLayout();
+  reportClassesLayout();
+}
+
+void
+reportResults()
+{
   reportComplaints();
   reportDeletion();
   reportPointXYZ();
   reportOwnPointType();
-  return 0;
 }

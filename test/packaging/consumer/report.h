@@ -1,4 +1,4 @@
-// What the two parts of the report share: scans, and numbers printed to the last bit.
+// The report, and what its parts share: scans, and numbers printed to the last bit.
 #pragma once
 
 #include <bayesian_icp/pipeline.h>
@@ -68,6 +68,14 @@ reportOptions(bayesian_icp::Preset preset)
   return options;
 }
 
-// Registers a point type that PCL has never heard of, by code compiled here.
+// The layout of what is passed over the library's border.
+void
+reportLayout();
+
+// What the library answers.
+void
+reportResults();
+
+// The same for a point type that PCL has never heard of, by code compiled here.
 void
 reportOwnPointType();
