@@ -39,24 +39,29 @@ meets(const Eigen::AlignedBox3d& box, const Ray& ray, double max_range)
   return enter <= leave;
 }
 
+/** \brief A part that a ray may meet, and the range [m] before which it does not. */
+struct PartAhead {
+  const ScenePart* part;
+  double free_range;
+};
+
 /** \brief The parts that the ray may meet within a range [m]. */
-std::vector<const ScenePart*>
+std::vector<PartAhead>
 partsAlong(const Scene& scene, const Ray& ray, double max_range)
 {
-  std::vector<const ScenePart*> parts;
+  std::vector<PartAhead> parts;
   for (const ScenePart& part : scene.parts)
     if (meets(part.bounds, ray, max_range))
-      parts.push_back(&part);
+      parts.push_back({&part, 0.0});
   return parts;
 }
 
 } // namespace
 
-double
-ScenePart::distanceIfBelow(double other, const Vector3d& point) const
+bool
+ScenePart::isFarther(double other, const Vector3d& point) const
 {
-  const bool is_far = bounds.squaredExteriorDistance(point) > other * other;
-  return is_far ? other : std::min(other, distance(point));
+  return bounds.squaredExteriorDistance(point) > other * other;
 }
 
 double
@@ -64,7 +69,8 @@ Scene::distance(const Vector3d& point) const
 {
   double nearest = std::numeric_limits<double>::infinity();
   for (const ScenePart& part : parts)
-    nearest = part.distanceIfBelow(nearest, point);
+    if (!part.isFarther(nearest, point))
+      nearest = std::min(nearest, part.distance(point));
   return nearest;
 }
 
@@ -74,13 +80,20 @@ Scene::castRay(const Ray& ray, double max_range) const
   constexpr double hit_distance = 1e-6;
   // Grazing rays approach geometrically; a plane seen at 0.3 degrees takes 3000 steps.
   constexpr int max_steps = 4000;
-  const std::vector<const ScenePart*> parts = partsAlong(*this, ray, max_range);
+  std::vector<PartAhead> parts = partsAlong(*this, ray, max_range);
   double range = 0.0;
   for (int step = 0; step < max_steps && range <= max_range; ++step) {
     const Vector3d point = ray.origin + range * ray.direction;
     double clearance = std::numeric_limits<double>::infinity();
-    for (const ScenePart* part : parts)
-      clearance = part->distanceIfBelow(clearance, point);
+    for (PartAhead& ahead : parts) {
+      // No distance changes by more than the ray advances.
+      if (ahead.free_range - range > clearance ||
+          ahead.part->isFarther(clearance, point))
+        continue;
+      const double distance = ahead.part->distance(point);
+      ahead.free_range = range + distance;
+      clearance = std::min(clearance, distance);
+    }
     if (clearance < hit_distance)
       return range;
     range += clearance;

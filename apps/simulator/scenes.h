@@ -43,10 +43,10 @@ struct ScenePart {
   /** Holds all of the part [m]: what is far from it need not ask for the distance. */
   Eigen::AlignedBox3d bounds = unbounded();
 
-  /** \brief The smaller one of \p other and the distance of \p point to the part [m].
-   */
-  double
-  distanceIfBelow(double other, const Eigen::Vector3d& point) const;
+  /** \brief Whether its bounds show that \p point is farther from the part than
+   * \p other [m]. */
+  bool
+  isFarther(double other, const Eigen::Vector3d& point) const;
 };
 
 /** \brief The union of its parts. */
