@@ -135,10 +135,11 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
     const Vector6d difference = logSE3(to_measured * expSE3(xi));
     const Matrix6d of_xi = rightJacobian(difference).inverse() * rightJacobian(xi);
     H.middleCols<6>(of_scan) = of_xi;
-    const Eigen::LDLT<Matrix6d> S(H * covariance_ * H.transpose() + own);
+    const auto with_errors = (H * covariance_).eval();
+    const Eigen::LDLT<Matrix6d> S(with_errors * H.transpose() + own);
     if (iteration == 0)
       squared_innovation = (difference + of_noise).dot(S.solve(difference + of_noise));
-    gain = S.solve(H * covariance_).transpose();
+    gain = S.solve(with_errors).transpose();
     gain.bottomRows<num_common>().setZero();
     correction = gain * (of_xi * xi - difference - of_noise);
   }
@@ -147,13 +148,18 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   velocity_ += correction.segment<6>(of_velocity);
   target_noise_ += correction.segment<6>(noise_of_target);
   scan_noise_ += correction.segment<6>(noise_of_scan);
+  const auto aboutNew = [&](auto& rows) {
+    for (const Eigen::Index part : {of_target, of_scan})
+      rows.template middleRows<6>(part) = rightJacobian(correction.segment<6>(part)) *
+                                          rows.template middleRows<6>(part);
+  };
   // Joseph's form stays positive semi-definite. Errors are then about the new poses.
-  State about_new = State::Identity();
-  for (const Eigen::Index part : {of_target, of_scan})
-    about_new.block<6, 6>(part, part) = rightJacobian(correction.segment<6>(part));
-  const State rest = about_new * (State::Identity() - gain * H);
-  const Eigen::Matrix<double, num_errors, 6> taken = about_new * gain;
-  propagate([&](State& rows) { rows = rest * rows; });
+  propagate([&](State& rows) {
+    rows -= gain * (H * rows);
+    aboutNew(rows);
+  });
+  Eigen::Matrix<double, num_errors, 6> taken = gain;
+  aboutNew(taken);
   const State noise = taken * own * taken.transpose();
   covariance_ += 0.5 * (noise + noise.transpose());
   return squared_innovation;
