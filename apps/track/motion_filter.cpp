@@ -148,10 +148,13 @@ MotionFilter::update(const GaussianPose& measured, const SharedNoise& shared)
   velocity_ += correction.segment<6>(of_velocity);
   target_noise_ += correction.segment<6>(noise_of_target);
   scan_noise_ += correction.segment<6>(noise_of_scan);
+  const Matrix6d of_new_target = rightJacobian(correction.segment<6>(of_target));
+  const Matrix6d of_new_scan = rightJacobian(correction.segment<6>(of_scan));
   const auto aboutNew = [&](auto& rows) {
-    for (const Eigen::Index part : {of_target, of_scan})
-      rows.template middleRows<6>(part) = rightJacobian(correction.segment<6>(part)) *
-                                          rows.template middleRows<6>(part);
+    auto target_rows = rows.template middleRows<6>(of_target);
+    auto scan_rows = rows.template middleRows<6>(of_scan);
+    target_rows = of_new_target * target_rows;
+    scan_rows = of_new_scan * scan_rows;
   };
   // Joseph's form stays positive semi-definite. Errors are then about the new poses.
   propagate([&](State& rows) {

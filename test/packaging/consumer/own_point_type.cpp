@@ -1,11 +1,7 @@
 // Uses the class with a point type that PCL has never heard of.
 #define PCL_NO_PRECOMPILE
 
-// PCL_ADD_POINT4D has anonymous structs.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpedantic"
 #include "echo_point.h"
-#pragma GCC diagnostic pop
 #include "report.h"
 #include "surface.h"
 
