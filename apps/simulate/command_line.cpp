@@ -175,9 +175,10 @@ parseCommandLine(int argc, const char* const* argv)
       throw io::UsageError(std::string("--") + required + " is missing");
   io::takeOptions(given, options);
   if (given.count("same-view") > 0) {
-    io::refuseOptions(given,
-                      {"source-eye", "source-look-at", "sweep-motion"},
-                      ": has no effect with --same-view");
+    constexpr char reason[] = ": has no effect with --same-view";
+    io::refuseOptions(given, {"source-eye", "source-look-at"}, reason);
+    if (request.options.sweep_motion != 0.0)
+      throw io::UsageError(std::string("--sweep-motion") + reason);
     request.options.source_view = request.options.target_view;
   }
   validate(request.options);

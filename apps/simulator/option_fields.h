@@ -48,9 +48,11 @@ visitSensor(SensorT& sensor, const Visitor& visit)
   const bool is_camera = sensor.kind == SensorKind::DepthCamera;
   const char* no_camera = is_camera ? nullptr : "with a lidar";
   const char* no_lidar = is_camera ? "with a depth-camera" : nullptr;
-  const char* no_noise = sensor.noise > 0.0 ? nullptr : "with --noise 0";
   auto& camera = sensor.camera;
   auto& lidar = sensor.lidar;
+  const char* no_factor = sensor.noise > 0.0 ? nullptr : "with --noise 0";
+  const char* no_noise =
+      is_camera || lidar.range_noise > 0.0 ? no_factor : "with --range-noise 0";
   visit({Group::Sensor, "sensor", "KIND",
          "Kind of sensor: depth-camera, lidar, or a spinning lidar on the roof of a "
          "car: lidar16, lidar32 (-15 to 15 degrees, every 0.2), lidar64, lidar128 (-25 "
@@ -85,7 +87,7 @@ visitSensor(SensorT& sensor, const Visitor& visit)
         lidar.azimuth_phase);
   visit({Group::Noise, "range-noise", "M",
          "Lidar: standard deviation of the range [m]. (default 0.02)",
-         not_negative, is_camera ? no_lidar : no_noise}, lidar.range_noise);
+         not_negative, is_camera ? no_lidar : no_factor}, lidar.range_noise);
   visit({Group::Errors, "ring-offset", "M",
          "Lidar: standard deviation of the rings' constant range offsets [m], which "
          "are the same in both scans. (default 0)", not_negative, no_lidar},
@@ -102,8 +104,8 @@ visitSensor(SensorT& sensor, const Visitor& visit)
          positive}, sensor.max_range);
   visit({Group::Noise, "noise", "FACTOR",
          "Factor on the noise of the reading; 0 means no noise. Camera: 0.0012 + 0.0019 "
-         "(z - 0.4)^2 m at depth z (Kinect, Nguyen 2012). (default 1)", not_negative},
-        sensor.noise);
+         "(z - 0.4)^2 m at depth z (Kinect, Nguyen 2012). (default 1)", not_negative,
+         no_factor == nullptr ? no_noise : nullptr}, sensor.noise);
   visit({Group::Noise, "noise-correlation", "PART",
          "Fraction of the variance of the reading's noise, 0 to 1, that neighbouring "
          "rays share. (default 0)", part_of_all,

@@ -73,7 +73,9 @@ class Simulate(ToolTest):
             --scene room --quantisation kinect; --scene can --scene mug
             --scene room --sensor-seed 3; --scene street --same-view --sweep-motion 0.5
             --scene can --same-view --source-eye 0,-1,1; --scene can --outlier-spread 0.2
-            --scene street --noise 0 --incidence-noise 1; --scene room --noise 0 --range-noise 1"""
+            --scene street --noise 0 --incidence-noise 1; --scene room --noise 0 --range-noise 1
+            --scene room --range-noise 0 --noise 2; --scene room --range-noise 0 --incidence-noise 1
+            --scene room --range-noise 0 --noise-correlation 0.5"""
         for words in ["", *re.split("[;\n]", lines.strip())]:
             with self.subTest(words=words):
                 self.assert_refused(2, call(SIMULATE, *words.split(), "-o", folder))
@@ -101,6 +103,8 @@ class Simulate(ToolTest):
             "--ring-offset 0.02 --sensor-seed 7 --incidence-noise 0",
             "--scene carton --noise-correlation 0.5 --noise-correlation-pixels 4 "
             "--incidence-noise 1.5",
+            "--scene street --range-noise 0 --noise 0 --azimuth-step 2 --incidence-noise 0",
+            "--scene street --range-noise 0 --azimuth-step 2 --same-view --sweep-motion 0",
         ):
             with self.subTest(words=words):
                 first = self.simulate(words, "first")
