@@ -1,9 +1,10 @@
 #include "paper/paper_baseline.h"
 
+#include "io/clocks.h"
 #include "io/errors.h"
-#include "io/numbers.h"
 #include "io/text_hash.h"
 #include "study/input_hash.h"
+#include "study/parallel_tasks.h"
 #include "study/run_file.h"
 
 #include <bayesian_icp/summary.h>
@@ -108,6 +109,8 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
 {
   KeptRuns runs(file);
   const int end = options.first_run + options.num_runs;
+  const double begin = io::wallSeconds();
+  int num_made = 0;
   std::vector<MonteCarloIcpRun> asked;
   for (int index = options.first_run; index < end; ++index) {
     if (runs.find({index}) == nullptr) {
@@ -116,8 +119,11 @@ keptMonteCarloRuns(const Eigen::Matrix3Xd& source,
       block.num_runs = std::min(block_size, end - index);
       for (const MonteCarloIcpRun& run : monteCarloIcp(source, target, block))
         runs.findOrMake({run.index}, [&run] { return KeptRun{{run.index}, run}; });
-      report(io::textOf(index + block.num_runs) + " of " + io::textOf(end) +
-             " runs of ICP");
+      num_made += block.num_runs;
+      report(progressText(static_cast<std::size_t>(index + block.num_runs),
+                          static_cast<std::size_t>(end),
+                          "runs of ICP",
+                          (io::wallSeconds() - begin) / num_made));
     }
     asked.push_back(runs.find({index})->run);
   }

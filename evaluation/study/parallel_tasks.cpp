@@ -9,6 +9,19 @@
 
 namespace bayesian_icp::evaluate {
 
+std::string
+progressText(std::size_t num_done,
+             std::size_t size,
+             const std::string& tasks,
+             double seconds_each)
+{
+  return format("%zu of %zu %s, about %.0f s left",
+                num_done,
+                size,
+                tasks.c_str(),
+                seconds_each * static_cast<double>(size - num_done));
+}
+
 void
 runTasks(std::size_t size,
          int num_threads,
@@ -26,12 +39,7 @@ runTasks(std::size_t size,
       return;
     const double seconds_each =
         (io::wallSeconds() - begin) / static_cast<double>(num_done);
-    std::cerr << format("%zu of %zu %s, about %.0f s left",
-                        num_done,
-                        size,
-                        tasks.c_str(),
-                        seconds_each * static_cast<double>(size - num_done))
-              << std::endl;
+    std::cerr << progressText(num_done, size, tasks, seconds_each) << std::endl;
   });
 }
 

@@ -9,9 +9,19 @@
 
 namespace bayesian_icp::evaluate {
 
+/** \brief A line of progress: how many tasks are done, and about how long the others
+ * take.
+ * \param[in] tasks what they are ("pairs")
+ * \param[in] seconds_each of a task */
+std::string
+progressText(std::size_t num_done,
+             std::size_t size,
+             const std::string& tasks,
+             double seconds_each);
+
 /** \brief Do tasks that do not depend on each other, each in one thread, and tell the
  * standard error how many are done: each of them, or each hundredth part.
- * \param[in] tasks what they are ("pairs")
+ * \param[in] tasks as in progressText()
  * \param[in] run does one; called by several threads at once
  * \throws what \p run throws first; tasks that had not begun then are left out */
 void
