@@ -338,43 +338,6 @@ struct ProblemStudy {
   std::string gold_key = std::string();
 };
 
-/** Kolmogorov-Smirnov distance below which a marginal counts as right. */
-constexpr double good_ks = 0.06;
-
-/** Medians and worst cases of each sampler on each problem. */
-std::string
-summaryOf(const std::vector<ScoredRun>& runs)
-{
-  std::vector<GroupedNumbers> numbers;
-  for (const auto& [name, score] : runs)
-    numbers.push_back(
-        {name.scene +
-             format(", sigma %g m, N %g, ", name.sigma, name.effective_points) +
-             name.sampler,
-         {score.kl,
-          score.kl,
-          score.wasserstein.maxCoeff(),
-          (score.kolmogorov_smirnov.array() < good_ks).cast<double>().mean(),
-          score.rhat,
-          score.bulk_ess,
-          score.tail_ess,
-          score.essPerSecond(),
-          score.seconds,
-          score.status == "ok" ? 1.0 : 0.0}});
-  return summaryText("runs of",
-                     {{"KL, median"},
-                      {"worst", largest},
-                      {"W1"},
-                      {"KS < .06", mean},
-                      {"R-hat, worst", largest},
-                      {"bulk ESS, least", smallest},
-                      {"tail ESS", smallest},
-                      {"ESS/s"},
-                      {"CPU [s]"},
-                      {"mixed", mean}},
-                     numbers);
-}
-
 } // namespace
 
 int

@@ -2,6 +2,7 @@
 
 #include "io/picture_numbers.h"
 #include "study/draw_statistics.h"
+#include "study/text_table.h"
 #include "summary/estimates.h"
 
 #include <algorithm>
@@ -14,6 +15,9 @@ namespace {
 
 /** Draws of the gold standard that distribution functions are made of. */
 constexpr Eigen::Index num_compared_draws = 20000;
+
+/** Kolmogorov-Smirnov distance below which a marginal counts as right. */
+constexpr double good_ks = 0.06;
 
 void
 addDiagnostics(const Summary& summary, Score& score)
@@ -65,6 +69,39 @@ scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws)
     score.kolmogorov_smirnov[k] = distance.kolmogorov_smirnov;
   }
   return score;
+}
+
+std::string
+summaryOf(const std::vector<ScoredRun>& runs)
+{
+  std::vector<GroupedNumbers> numbers;
+  for (const auto& [name, score] : runs)
+    numbers.push_back(
+        {name.scene +
+             format(", sigma %g m, N %g, ", name.sigma, name.effective_points) +
+             name.sampler,
+         {score.kl,
+          score.kl,
+          score.wasserstein.maxCoeff(),
+          (score.kolmogorov_smirnov.array() < good_ks).cast<double>().mean(),
+          score.rhat,
+          score.bulk_ess,
+          score.tail_ess,
+          score.essPerSecond(),
+          score.seconds,
+          score.status == "ok" ? 1.0 : 0.0}});
+  return summaryText("runs of",
+                     {{"KL, median"},
+                      {"worst", largest},
+                      {"W1"},
+                      {"KS < .06", mean},
+                      {"R-hat, worst", largest},
+                      {"bulk ESS, least", smallest},
+                      {"tail ESS", smallest},
+                      {"ESS/s"},
+                      {"CPU [s]"},
+                      {"mixed", mean}},
+                     numbers);
 }
 
 } // namespace bayesian_icp::evaluate

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace bayesian_icp::evaluate {
 
@@ -101,5 +102,9 @@ Score
 scoreOf(const SamplerRun& run, const PoseMatrix& gold_draws);
 
 using ResultFile = RunFile<ScoredRun>;
+
+/** \brief A table of medians and worst cases of each sampler on each problem. */
+std::string
+summaryOf(const std::vector<ScoredRun>& runs);
 
 } // namespace bayesian_icp::evaluate

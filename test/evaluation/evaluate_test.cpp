@@ -192,6 +192,37 @@ TEST(Score, JudgesGoodAndBadDraws)
   EXPECT_TRUE(std::isfinite(scoreOf(particles, gold).kl));
 }
 
+TEST(Score, TheSummaryHasMediansAndWorstCases)
+{
+  std::vector<ScoredRun> runs(4);
+  const double kl[] = {0.1, 0.3, 0.2}, bulk_ess[] = {400.0, 100.0, 300.0};
+  const double tail_ess[] = {500.0, 50.0, 200.0}, seconds[] = {2.0, 1.0, 3.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    runs[i].name = {"can", 0.005, 300.0, "exact", i, "key"};
+    Score& score = runs[i].score;
+    score.kl = kl[i];
+    score.wasserstein[i] = 2.0 * kl[i];
+    score.rhat = 1.0 + kl[i];
+    score.bulk_ess = bulk_ess[i];
+    score.tail_ess = tail_ess[i];
+    score.seconds = seconds[i];
+    score.status = i == 0 ? "not_converged" : "ok";
+  }
+  // Six, three and none of the marginals are right: half of them.
+  runs[1].score.kolmogorov_smirnov.head<3>().setConstant(0.06);
+  runs[2].score.kolmogorov_smirnov.setOnes();
+  runs[3].name = {"can", 0.005, 300.0, "walk", 1, "key"};
+  runs[3].score = scoreOf(SamplerRun(), gaussianDraws(exampleGaussian(), 100, 1));
+  runs[3].score.seconds = 0.5;
+  EXPECT_EQ(summaryOf(runs),
+            "  runs of                           runs  KL, median  worst   W1  KS < .06"
+            "  R-hat, worst  bulk ESS, least  tail ESS  ESS/s  CPU [s]   mixed\n"
+            "  can, sigma 0.005 m, N 300, exact     3         0.2    0.3  0.4       0.5"
+            "           1.3              100        50    100        2  0.6667\n"
+            "  can, sigma 0.005 m, N 300, walk      1         inf    inf  inf         0"
+            "           inf                0         0      0      0.5       0\n");
+}
+
 TEST(MetropolisRuns, WalkAndMalaReachTheMomentsOfAGaussian)
 {
   const Moments gaussian = exampleGaussian();
