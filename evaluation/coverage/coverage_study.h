@@ -43,9 +43,9 @@ struct CoverageRun {
     column("region", score.region);
     column("log_score", score.log_score);
     column("energy_score", score.energy_score);
-    twistColumns("pit_", score.pit, column);
-    twistColumns("z_", score.z, column);
-    twistColumns("relative_sd_", score.relative_sd, column);
+    coordinateColumns("pit_", score.pit, column, twist_names);
+    coordinateColumns("z_", score.z, column, twist_names);
+    coordinateColumns("relative_sd_", score.relative_sd, column, twist_names);
     column("translation_error_m", score.translation_error);
     column("rotation_error_rad", score.rotation_error);
     column("displacement_m", score.displacement);
@@ -54,15 +54,6 @@ struct CoverageRun {
     column("queries", score.num_queries);
     column("notes", score.notes);
     column("inputs", inputs);
-  }
-
-private:
-  template <typename Vector, typename Column>
-  static void
-  twistColumns(const std::string& prefix, Vector& values, const Column& column)
-  {
-    for (std::size_t k = 0; k < twist_names.size(); ++k)
-      column(prefix + twist_names[k], values[Eigen::Index(k)]);
   }
 };
 

@@ -137,13 +137,16 @@ runOf(const std::string& line)
 /** \brief Components of a twist, as titles of columns have them. */
 constexpr std::array<const char*, 6> twist_names = {"vx", "vy", "vz", "wx", "wy", "wz"};
 
-/** \brief Columns of the six coordinates of a pose. */
+/** \brief Columns of the six coordinates of a pose, or of others by their names. */
 template <typename Vector, typename Column>
 void
-coordinateColumns(const std::string& prefix, Vector& values, const Column& column)
+coordinateColumns(const std::string& prefix,
+                  Vector& values,
+                  const Column& column,
+                  const std::array<const char*, 6>& names = app::coordinate_names)
 {
-  for (Eigen::Index k = 0; k < 6; ++k)
-    column(prefix + app::coordinate_names[static_cast<std::size_t>(k)], values[k]);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    column(prefix + names[k], values[Eigen::Index(k)]);
 }
 
 /** \brief The same with the coordinates' units in the titles. */
