@@ -45,7 +45,8 @@ describeOptions(PaperStudyOptions& options)
      "names of pairs, separated by commas; the default is all of the manifest, or the "
      "paper's six objects")
     ("output", outputName("folder", options.output_folder),
-     "folder of the results. Runs that it already has are skipped")
+     "folder of the results. Runs that it already has are skipped; files of another "
+     "version are refused")
     ("baseline-runs", integer(options.num_baseline_runs, 8, most),
      "number of runs of Monte Carlo ICP for each pair (the paper has 10000). A larger "
      "number later only adds runs")

@@ -83,7 +83,7 @@ addResultOptions(ResultOptions& result,
                  boost::program_options::options_description& description,
                  const char* file_help =
                      "CSV file of the results, one row for each run. Runs that it "
-                     "already has are skipped");
+                     "already has are skipped; a file of another version is refused");
 
 /** \brief Read a command line, and fill the places of its options.
  * \param[in] help is printed before the options if it is asked for

@@ -4,7 +4,8 @@
  * A type of rows says its columns once: `run.columns(column)` calls `column(title,
  * value)` for each, in their order, to read and to write; the values are std::string,
  * bool (0 or 1) or numbers. `Run::name` is what tells runs apart, and has the first
- * `Run::num_name_columns` of them.
+ * `Run::num_name_columns` of them. A last column has the version of this program: a
+ * file of another one is refused.
  */
 #pragma once
 
@@ -15,6 +16,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <map>
@@ -167,19 +169,20 @@ public:
 
   /** \brief Read what is there, or write the header; a last line that was cut off is
    * removed.
-   * \throws io::FileError if the file exists and has another header or a bad row, or
-   *         cannot be written, or is in use by another process */
+   * \throws io::FileError if the file exists and has another header, a row of another
+   *         version or a bad one, or cannot be written, or is in use by another process
+   */
   explicit RunFile(const std::string& file)
   : file_(file, [&, has_header = false](const std::string& line) mutable {
-    if (!has_header && line != headerOf<Run>())
-      throw io::FileError(file, "is not a file of results of this version");
+    if (!has_header && line != header())
+      refuse(file);
     if (has_header)
       read(line, file);
     return has_header = true;
   })
   {
     if (file_.isNew())
-      file_.add(headerOf<Run>());
+      file_.add(header());
   }
 
   /** \brief The run of this name, or null; valid as long as this object. */
@@ -198,7 +201,7 @@ public:
   add(const Run& run)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    file_.add(rowOf(run));
+    file_.add(rowOf(run) + version_field);
     return keep(run);
   }
 
@@ -220,11 +223,30 @@ public:
   }
 
 private:
+  static constexpr char version_field[] = "," BAYESIAN_ICP_VERSION;
+
+  static std::string
+  header()
+  {
+    return headerOf<Run>() + ",version";
+  }
+
+  [[noreturn]] static void
+  refuse(const std::string& file)
+  {
+    throw io::FileError(file,
+                        "is not a file of results of version " BAYESIAN_ICP_VERSION
+                        ": move it away, or choose another --output");
+  }
+
   void
   read(const std::string& line, const std::string& file)
   {
+    const std::size_t end = std::min(line.rfind(','), line.size());
+    if (line.substr(end) != version_field)
+      refuse(file);
     try {
-      keep(runOf<Run>(line));
+      keep(runOf<Run>(line.substr(0, end)));
     }
     catch (const std::exception&) {
       throw io::FileError(file, "bad line '" + line + "'");

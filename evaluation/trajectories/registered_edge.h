@@ -19,7 +19,7 @@ struct EdgeName {
   std::uint64_t seed = 0;
   int target = 0, source = 0;
   std::string method;
-  /** Hash of the points, the guess and the version of this program. */
+  /** Hash of the points and the guess. */
   std::string inputs;
 };
 

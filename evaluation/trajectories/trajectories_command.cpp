@@ -104,7 +104,6 @@ scanPairsOf(const RegisteredRecording& registered, const TrajectoriesOptions& op
     for (const int scan : {target, source})
       inputs.add(&hashes[std::size_t(scan)], sizeof hashes[0]);
     inputs.addMatrix(guessOf(recording, registered.seed, target, source).matrix());
-    inputs.add(BAYESIAN_ICP_VERSION, sizeof BAYESIAN_ICP_VERSION);
     PairOfScans pair{target, source, {}};
     for (const std::string& method : edge_methods)
       pair.names.push_back({recording.name,
@@ -220,8 +219,8 @@ NEES/6 has their accuracy. Poses of quality C are of the same scans, so they
 have no NEES/6. The constant covariance needs other recordings.
 
 Each registration is a row of a second CSV file, FILE_edges.csv, from which an
-interrupted study continues. Rows of other scans, other guesses or another
-version of this program do not count.
+interrupted study continues. Rows of other scans or other guesses do not count.
+A file of another version is refused.
 
 Exit codes: 0 success, 2 usage, 3 a file cannot be read or written.
 )";

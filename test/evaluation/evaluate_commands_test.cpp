@@ -14,7 +14,10 @@ namespace {
 class EvaluateCommands : public EvaluateTool {};
 
 constexpr char rank_header[] =
-    "sampler,seed,valid,rank_x,rank_y,rank_z,rank_roll,rank_pitch,rank_yaw\n";
+    "sampler,seed,valid,rank_x,rank_y,rank_z,rank_roll,rank_pitch,rank_yaw,"
+    "version\n";
+
+constexpr char last_ranks[] = "40,99," BAYESIAN_ICP_VERSION "\n";
 
 /** Command lines of a sub-command. */
 using CommandLines = std::pair<std::string, std::vector<std::string>>;
@@ -66,8 +69,8 @@ TEST_F(EvaluateCommands, WhatIsAskedForTwiceCountsOnce)
   expectIn(coverage.output, "3 of 3 cases");
   expectIn(coverage.output, "\n  tool, same, prior     3  ");
   writeFile(folder_ / "b.csv",
-            std::string(rank_header) + "exact-langevin,1,1,0,10,20,30,40,99\n" +
-                "exact-metropolis,1,1,0,10,20,30,40,99\n");
+            std::string(rank_header) + "exact-langevin,1,1,0,10,20,30," + last_ranks +
+                "exact-metropolis,1,1,0,10,20,30," + last_ranks);
   const CommandResult ranks =
       run("sbc --sampler exact-langevin,exact --runs 1 --output b.csv");
   EXPECT_EQ(count("\n  exact-langevin ", ranks.output), 1) << ranks.output;
@@ -104,7 +107,7 @@ TEST_F(EvaluateCommands, SbcTellsRanksThatAreNotUniform)
   std::string rows = rank_header;
   // 50 runs in one bin: a statistic of 450.
   for (int seed = 1; seed <= 50; ++seed)
-    rows += "calibrated," + std::to_string(seed) + ",1,0,10,20,30,40,99\n";
+    rows += "calibrated," + std::to_string(seed) + ",1,0,10,20,30," + last_ranks;
   writeFile(folder_ / "a.csv", rows);
   const CommandResult result = run("sbc --sampler calibrated --runs 50 --output a.csv");
   EXPECT_EQ(result.exit_code, 1) << result.output;
@@ -178,12 +181,16 @@ TEST_F(EvaluateCommands, BadFilesExitWithThreeAndAreNamed)
   writeFile(folder_ / "other.csv", "x,y\n");
   writeFile(folder_ / "accuracy.csv", "x,y\n");
   writeFile(folder_ / "rank.csv",
-            rank_header + std::string("calibrated,1,1,0,10,20,30,40,100\n"));
+            rank_header + std::string("calibrated,1,1,0,100,20,30,") + last_ranks);
+  writeFile(folder_ / "old.csv",
+            rank_header + std::string("calibrated,1,1,0,10,20,30,40,99,0.0.9\n"));
   const std::vector<std::pair<std::string, std::string>> commands = {
       {"coverage --quick --methods prior --output other.csv", "other.csv"},
       {"coverage --real missing", "missing"},
       {"sbc --runs 1 --output other.csv", "other.csv"},
-      {"sbc --runs 1 --output rank.csv", "rank.csv"},
+      {"sbc --runs 1 --output rank.csv", "rank.csv: bad line"},
+      {"sbc --runs 1 --output old.csv",
+       "old.csv: is not a file of results of version " BAYESIAN_ICP_VERSION},
       {"samplers --scenes can --output other.csv --data '" BAYESIAN_ICP_DATA_DIR "'",
        "other.csv"},
       {"samplers --scenes can,typo --output new.csv --data '" BAYESIAN_ICP_DATA_DIR "'",

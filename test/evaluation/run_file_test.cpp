@@ -59,9 +59,9 @@ TEST_F(RunFiles, RowsComeBackAsTheyWent)
 {
   const std::uint64_t seed = std::numeric_limits<std::uint64_t>::max();
   RunFile<SomeRun>(file()).add({{"a word", seed}, true, 0.1, "x;a, b\nc"});
-  EXPECT_EQ(
-      contentOf(file()),
-      "word,seed,valid,number,notes\na word,18446744073709551615,1,0.1,x;a  b c\n");
+  EXPECT_EQ(contentOf(file()),
+            "word,seed,valid,number,notes,version\n"
+            "a word,18446744073709551615,1,0.1,x;a  b c," BAYESIAN_ICP_VERSION "\n");
   RunFile<SomeRun> again(file());
   const SomeRun* const run = again.find({"a word", seed});
   ASSERT_NE(run, nullptr);
@@ -99,15 +99,20 @@ TEST_F(RunFiles, ARowThatWasCutOffIsMadeAgain)
 
 TEST_F(RunFiles, OtherFilesAreRefused)
 {
-  const std::string header = headerOf<SomeRun>() + '\n';
   RunFile<SomeRun> runs(file());
+  const std::string header = contentOf(file());
+  const std::string end = "," BAYESIAN_ICP_VERSION "\n";
   for (const auto& [content, complaint] :
-       {std::pair<std::string, std::string>{"x,y\n", "not a file of results"},
-        {header + "a,1,1,0.5\n", "bad line 'a,1,1,0.5'"},
-        {header + "a,1,1,0.5,,\n", "bad line"},
-        {header + "a,1,1,0.5.,\n", "bad line"},
-        {header + "a,-1,1,0.5,\n", "bad line"},
-        {header + "a,1,2,0.5,\n", "bad line"}}) {
+       {std::pair<std::string, std::string>{"x,y\n",
+                                            "is not a file of results of version"},
+        {headerOf<SomeRun>() + '\n', "move it away, or choose another --output"},
+        {header + "a,1,1,0.5,,0.0.9\n", "is not a file of results of version"},
+        {header + "a\n", "is not a file of results of version"},
+        {header + "a,1,1,0.5" + end, "bad line 'a,1,1,0.5,"},
+        {header + "a,1,1,0.5,," + end, "bad line"},
+        {header + "a,1,1,0.5.," + end, "bad line"},
+        {header + "a,-1,1,0.5," + end, "bad line"},
+        {header + "a,1,2,0.5," + end, "bad line"}}) {
     const std::string other = (folder_ / "other.csv").string();
     writeFile(other, content);
     try {

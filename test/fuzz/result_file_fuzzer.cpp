@@ -58,5 +58,7 @@ LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
   readRows<evaluate::AccuracyRun>(bytes);
   readRows<evaluate::CoverageRun>(bytes);
   readRows<evaluate::DistributionRun>(bytes);
+  readRows<evaluate::RankRun>(bytes);
+  readRows<evaluate::ScoredRun>(bytes);
   return 0;
 }
