@@ -110,12 +110,13 @@ addSummary(const Summary& summary, Localization& result)
   result.values.emplace_back("noise [m]", shortly(summary.data.noise_scale));
 }
 
-/** What the run says, and the posterior if it is one to use. */
+} // namespace
+
 void
-report(const Summary& summary,
-       const PoseMatrix& draws,
-       const PriorOptions& prior,
-       Localization& result)
+addEstimate(const Summary& summary,
+            const PoseMatrix& draws,
+            const PriorOptions& prior,
+            Localization& result)
 {
   result.message = summary.message;
   addSummary(summary, result);
@@ -142,8 +143,6 @@ report(const Summary& summary,
   result.values.emplace_back("directions that the prior alone holds",
                              std::to_string(measurement.num_unmeasured));
 }
-
-} // namespace
 
 std::string
 LocalizerOptions::validate() const
@@ -268,7 +267,7 @@ Localizer::localize(const pcl::PCLPointCloud2& cloud,
     result.values.emplace_back("factor of the prior's variances for its correlations",
                                shortly(prior.widening));
     sample(source, prior.options, progress);
-    report(icp_.getSummary(), icp_.getSamples(), prior.options, result);
+    addEstimate(icp_.getSummary(), icp_.getSamples(), prior.options, result);
   }
   catch (const Refusal& refusal) {
     result.message = refusal.what();

@@ -66,6 +66,14 @@ struct Localization {
   PoseMatrix draws;
 };
 
+/** \brief Add what a run says, and what is to be used of its posterior.
+ * \param[in] prior of the run, with PriorFrame::Origin */
+void
+addEstimate(const Summary& summary,
+            const PoseMatrix& draws,
+            const PriorOptions& prior,
+            Localization& result);
+
 /** \brief Takes a map and priors as they come, and localizes clouds.
  *
  * setMap() and addPrior() only store, so they return at once; localize() judges what

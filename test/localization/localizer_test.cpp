@@ -294,6 +294,32 @@ TEST_F(LocalizerTest, HasNoMeasurementThatConflictsWithThePrior)
   EXPECT_FALSE(result.measurement);
 }
 
+TEST(Localization, HasNoMeasurementThatMayBeInAnotherBasin)
+{
+  Summary summary;
+  summary.status = Status::Doubtful;
+  summary.mean.setZero();
+  summary.covariances.fill(1e-4 * Matrix6d::Identity());
+  PriorOptions prior;
+  prior.mean.setZero();
+  const auto hasMeasurement = [&] {
+    Localization result;
+    app::addEstimate(summary, PoseMatrix(), prior, result);
+    EXPECT_EQ(result.level, Localization::Level::Warning);
+    EXPECT_TRUE(result.posterior);
+    return result.measurement.has_value();
+  };
+  DataFlags& flags = summary.data.flags;
+  flags.misfit = true;
+  EXPECT_TRUE(hasMeasurement());
+  flags.low_support = true;
+  EXPECT_FALSE(hasMeasurement());
+  flags.misfit = false;
+  EXPECT_TRUE(hasMeasurement());
+  flags.wrong_basin = true;
+  EXPECT_FALSE(hasMeasurement());
+}
+
 TEST_F(LocalizerTest, CanBeCancelled)
 {
   giveAll(localizer_);
