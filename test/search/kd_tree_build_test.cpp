@@ -1,6 +1,7 @@
 // The tree inside KdTree, which the library does not export: built from its sources.
 #include "search/kd_tree_build.h"
 #include "search/kd_tree_test_support.h"
+#include "threads/for_each_piece.h"
 
 #include <gtest/gtest.h>
 
@@ -45,6 +46,14 @@ TEST(KdTreeBuild, TreeIsTheSameForAnyNumberOfThreads)
       EXPECT_TRUE(isSameMemory(tree.leaf_of, expected.leaf_of)) << cloud.name;
     }
   }
+}
+
+TEST(NumberOfThreads, IsAtMost1024AndNoMoreThanThePieces)
+{
+  EXPECT_EQ(numThreadsFor(1024, 5000), 1024);
+  EXPECT_EQ(numThreadsFor(std::numeric_limits<int>::max(), 5000), 1024);
+  EXPECT_EQ(numThreadsFor(5000, 7), 7);
+  EXPECT_EQ(numThreadsFor(3, 0), 1);
 }
 
 TEST(KdTreeBuild, EveryPointIsInItsLeafAndInTheBoxesAndCellsAboveIt)
