@@ -18,6 +18,11 @@ LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" __attribute__((weak)) int
 LLVMFuzzerInitialize(int* argc, char*** argv);
 
+// What a fuzzer that has it says after all inputs: options change, and the bytes of
+// inputs then may mean other ones, that are refused.
+extern "C" __attribute__((weak)) bool
+isCorpusReachingResults();
+
 int
 main(int argc, char** argv)
 {
@@ -41,6 +46,10 @@ main(int argc, char** argv)
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()),
                            bytes.size());
+  }
+  if (isCorpusReachingResults != nullptr && !isCorpusReachingResults()) {
+    std::cerr << "too few inputs in " << argv[1] << " lead to a result\n";
+    return EXIT_FAILURE;
   }
   return EXIT_SUCCESS;
 }
