@@ -66,6 +66,22 @@ divergence(const Moments& a, const Moments& b)
                 std::log(b.covariance.determinant() / a.covariance.determinant()));
 }
 
+TEST(Exact, AutomaticSpreadOfStartsIsThePriorsButAtMostOneHalf)
+{
+  const Scans scans;
+  Options options = exactOptions();
+  options.chains.num_draws = 8;
+  options.exact.num_burn_in = options.exact.thinning = 1;
+  const Vector6d spread(0.5, 0.25, 0.125, 0.5, 0.25, 0.125);
+  options.prior.variance = spread.cwiseAbs2();
+  options.prior.variance[0] = options.prior.variance[3] = 4.0;
+  options.exact.initial_spread = spread;
+  const PosteriorEstimate stated = estimateFrom(scans, options);
+  options.exact.initial_spread = automatic;
+  ASSERT_GT(stated.samples.rows(), 0) << stated.summary.message;
+  EXPECT_EQ(estimateFrom(scans, options).samples, stated.samples);
+}
+
 TEST(Exact, AgreesWithMetropolisOnTheSameEnergy)
 {
   const Scans scans;
