@@ -35,7 +35,11 @@ TEST_F(CalibratedTest, RejectorsReciprocityAndTheGateAreForIcpAlone)
       pcl::make_shared<registration::CorrespondenceRejectorOneToOne>());
   icp.setUseReciprocalCorrespondences(true);
   icp.setMaxCorrespondenceDistance(0.1);
+  console::setVerbosityLevel(console::L_WARN);
+  testing::internal::CaptureStderr();
   icp.align(output);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("Rejectors"),
+            std::string::npos);
   EXPECT_NE(icp.getFinalTransformation(), plain);
   EXPECT_EQ(icp.getSamples(), expected);
 }
