@@ -17,6 +17,18 @@ UNITS_OF_ERRORS = [f"error_{c}" for c in ("vx_m", "vy_m", "vz_m", "wx_rad", "wy_
 EYES = ["0,-1.2,0.7", "0.05,-1.19,0.71", "0.1,-1.18,0.71", "0.15,-1.16,0.7", "0.2,-1.14,0.7"]
 
 
+def gaussian_of(values):
+    """Pose and covariance (right_se3)."""
+    return np.array(values["mean"]["T_target_source"]), np.array(values["covariance"]["matrix"])
+
+
+def carried(covariance, pose):
+    """The covariance (right_se3) of errors that are on the other side of the pose."""
+    rotation, shift = pose[:3, :3], np.cross(np.eye(3), pose[:3, 3])
+    adjoint = np.block([[rotation, shift @ rotation], [np.zeros((3, 3)), rotation]])
+    return adjoint @ covariance @ adjoint.T
+
+
 class TrackTest(TrajectoryTest):
     program = "pcl_bayesian_icp_track"
 
@@ -90,6 +102,15 @@ class TrackOfSimulatedScans(TrackTest):
         self.tracked(scans, "--map", 0.005, "--map-scans", 2)
         self.check_truth(from_world)
         self.assertEqual(self.targets(), [0, 0, 2, 2])
+        # The map is in the frame of scan 2, and on average as uncertain as scans 1 and 2.
+        (scan1, of_scan1), (scan2, of_scan2) = (
+            gaussian_of(line["pose_in_scan_0"]) for line in self.lines()[:2]
+        )
+        of_map = (of_scan2 + carried(of_scan1, inv(scan2) @ scan1)) / 2
+        for line in self.lines()[2:]:
+            pose, covariance = gaussian_of(line["edge"])
+            own = covariance - carried(of_map, inv(pose))
+            self.assertGreater(np.linalg.eigvalsh(own).min(), 0.0)
 
     def cycles(self, graph, *words):
         return call(EVALUATE, "cycles", graph, "--output", self.folder / "cycles.csv", *words)
