@@ -33,6 +33,9 @@ constexpr std::uint64_t order_stream = std::uint64_t(1) << 40;
  * see noise that patches share. */
 constexpr double max_part_used = 0.4;
 
+/** More than this number of points are at most one per patch of the other cloud. */
+constexpr Index min_points_of_few_patches = 250;
+
 /** Starts and the mode have converged if a step is below this fraction of the target's
  * noise. */
 constexpr double start_tolerance = 0.03;
@@ -422,7 +425,9 @@ evenPoints(const Matrix3Xd& points,
            Index max_points,
            std::uint64_t seed)
 {
-  const Index num_first = EstimateOptions().num_curvature_points;
+  const Index num_first = std::clamp<Index>(static_cast<Index>(model.patches().size()),
+                                            min_points_of_few_patches,
+                                            EstimateOptions().num_curvature_points);
   const auto part = static_cast<Index>(
       max_part_used *
       static_cast<double>(std::min(used.size(), model.patches().size())));

@@ -89,8 +89,9 @@ struct EstimateOptions {
  * \param[in] points 3 x n [m]
  * \param[in] used columns to choose from, finite
  * \param[in] model of the other cloud
- * \param[in] max_points maximum number. More than num_curvature_points are at most 40 %
- *            of the points and 0.4 per patch.
+ * \param[in] max_points maximum number. More than 250 are at most one per patch, and
+ *            more than num_curvature_points at most 40 % of the points and 0.4 per
+ *            patch.
  * \param[in] seed of their order. The order is random, so that the search for the mode,
  *            which uses the first points, gets a random choice. */
 Eigen::Matrix3Xd

@@ -162,6 +162,19 @@ TEST(CalibratedEstimate, TheTargetsPointsMakeItSharper)
   EXPECT_LT(ratio, 0.95);
 }
 
+TEST(CalibratedEstimate, IsRightAboutASparseTarget)
+{
+  // Points of a sparse target lie on narrow patches, and the source's points on wide
+  // ones: points of one cloud say nothing of what those of the other weigh.
+  const double ratio = ratioOfDeviations(600, 500, [](const Case& c) {
+    const PreparedSurface source = prepareSurface(c.source, 1);
+    const PreparedSurface target = prepareSurface(c.target, 1);
+    const SurfaceScorer both = scorerOf(c.source, source, c.target, target, 4000, 1);
+    return std::pair(estimateCalibrated(both, c.prior), c.estimate());
+  });
+  EXPECT_LT(ratio, 1.0);
+}
+
 TEST(CalibratedEstimate, IsTheSameTheOtherWay)
 {
   for (std::uint64_t stream = 500; stream < 505; ++stream) {
@@ -195,7 +208,8 @@ TEST(CalibratedEstimate, IsTheSameTheOtherWay)
 TEST(CalibratedEstimate, UsesAPartOfTheSourceAndNotMoreThanThePatchesCarry)
 {
   Random random(101, 300);
-  const SurfaceModel few(ballAndBox(random, 3000).points),
+  const SurfaceModel fewest(ballAndBox(random, 100).points),
+      fewer(ballAndBox(random, 1000).points), few(ballAndBox(random, 3000).points),
       many(ballAndBox(random, 25000).points);
   const auto expectUsed = [&](Index num_points, const SurfaceModel& model, Index most) {
     const Matrix3Xd points = ballAndBox(random, num_points).points;
@@ -210,6 +224,8 @@ TEST(CalibratedEstimate, UsesAPartOfTheSourceAndNotMoreThanThePatchesCarry)
   expectUsed(10000, many, 4000);
   expectUsed(30000, many, 6000);
   expectUsed(30000, few, 2000);
+  expectUsed(30000, fewer, 1000);
+  expectUsed(30000, fewest, 250);
 }
 
 TEST(CalibratedEstimate, PutsItsPartsTogether)

@@ -301,7 +301,7 @@ boxesOnATable(std::uint64_t seed, Eigen::Index num_points)
 TEST(Calibrated, ASparseSourceIsKnownOnADenseTarget)
 {
   // The target's points, against patches as wide as several boxes, hide motions of
-  // four of these five sources.
+  // three of these five sources.
   int num_known = 0, num_of_source_alone = 0;
   for (const std::uint64_t seed : {101, 103, 105, 107, 109}) {
     const Summary summary = estimatePosterior(boxesOnATable(seed, 2000),
@@ -318,7 +318,7 @@ TEST(Calibrated, ASparseSourceIsKnownOnADenseTarget)
         });
   }
   EXPECT_GE(num_known, 4);
-  EXPECT_GE(num_of_source_alone, 4);
+  EXPECT_GE(num_of_source_alone, 3);
 }
 
 /** A cloud and three more pieces of surface beside it. */

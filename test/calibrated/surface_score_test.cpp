@@ -231,7 +231,7 @@ TEST(SurfaceScore, PatchesAreNotKnownBetterThanThePointsThatMeetThem)
               0.1);
 }
 
-TEST(SurfaceScore, FirstPointsAreHalfOfEachCloud)
+TEST(SurfaceScore, FirstPointsAreTheSameShareOfEachCloud)
 {
   Random random(65, 0);
   const SurfaceModel model(test::randomPoints(random, 10));
@@ -243,7 +243,7 @@ TEST(SurfaceScore, FirstPointsAreHalfOfEachCloud)
   const Isometry3d pose = isometryOf(random.normal6());
   const auto points = [&](const SurfaceScorer& of) { return of.pointsAt(pose); };
   Matrix3Xd expected(3, 10);
-  expected << source.leftCols(5), pose.inverse() * target.leftCols(5);
+  expected << source.leftCols(6), pose.inverse() * target.leftCols(4);
   EXPECT_EQ(points(scorer.ofFirstOfBoth(10)), expected);
   EXPECT_EQ(scorer.ofFirstOfBoth(10).centroid(), scorer.centroid());
   EXPECT_EQ(points(scorer.ofFirst(10)), source.leftCols(10));

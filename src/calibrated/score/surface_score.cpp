@@ -322,10 +322,11 @@ SurfaceScorer::ofTarget() const
 SurfaceScorer
 SurfaceScorer::ofFirstOfBoth(Eigen::Index num_points) const
 {
-  const Eigen::Index num_of_target = std::min(num_points / 2, target_points_.cols());
+  num_points = std::min(num_points, numPoints());
+  const Eigen::Index num_of_target =
+      num_points * target_points_.cols() / std::max(numPoints(), Eigen::Index(1));
   return SurfaceScorer(*this,
-                       source_points_.leftCols(
-                           std::min(num_points - num_of_target, source_points_.cols())),
+                       source_points_.leftCols(num_points - num_of_target),
                        target_points_.leftCols(num_of_target));
 }
 

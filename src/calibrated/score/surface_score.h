@@ -159,7 +159,7 @@ public:
   SurfaceScorer
   ofTarget() const;
 
-  /** \brief A scorer of the first points of both clouds, half of them from each. */
+  /** \brief A scorer of the first points of both clouds, of each the same share. */
   SurfaceScorer
   ofFirstOfBoth(Eigen::Index num_points) const;
 
