@@ -408,7 +408,7 @@ tortureCases()
       {"NoNoise",
        "two scans without noise",
        [](Options&) { return usualPair(0.0); },
-       {right, right, not_mixed},
+       {rightButWarned(Status::Doubtful, "clouds without noise"), right, not_mixed},
        right},
       {"TargetTwice",
        "every target point twice",
