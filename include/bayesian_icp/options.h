@@ -314,7 +314,8 @@ struct CalibratedOptions {
   /** Largest number of points that are used of each cloud (target points are compared
    * with the source's surface). The chosen points cover the cloud evenly. Beyond 2000
    * points, at most 40 % of the cloud's points and 0.4 per patch of the other cloud are
-   * used. Starts and curvature use 2000 points. At least min_calibrated_points. */
+   * used; beyond 250 points, at most one per patch. Starts and curvature use 2000
+   * points. At least min_calibrated_points. */
   int max_source_points = 4000;
   /** Number of these points with which the starts are followed to their modes. At least
    * min_calibrated_points; if it exceeds the number of points, all are used. */
