@@ -17,9 +17,9 @@ namespace {
 
 /** A wavy surface scanned twice. */
 struct Scans {
-  explicit Scans(Eigen::Index num_source = 300)
+  explicit Scans(Eigen::Index num_source = 300, Eigen::Index num_target = 6000)
   : source(test::wavySurface(91, num_source, 0.1))
-  , target(test::moved(truth, test::wavySurface(92, 6000, 0.1)).cast<float>())
+  , target(test::moved(truth, test::wavySurface(92, num_target, 0.1)).cast<float>())
   {}
 
   Vector6d truth{0.01, -0.02, 0.015, 0.02, -0.03, 0.025};
@@ -180,7 +180,7 @@ TEST(Exact, SteinParticlesAreBitIdenticalForEveryNumberOfThreads)
 
 TEST(Exact, ASearchOfTheUsersOwnGivesTheSamePosterior)
 {
-  const Scans scans(100);
+  const Scans scans(100, 600); // few, because brute force looks at all
   Options options = exactOptions();
   options.chains.num_draws = 400;
   options.exact.residual.max_distance = 0.3;
