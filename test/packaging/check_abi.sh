@@ -30,11 +30,11 @@ compare() {
 for way in "$@"; do
   IFS=: read -r compiler standard flags <<<"$way"
   IFS=, read -ra flags <<<"$flags"
-  for part in main own_point_type report; do
+  for part in main own_point_type; do
     "${launcher[@]}" "$compiler" "-std=$standard" "${flags[@]}" "${includes[@]}" \
       -c "$sources/$part.cpp" -o "$work/$part.o"
   done
-  "$compiler" "$work"/{main,own_point_type,report}.o -o "$work/consumer" "${libraries[@]}" \
+  "$compiler" "$work"/{main,own_point_type}.o -o "$work/consumer" "${libraries[@]}" \
     -llz4 "-Wl,-rpath,$libdir"
   "$work/consumer"
   "$work/consumer" --layout >"$work/found_layout"

@@ -1,20 +1,33 @@
 // Uses the class as a program does that had pcl::IterativeClosestPoint before, or
-// prints the report (--report, --layout).
+// prints the report (--report, --layout): what has to be the same on both sides of the
+// library's border, the layout of what is passed over it, and results. Whoever compiles
+// it, and how, the text is one.
 #include "report.h"
 #include "surface.h"
 
+#include <bayesian_icp/draws.h>
+#include <bayesian_icp/exports.h>
+#include <bayesian_icp/tree_search.h>
+
 #include <pcl/registration/bayesian_icp.h>
+#include <pcl/registration/stochastic_gradient_icp.h>
 #include <pcl/point_types.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 
+#include <cstddef>
 #include <memory>
 #include <string>
 
+using namespace bayesian_icp;
+using Registration = pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
+using Precise =
+    pcl::BayesianIterativeClosestPoint<pcl::PointNormal, pcl::PointNormal, double>;
+using Descent =
+    pcl::StochasticGradientDescentIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
+
 bool
 registersOwnPointType();
-
-using Registration = pcl::BayesianIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
 
 // Whether what crossed the library's border is whole: mean and covariance are the
 // draws'.
@@ -30,12 +43,11 @@ describesPosterior(const Registration& registration)
   const auto reported = registration.getCovariance();
   const auto on_se3 =
       registration.getCovariance(bayesian_icp::CovarianceConvention::LeftSE3);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(on_se3);
   const auto status = registration.getSummary().status;
   return expect(registration.getMean().head<3>().isApprox(mean, 1e-9), "the mean") &&
          expect(reported.topLeftCorner<3, 3>().isApprox(covariance, 1e-9),
                 "the covariance") &&
-         expect(solver.eigenvalues().minCoeff() > 0.0, "a covariance on SE(3)") &&
+         expect(on_se3.llt().info() == Eigen::Success, "a covariance on SE(3)") &&
          expect(status == bayesian_icp::Status::Ok ||
                     status == bayesian_icp::Status::NotMixed,
                 "a status of a finished run");
@@ -66,6 +78,144 @@ replacesIterativeClosestPoint()
          expect(icp->getFinalTransformation().isApprox(truth, 1e-4f),
                 "the true pose") &&
          describesPosterior(*registration);
+}
+
+// A size and an alignment, or an offset.
+#define SIZE(type) printNumbers(#type ": size, alignment", sizeof(type), alignof(type))
+#define OFFSET(type, member) printNumbers(#type "." #member, offsetof(type, member))
+
+template <typename... Numbers>
+static void
+printNumbers(const char* what, Numbers... numbers)
+{
+  std::cout << what;
+  for (const std::size_t number : {numbers...})
+    std::cout << ' ' << number;
+  std::cout << '\n';
+}
+
+static void
+reportOptionsLayout()
+{
+  SIZE(Automatic<int>);
+  SIZE(Automatic<Vector6d>);
+  SIZE(LikelihoodScale);
+  SIZE(PriorOptions);
+  SIZE(SgldOptions);
+  SIZE(ChainOptions);
+  SIZE(ResidualOptions);
+  SIZE(PaperOptions);
+  SIZE(ExactOptions);
+  SIZE(CalibratedOptions);
+  SIZE(Options);
+  SIZE(StochasticGradientIcpOptions);
+  SIZE(ExportOptions);
+  OFFSET(Options, preset);
+  OFFSET(Options, prior);
+  OFFSET(Options, chains);
+  OFFSET(Options, paper);
+  OFFSET(Options, exact);
+  OFFSET(Options, calibrated);
+}
+
+static void
+reportResultsLayout()
+{
+  SIZE(Progress);
+  SIZE(Chain);
+  SIZE(CoordinateSummary);
+  SIZE(Mode);
+  SIZE(DataDirection);
+  SIZE(DataReport);
+  SIZE(Summary);
+  SIZE(PosteriorEstimate);
+  SIZE(Correspondence);
+  SIZE(StochasticGradientIcpResult);
+  SIZE(PoseEstimate);
+  OFFSET(Summary, status);
+  OFFSET(Summary, message);
+  OFFSET(Summary, mean);
+  OFFSET(Summary, coordinates);
+  OFFSET(Summary, modes);
+  OFFSET(Summary, data);
+  OFFSET(Summary, covariances);
+  OFFSET(PosteriorEstimate, chains);
+  OFFSET(PosteriorEstimate, samples);
+}
+
+static void
+reportClassesLayout()
+{
+  SIZE(Vector6d);
+  SIZE(Matrix6d);
+  SIZE(PoseMatrix);
+  SIZE(Eigen::Isometry3d);
+  SIZE(Random);
+  SIZE(Prior);
+  SIZE(KdTree);
+  SIZE(TreeSearch);
+  SIZE(CorrespondenceSearch);
+  SIZE(Registration);
+  SIZE(Precise);
+  SIZE(Descent);
+}
+
+// Options are filled here and read there, the last field and a text on its way back.
+static void
+reportComplaints()
+{
+  Options options;
+  options.calibrated.num_mode_points = 7;
+  std::cout << "complaint: " << options.validate() << '\n';
+  options = Options();
+  options.preset = Preset::Exact;
+  options.exact.initial_spread = Vector6d(-0.25 * Vector6d::Unit(5));
+  std::cout << "complaint: " << options.validate() << '\n';
+}
+
+static void
+reportPointXYZ()
+{
+  const auto source = scan<pcl::PointXYZ>(1, 300);
+  const auto target = scan<pcl::PointXYZ>(2, 1200);
+  Registration registration;
+  registration.setInputSource(source);
+  registration.setInputTarget(target);
+  pcl::PointCloud<pcl::PointXYZ> output;
+  for (const auto preset : {Preset::Calibrated, Preset::Exact, Preset::Paper}) {
+    registration.setOptions(reportOptions(preset));
+    registration.align(output);
+    print("icp", registration.getFinalTransformation());
+    printPosterior(toString(preset), registration);
+  }
+}
+
+// What is made here is deleted by a destructor of the library's.
+static void
+reportDeletion()
+{
+  using Icp = pcl::IterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ>;
+  const std::unique_ptr<Icp> icps[] = {std::unique_ptr<Icp>(new Registration),
+                                       std::unique_ptr<Icp>(new Descent)};
+  for (const auto& icp : icps)
+    std::cout << "on the heap: " << icp->getClassName() << '\n';
+}
+
+static void
+reportLayout()
+{
+  reportOptionsLayout();
+  reportResultsLayout();
+  reportClassesLayout();
+}
+
+static void
+reportResults()
+{
+  reportComplaints();
+  reportDeletion();
+  reportPointXYZ();
+  reportOwnPointType();
 }
 
 int

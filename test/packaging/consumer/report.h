@@ -68,14 +68,7 @@ reportOptions(bayesian_icp::Preset preset)
   return options;
 }
 
-// The layout of what is passed over the library's border.
-void
-reportLayout();
-
-// What the library answers.
-void
-reportResults();
-
-// The same for a point type that PCL has never heard of, by code compiled here.
+// What the library answers for a point type that PCL has never heard of, by code
+// compiled here.
 void
 reportOwnPointType();
