@@ -18,28 +18,37 @@ PLY_ENCODINGS = ("binary_little_endian", "binary_big_endian")
 
 
 class BrokenClouds(ToolTest):
+    def setUp(self):
+        super().setUp()
+        self.good = self.pcd("good.pcd", POINTS)
+
     def refuse(self, name, content, *reason):
-        """As source and as target: exit 3, the file and the reason."""
-        bad = self.file(name, content) if content is not None else self.folder / name
-        good = self.pcd("good.pcd", POINTS)
-        for clouds in ((bad, good), (good, bad)):
+        """As the target: exit 3, the file and the reason."""
+        bad = self.file(name, content)
+        self.assert_refused(3, run(self.good, bad, *FAST), f"{bad}: ", *reason)
+
+    def refuse_in_both_places(self, name, *reason):
+        """As refuse(), of what there is by that name; also as the source."""
+        bad = self.folder / name
+        for clouds in ((bad, self.good), (self.good, bad)):
             self.assert_refused(3, run(*clouds, *FAST), f"{bad}: ", *reason)
 
     def test_no_such_thing(self):
-        self.refuse("missing.pcd", None, "no such file")
+        self.refuse_in_both_places("missing.pcd", "no such file")
         self.refuse("empty.pcd", "", "is empty")
         self.refuse("empty.ply", "", "is empty")
         self.refuse("cloud.xyz", "1 2 3\n", "neither .pcd nor .ply")
         (self.folder / "folder.pcd").mkdir()
-        self.refuse("folder.pcd", None, "is a directory")
+        self.refuse_in_both_places("folder.pcd", "is a directory")
         (self.folder / "null.pcd").symlink_to("/dev/null")
-        self.refuse("null.pcd", None, "is not a regular file")
+        self.refuse_in_both_places("null.pcd", "is not a regular file")
         # As a process substitution of the shell.
         (self.folder / "63").symlink_to("/dev/null")
-        self.refuse("63", None, "is not a regular file")
+        self.refuse_in_both_places("63", "is not a regular file")
 
     def test_no_cloud(self):
-        self.refuse("text.pcd", "Dear reader,\nthis is no cloud.\n", "has no PCD header")
+        self.file("text.pcd", "Dear reader,\nthis is no cloud.\n")
+        self.refuse_in_both_places("text.pcd", "has no PCD header")
         self.refuse("text.ply", "Dear reader,\nthis is no cloud.\n", "has no PLY header")
         self.refuse("binary.pcd", bytes(range(256)) * 400, "has no PCD header")
         self.refuse("escape.ply", "ply\n\x1b[31m\n", "'?[31m'")
@@ -157,10 +166,12 @@ class BrokenClouds(ToolTest):
 
     def test_no_usable_points(self):
         nan = math.nan
-        self.refuse("nan.pcd", pcd_bytes([(nan, nan, nan)] * 9), "has no finite points")
+        self.pcd("nan.pcd", [(nan, nan, nan)] * 9)
+        self.refuse_in_both_places("nan.pcd", "has no finite points")
         self.refuse("nan.pcd", pcd_bytes([(nan, 1, 1)] * 9, encoding="ascii"), "no finite points")
         two_finite = [(nan, 1, 1)] * 9 + [(0, 0, 0), (1, 1, 1)]
-        self.refuse("two.pcd", pcd_bytes(two_finite), "has only 2 finite points")
+        self.pcd("two.pcd", two_finite)
+        self.refuse_in_both_places("two.pcd", "has only 2 finite points")
         self.refuse("none.pcd", pcd_bytes([]), "has no points")
         self.refuse("none.pcd", pcd_bytes([], encoding="binary_compressed"), "has no points")
         self.refuse("none.ply", ply_bytes([]), "has no points")
@@ -170,7 +181,8 @@ class BrokenClouds(ToolTest):
 
     def test_no_coordinates(self):
         flat = [("x", "f"), ("y", "f"), ("intensity", "f")]
-        self.refuse("flat.pcd", pcd_bytes(POINTS, flat), "no floating-point fields x, y and z")
+        self.pcd("flat.pcd", POINTS, flat)
+        self.refuse_in_both_places("flat.pcd", "no floating-point fields x, y and z")
         whole = [("x", "i"), ("y", "i"), ("z", "i")]
         rows = [(1, 2, 3)] * 9
         self.refuse("whole.pcd", pcd_bytes(rows, whole), "no floating-point fields")
