@@ -50,9 +50,10 @@ def test_draws_are_those_of_the_program_to_the_last_bit(preset, rivals, mug, pro
         options.exact.residual.residual = "distribution-to-distribution"
         options.exact.residual.regularization = "frobenius"
         options.exact.steps = "stein-newton"
-        options.exact.num_particles = 40
+        options.exact.num_particles = 8
+        options.exact.max_source_points = 100
         lines += ["--residual", "distribution-to-distribution", "--regularization", "frobenius",
-                  "--steps", "stein-newton", "--particles", 40]
+                  "--steps", "stein-newton", "--particles", 8, "--max-source-points", 100]
     else:
         lines += ["--samples", 400]
     np.savetxt(tmp_path / "guess.txt", GUESS, fmt="%.17g")
