@@ -19,8 +19,12 @@ compile() {
     "${libraries[@]/#-I/-isystem}" "${@/#/-include}" -x c++ /dev/null
 }
 
+# What another header includes first is compiled there, with nothing before it.
+first_includes=$(grep -h -m1 '^#include' "${headers[@]}")
 for header in "${headers[@]}"; do
-  compile "$1" c++14 "$header"
+  if ! grep -q -F "<$header>" <<<"$first_includes"; then
+    compile "$1" c++14 "$header"
+  fi
 done
 for header in pcl/registration/{bayesian_icp,stochastic_gradient_icp}.h; do
   compile "$1" "$pcl_standard" "$header"
