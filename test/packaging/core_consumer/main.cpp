@@ -66,7 +66,7 @@ main()
 
   bayesian_icp::Options options;
   options.preset = bayesian_icp::Preset::Paper; // a search of its own
-  options.chains.num_draws = 800;
+  options.chains.num_draws = 80;
   options.paper.batch_size = 80;
   const bayesian_icp::PosteriorEstimate estimate = bayesian_icp::estimatePosterior(
       source, ExhaustiveSearch(target), bayesian_icp::Vector6d::Zero(), options);
