@@ -108,7 +108,7 @@ TEST(Trajectories, ACameraAlongABareWallIsRightAboutTheMotionsThatItSees)
   // most where the camera has not moved, which must not count as evidence. Scans that
   // are ten apart have half of their points in common, and fits slide along the wall,
   // by up to a metre. A free direction that turns on its way is wrong there.
-  constexpr int num_runs = 6;
+  constexpr int num_runs = 4;
   // Of scans 20 and 30, which have the fewest, one run may find two modes.
   for (const auto& [target, source, least_used] : {std::tuple(21, 24, num_runs),
                                                    std::tuple(20, 30, num_runs - 1),
