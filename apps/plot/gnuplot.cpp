@@ -73,7 +73,8 @@ drawSvgs(const std::vector<Drawing>& drawings)
   for (const Drawing& drawing : drawings)
     script += scriptOf(drawing);
   // Users' own settings of gnuplot are not for these pictures.
-  const ProgramResult run = runChildProgram({"gnuplot", "--default-settings", "/dev/stdin"}, script);
+  const ProgramResult run =
+      runChildProgram({"gnuplot", "--default-settings", "/dev/stdin"}, script);
   if (!run.is_good && !runChildProgram({"gnuplot", "--version"}, "").is_good)
     throw GnuplotError("is not installed, but figures need it (package gnuplot-nox)");
   if (!run.is_good)
