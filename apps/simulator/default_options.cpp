@@ -78,7 +78,7 @@ optionsFor(const std::string& scene)
     return carriedOn(downwardLidar(),
                      {{-3.5, -3.0, 1.8}, {-2.5, -2.0, 1.8}},
                      {{-3.1, -2.9, 1.8}, {-2.2, -1.8, 1.8}});
-  if (scene == "street" || scene == "tunnel")
+  if (scene == "street" || scene == "tunnel" || scene == "tunnel_cabinets")
     return driven({0.0, -1.5, 1.8});
   if (scene == "forest" || scene == "bare_ground")
     return driven({0.0, 0.0, 2.0});

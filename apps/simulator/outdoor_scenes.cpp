@@ -210,6 +210,23 @@ tunnelDistance(const Vector3d& point)
   return radius - Eigen::Vector2d(point.y(), point.z() - height_of_axis).norm();
 }
 
+std::vector<ScenePart>
+tunnelWithCabinets()
+{
+  std::vector<ScenePart> parts = {floorPart(), {"wall", tunnelDistance}};
+  Random random(3, 0);
+  for (const double side : {-1.0, 1.0})
+    for (double x = -75.0; x < 75.0; x += between(10.0, 20.0, random)) {
+      const Vector3d size(between(0.4, 1.0, random), 1.0, between(0.8, 1.4, random));
+      parts.push_back(standing(
+          "cabinet", {x, 4.6 * side, 0.4}, size, [size](const Vector3d& point) {
+            const Vector3d half(0.5 * size.x(), 0.5 * size.y(), 0.0);
+            return boxDistance(point, -half, half + Vector3d(0.0, 0.0, size.z()));
+          }));
+    }
+  return parts;
+}
+
 } // namespace
 
 std::vector<Scene>
@@ -242,7 +259,11 @@ outdoorScenes()
       {"tunnel",
        "an endless smooth tube, radius 4.5 m, with a flat floor 1.5 m below its axis",
        "translation along it",
-       {floorPart(), {"wall", tunnelDistance}}}};
+       {floorPart(), {"wall", tunnelDistance}}},
+      {"tunnel_cabinets",
+       "the tunnel with cabinets at both walls, 0.3 m deep, every 10 to 20 m",
+       "nothing",
+       tunnelWithCabinets()}};
 }
 
 } // namespace bayesian_icp::simulator

@@ -37,7 +37,7 @@ newScenes();
 /** \brief Scenes to drive through with a LiDAR on the roof; no constant was chosen on
  * them. */
 inline const std::vector<std::string> lidar_scenes = {
-    "street", "office_floor", "forest", "bare_ground", "tunnel"};
+    "street", "office_floor", "forest", "bare_ground", "tunnel", "tunnel_cabinets"};
 
 /** \brief Sensor, view and prior of a scene. Things of the size of a hand or a table,
  * the corridor and the stairs have the prior of 0.03 m and 0.06 rad (one standard

@@ -6,6 +6,7 @@
 #include "calibrated/modes/robust_mode.h"
 #include "calibrated/score/score_clusters.h"
 #include "calibrated/surface/even_choice.h"
+#include "calibrated/surface/facing_points.h"
 #include "geometry/principal_axes.h"
 #include "threads/for_each_piece.h"
 
@@ -35,6 +36,9 @@ constexpr double max_part_used = 0.4;
 
 /** More than this number of points are at most one per patch of the other cloud. */
 constexpr Index min_points_of_few_patches = 250;
+
+/** Limit of the points that face rare motions, as a fraction of the others. */
+constexpr double max_share_facing = 0.2;
 
 /** Starts and the mode have converged if a step is below this fraction of the target's
  * noise. */
@@ -409,6 +413,21 @@ moveToMean(const SurfaceScorer& scorer,
   return moves;
 }
 
+/** Both lists, each in its order, at random places among each other. */
+std::vector<Index>
+merged(const std::vector<Index>& a, const std::vector<Index>& b, Random& random)
+{
+  std::vector<Index> both;
+  both.reserve(a.size() + b.size());
+  for (auto of_a = a.begin(), of_b = b.begin(); both.size() < a.size() + b.size();) {
+    const auto left_of_b = static_cast<std::size_t>(b.end() - of_b);
+    both.push_back(random.index(a.size() + b.size() - both.size()) < left_of_b
+                       ? *of_b++
+                       : *of_a++);
+  }
+  return both;
+}
+
 } // namespace
 
 void
@@ -421,16 +440,17 @@ setPrior(const Prior& prior, CalibratedEstimate& estimate)
 Matrix3Xd
 evenPoints(const Matrix3Xd& points,
            const std::vector<Index>& used,
-           const SurfaceModel& model,
+           const SurfaceModel& own,
+           const SurfaceModel& other,
            Index max_points,
            std::uint64_t seed)
 {
-  const Index num_first = std::clamp<Index>(static_cast<Index>(model.patches().size()),
+  const Index num_first = std::clamp<Index>(static_cast<Index>(other.patches().size()),
                                             min_points_of_few_patches,
                                             EstimateOptions().num_curvature_points);
   const auto part = static_cast<Index>(
       max_part_used *
-      static_cast<double>(std::min(used.size(), model.patches().size())));
+      static_cast<double>(std::min(used.size(), other.patches().size())));
   max_points = std::min(max_points, std::max(num_first, part));
   const Eigen::Matrix3Xf relative = relativeTo(centroidOf(points, used), points, used);
   const auto choose = [&](Index count) {
@@ -448,8 +468,19 @@ evenPoints(const Matrix3Xd& points,
   shuffle(others, random);
   for (const Index column : others)
     if (!is_chosen[static_cast<std::size_t>(column)] &&
-        static_cast<Index>(columns.size()) < max_points)
+        static_cast<Index>(columns.size()) < max_points) {
       columns.push_back(column);
+      is_chosen[static_cast<std::size_t>(column)] = true;
+    }
+  std::vector<Index> facing = pointsFacingRareMotions(points, used, own);
+  shuffle(facing, random);
+  const auto max_facing =
+      static_cast<std::size_t>(max_share_facing * static_cast<double>(columns.size()));
+  std::vector<Index> fresh;
+  for (const Index column : facing)
+    if (!is_chosen[static_cast<std::size_t>(column)] && fresh.size() < max_facing)
+      fresh.push_back(column);
+  columns = merged(columns, fresh, random);
   for (Index& column : columns)
     column = used[static_cast<std::size_t>(column)];
   return points(Eigen::all, columns);
@@ -471,11 +502,12 @@ scorerOf(const Matrix3Xd& source_points,
   Matrix3Xd of_source, of_target;
   forEachPiece(2, num_threads, [&](std::ptrdiff_t cloud) {
     if (cloud == 0)
-      of_source =
-          evenPoints(source_points, source.columns, target.model, max_points, seed);
+      of_source = evenPoints(
+          source_points, source.columns, source.model, target.model, max_points, seed);
     else if (are_both_compared)
       of_target = evenPoints(target_points,
                              columnsWithin(reach, target_points, target.columns),
+                             target.model,
                              source.model,
                              max_points,
                              seed);

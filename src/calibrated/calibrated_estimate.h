@@ -84,20 +84,23 @@ struct EstimateOptions {
 
 /** \brief The points of a cloud that the estimate uses. They cover the cloud evenly,
  * because near the sensor most points repeat each other, and far points hold rotations.
- * The first EstimateOptions::num_curvature_points cover it evenly by themselves.
+ * The first EstimateOptions::num_curvature_points cover it evenly by themselves. Up to
+ * a fifth as many pointsFacingRareMotions() come on top, everywhere in the order.
  *
  * \param[in] points 3 x n [m]
  * \param[in] used columns to choose from, finite
- * \param[in] model of the other cloud
- * \param[in] max_points maximum number. More than 250 are at most one per patch, and
- *            more than num_curvature_points at most 40 % of the points and 0.4 per
- *            patch.
+ * \param[in] own surface of the points
+ * \param[in] other surface of the other cloud
+ * \param[in] max_points maximum number of even points. More than 250 are at most one
+ *            per patch, and more than num_curvature_points at most 40 % of the points
+ *            and 0.4 per patch.
  * \param[in] seed of their order. The order is random, so that the search for the mode,
  *            which uses the first points, gets a random choice. */
 Eigen::Matrix3Xd
 evenPoints(const Eigen::Matrix3Xd& points,
            const std::vector<Eigen::Index>& used,
-           const SurfaceModel& model,
+           const SurfaceModel& own,
+           const SurfaceModel& other,
            Eigen::Index max_points,
            std::uint64_t seed);
 

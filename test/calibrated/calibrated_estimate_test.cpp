@@ -214,7 +214,8 @@ TEST(CalibratedEstimate, UsesAPartOfTheSourceAndNotMoreThanThePatchesCarry)
   const auto expectUsed = [&](Index num_points, const SurfaceModel& model, Index most) {
     const Matrix3Xd points = ballAndBox(random, num_points).points;
     const Index num_used =
-        evenPoints(points, finiteColumns(points), model, 6000, 1).cols();
+        evenPoints(points, finiteColumns(points), SurfaceModel(points), model, 6000, 1)
+            .cols();
     EXPECT_LE(num_used, most) << num_points;
     // A grid cannot have any number of cubes.
     EXPECT_GT(num_used, 0.95 * static_cast<double>(most)) << num_points;

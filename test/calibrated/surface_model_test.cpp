@@ -468,6 +468,37 @@ TEST(SurfaceModel, APlaneOfPointsAlongACurveMayLean)
   EXPECT_LT(num_curves, 12);
 }
 
+int
+numClearNormals(const Matrix3Xd& points)
+{
+  const SurfaceModel model(points);
+  return static_cast<int>(std::count_if(
+      model.patches().begin(), model.patches().end(), [](const SurfacePatch& p) {
+        return p.has_clear_normal;
+      }));
+}
+
+TEST(SurfaceModel, APatchHasAClearNormalIfItIsWideAndEvenlyCovered)
+{
+  constexpr int num_points = 900;
+  Random random(98, 0);
+  const Matrix3Xd sheet =
+      test::noisy(test::squarePlane(random, num_points, 0.5), 0.001, random);
+  EXPECT_GT(numClearNormals(sheet), 0.8 * num_points);
+
+  Matrix3Xd lines = sheet; // every 0.25 m, wider apart than a neighbourhood's points
+  lines.row(1) = (4.0 * lines.row(1)).array().round() / 4.0;
+  EXPECT_LT(numClearNormals(lines), 0.02 * num_points);
+
+  EXPECT_LT(numClearNormals(pointsOfStrip(true)), 0.02 * 600);
+
+  // Noise as thick as the neighbourhoods are wide.
+  Matrix3Xd cloud = sheet;
+  for (Index k = 0; k < 3; ++k)
+    cloud.row(k) += 0.3 * test::normals(random, num_points).transpose();
+  EXPECT_LT(numClearNormals(cloud), 0.1 * num_points);
+}
+
 TEST(SurfaceModel, PointsThatComeTwiceDoNoHarm)
 {
   Random random(79, 0);

@@ -13,7 +13,7 @@ from faults import SIMULATE, SIMULATED
 REPOSITORY = DATA.parent
 SCENES = """bowl can mug mug_hidden_handle table_top table_plate table box bracket carton cube
     tool corridor plain_corridor corridor_loop stairs room office_floor ground car tree street
-    forest bare_ground tunnel""".split()
+    forest bare_ground tunnel tunnel_cabinets""".split()
 COMMITTED = ["bowl", "can", "mug", "mug_hidden_handle", "table_top", "table", "corridor"]
 
 

@@ -169,6 +169,28 @@ TEST(CoverageOfCalibrated, IsNotTooSureOfWhatFewRingsSee)
   }
 }
 
+// Of points that cover the scan evenly, too few are on the cabinets: without those that
+// face along the tunnel, one of 16 runs knows the way. With them, it is known if the
+// first fit comes near enough, which it does within two deviations of the prior.
+TEST(CoverageOfCalibrated, KnowsTheWayAlongATunnelByItsCabinets)
+{
+  constexpr int num_seeds = 12;
+  constexpr double prior_sd = 0.3; // along the tunnel [m]
+  int num_known = 0;
+  for (int i = 0; i < num_seeds; ++i) {
+    const CoverageCase problem =
+        makeCoverageCase("tunnel_cabinets", "lidar64", first_seed + i);
+    const MethodResult result = resultOf(calibratedEstimateOf(problem));
+    if (result.shape.num_held < 6)
+      continue;
+    ++num_known;
+    EXPECT_LT(coverageScoreOf(problem, result).displacement, prior_sd / 10)
+        << "seed " << first_seed + i;
+  }
+  // 0.95 of a prior are within two deviations. 99.9 % quantile.
+  EXPECT_GE(num_known, 9);
+}
+
 // Where half of the overlap is lost, the next step fits nearly as well.
 TEST(CoverageOfCalibrated, FindsTheRightStepOfStairsInANarrowPrior)
 {

@@ -49,6 +49,10 @@ struct SurfacePatch {
   /** Whether the points of a plane follow one curve, like those of a scan line. They
    * hardly determine the slope across the curve. */
   bool follows_curve = false;
+  /** Whether the points show which way the surface faces: they cover a piece that is
+   * not long and narrow, evenly and not along separate scan lines, and that is clearly
+   * wider than it is thick. */
+  bool has_clear_normal = false;
 
   /** \brief Whether distances to the patch are meaningful. */
   bool
