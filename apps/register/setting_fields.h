@@ -210,7 +210,8 @@ visitCalibrated(SettingsT& settings, Visitor&& visit)
   visitLengths(calibrated, visit);
   visit({"calibrated", "max_source_points", "calibrated-points", "N",
          "Largest number of points of each cloud. Of a larger cloud, this many points "
-         "that cover it evenly are used."}, calibrated.max_source_points);
+         "that cover it evenly are used, and up to a fifth more of those that alone hold "
+         "a motion, like that along a tunnel."}, calibrated.max_source_points);
   visit({"calibrated", "num_mode_points", "mode-points", "N",
          "Number of these source points with which the starts are followed to a mode."},
         calibrated.num_mode_points);

@@ -315,7 +315,8 @@ struct CalibratedOptions {
    * with the source's surface). The chosen points cover the cloud evenly. Beyond 2000
    * points, at most 40 % of the cloud's points and 0.4 per patch of the other cloud are
    * used; beyond 250 points, at most one per patch. Starts and curvature use 2000
-   * points. At least min_calibrated_points. */
+   * points. Up to a fifth as many come on top where only they hold a motion, like that
+   * along a tunnel. At least min_calibrated_points. */
   int max_source_points = 4000;
   /** Number of these points with which the starts are followed to their modes. At least
    * min_calibrated_points; if it exceeds the number of points, all are used. */
