@@ -256,7 +256,8 @@ bindOptions(py::module_& module)
       module, "CalibratedOptions", "Options of preset calibrated.")
       .add("max_source_points",
            &CalibratedOptions::max_source_points,
-           "Largest number of points of each cloud that are used, at least 30.")
+           "Largest number of points of each cloud that are used, at least 30. Up to a "
+           "fifth as many come on top where only they hold a motion.")
       .add("num_mode_points",
            &CalibratedOptions::num_mode_points,
            "Of these, the number used to follow the starts to their modes.")

@@ -187,7 +187,8 @@ TEST(CoverageOfCalibrated, KnowsTheWayAlongATunnelByItsCabinets)
     EXPECT_LT(coverageScoreOf(problem, result).displacement, prior_sd / 10)
         << "seed " << first_seed + i;
   }
-  // 0.95 of a prior are within two deviations. 99.9 % quantile.
+  // Each is within two deviations with a probability of 0.95. Fewer than 9 of 12 are in
+  // 2 of 1000 cases.
   EXPECT_GE(num_known, 9);
 }
 
